@@ -30,7 +30,7 @@ typedef struct builder {
 
 /* ---- which coefficients are active ---- */
 
-/* Whether a block of a level is covered by a brick that is coarser than this level. */
+/* Returns whether a block of a level is covered by a brick that is coarser than this level. */
 static bool is_coarser(const hl_bricks *bricks, int level, const ptrdiff_t block[3]) {
   size_t at[3];
   for (int axis = 0; axis < 3; axis++) {

@@ -97,8 +97,8 @@ static void set_cell(cell_search *search, const hl_cell *cell, const hl_cell_sha
   set_functions(search, shape);
 }
 
-/* Whether a cube may meet the cell. low: the cube's corner with the least coordinates. size: the cube's
- * edge. */
+/* Returns whether a cube may meet the cell. low: the cube's corner with the least coordinates. size: the
+ * cube's edge. */
 static bool meets(const cell_search *search, const double low[3], double size) {
   const double middle[3] = {low[0] + size / 2, low[1] + size / 2, low[2] + size / 2};
   for (int n = 0; n < search->functions; n++) {
@@ -146,7 +146,8 @@ static void along(double c[COEFFICIENTS], int axis, void (*change)(double *line,
 
 /* ---- the bound ---- */
 
-/* Whether the coefficients of field - L allow a greater difference than the greatest one found so far. */
+/* Returns whether the coefficients of field - L allow a greater difference than the greatest one found so
+ * far. */
 static bool may_be_greater(const cell_search *search, const double c[COEFFICIENTS], double *bound) {
   range found = range_of(c, COEFFICIENTS);
   *bound = fmax(found.high - search->departure.low, search->departure.high - found.low);
@@ -175,7 +176,8 @@ static void bound_cube(cell_search *search, const double c[COEFFICIENTS], const 
   }
 }
 
-/* The coefficients of field - L of a lattice cell of the leaf's level. False if one is not a number. */
+/* The coefficients of field - L of a lattice cell of the leaf's level. Returns false if one is not a
+ * number. */
 static bool differences(const cell_search *search, const ptrdiff_t cell[3], double c[COEFFICIENTS]) {
   const hl_bricks *bricks = search->field->bricks;
   const hl_bricks_leaf *leaf = search->leaf;

@@ -37,7 +37,7 @@ typedef struct hl_cells_place {
 /* 4 of a tetrahedron, else 8. */
 int hl_cell_corner_count(const hl_cell *cell);
 
-/* A cell's shape in the world. False if the cell has no volume or a corner without a value. */
+/* A cell's shape in the world. Returns false if the cell has no volume or a corner without a value. */
 bool hl_cells_shape_in_world(const hl_cells *cells, size_t n, hl_cell_shape *shape);
 
 /* A cell's shape in lattice coordinates of level 0. Returns false as hl_cells_shape_in_world() does. */

@@ -44,7 +44,7 @@ static double edge_of(const hl_cell_shape *shape) {
   return cbrt(shape->is_tetrahedron ? 6 * sqrt(2) * volume : volume);
 }
 
-/* Whether all corners are nearer than FARTHEST; false for NaN. */
+/* Returns whether all corners are nearer than FARTHEST; false for NaN. */
 static bool is_near(const hl_cell_shape *shape) {
   bool near = true;
   for (int c = 0; c < (shape->is_tetrahedron ? 4 : 8); c++)

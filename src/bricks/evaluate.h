@@ -54,8 +54,8 @@ double hl_bricks_value(const hl_bricks *bricks, const double point[3]);
  * The field's values in these cells lie between these two numbers. */
 void hl_bricks_range(const hl_bricks *bricks, const int64_t first[3], const int64_t last[3], float range[2]);
 
-/* Whether all coefficients and constants are finite. Numbers that are not finite stand for places without
- * data. */
+/* Returns whether all coefficients and constants are finite. Numbers that are not finite stand for places
+ * without data. */
 bool hl_bricks_are_finite(const hl_bricks *bricks);
 /* Copies bricks, and replaces numbers that are not finite by `empty`. filled: must have a directory and a
  * pool as large as those of `bricks`; the function sets all other members. */

@@ -13,11 +13,11 @@ typedef struct hl_cell_shape {
                          * weights */
 } hl_cell_shape;
 
-/* Completes a shape whose corners are set. False if the cell has no volume. */
+/* Completes a shape whose corners are set. Returns false if the cell has no volume. */
 bool hl_cell_shape_ready(hl_cell_shape *shape);
 
-/* Finds the corners' weights at a point: [8], or [4] for a tetrahedron. Their sum is 1. False if the point
- * lies outside. */
+/* Finds the corners' weights at a point: [8], or [4] for a tetrahedron. Their sum is 1. Returns false if the
+ * point lies outside. */
 bool hl_cell_weights(const hl_cell_shape *shape, const double point[3], double weights[8]);
 
 /* Affine functions of the coordinates that describe a cell. One function approximates the values that the

@@ -19,7 +19,7 @@ typedef struct cell_block {
 
 /* The blocks of one level. */
 typedef struct block_table {
-  cell_block **blocks; /* owned, with all blocks; [size]; null where a place is free */
+  cell_block **blocks; /* owned, with all blocks; [size]; null if a place is free */
   size_t size, count;  /* size: a power of two, or 0 */
 } block_table;
 
@@ -147,8 +147,8 @@ hl_status hl_patches_add(hl_patches *patches, int level, const size_t first[3], 
 
 /* ---- means of finer cells ---- */
 
-/* Finds the mean of the eight finer cells from (x, y, z) of a block on. Returns false where one of them has
- * no value. */
+/* Finds the mean of the eight finer cells from (x, y, z) of a block on. Returns false if one of them has no
+ * value. */
 static bool mean_of_eight(const cell_block *fine, size_t x, size_t y, size_t z, float *mean) {
   double sum = 0;
   for (size_t n = 0; n < 8; n++)
@@ -333,7 +333,7 @@ static double mean_over_cell(const hl_bricks *bricks, int level, const size_t ce
   return sum;
 }
 
-/* Whether a finer level has a value in a cell. */
+/* Returns whether a finer level has a value in a cell. */
 static bool is_refined(const hl_patches *patches, int level, const size_t cell[3], last_block *last) {
   bool refined = false;
   for (size_t n = 0; n < 8 && level > 0 && !refined; n++) {

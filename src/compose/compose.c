@@ -193,8 +193,7 @@ hl_status hl_options_check(const hl_option *options, size_t option_count, hl_err
   return status == HL_OK ? check(asked, error) : status;
 }
 
-/* Makes the scene of a description with its label maps. *scene is null where no option asks for label
- * maps. */
+/* Makes the scene of a description with its label maps. *scene is null if no option asks for label maps. */
 static hl_status add_labels(const hl_composer *composer, const hl_scene_description *description,
                             hl_scene **scene) {
   if (!hl_asks_for_labels(composer, description)) return HL_OK;

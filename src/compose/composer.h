@@ -22,7 +22,7 @@ static inline hl_status hl_blame_options(hl_status status) {
 
 /* ---- functions.c: transfer functions ---- */
 
-/* True if the options replace or change the volumes' transfer functions. */
+/* Returns true if the options replace or change the volumes' transfer functions. */
 bool hl_asks_for_functions(const hl_asked *asked);
 
 /* The transfer function of volume number `index` with the options applied. Where color is not null and no
@@ -34,8 +34,8 @@ hl_status hl_compose_function(const hl_composer *composer, const hl_scene_descri
 /* Refuses "tf", "colormap" and "iso" with a NAME= that no volume has. */
 hl_status hl_check_volume_names(const hl_composer *composer, const hl_scene_description *description);
 
-/* Whether an option's value, which may begin with NAME=, is for volume number `index`. *rest: the text after
- * NAME=. */
+/* Returns whether an option's value, which may begin with NAME=, is for volume number `index`. *rest: the
+ * text after NAME=. */
 bool hl_text_is_for(const hl_composer *composer, const char *text, const hl_scene_volume *volume,
                     size_t index, const char **rest);
 
@@ -51,8 +51,8 @@ hl_status hl_color_meshes(const hl_composer *composer, const hl_scene_descriptio
 const char *hl_text_for(const hl_composer *composer, hl_ask option, const hl_scene_volume *volume,
                         size_t index);
 
-/* Whether options of values without NAME= leave volume number `index` out: it is a label map beside volumes
- * of values, and no "tf", "colormap" or "iso" names it. */
+/* Returns whether options of values without NAME= leave volume number `index` out: it is a label map beside
+ * volumes of values, and no "tf", "colormap" or "iso" names it. */
 bool hl_is_left_out(const hl_composer *composer, const hl_scene_description *description, size_t index);
 
 /* ---- isosurfaces.c ---- */
@@ -116,8 +116,8 @@ void hl_compose_rest(hl_scene_volume *volume);
 
 /* ---- labels.c ---- */
 
-/* Whether hl_compose_labels() changes the scene: options ask for a label map, or the only volume is a bare
- * label map that is one of several layers in its file. */
+/* Returns whether hl_compose_labels() changes the scene: options ask for a label map, or the only volume is a
+ * bare label map that is one of several layers in its file. */
 bool hl_asks_for_labels(const hl_composer *composer, const hl_scene_description *description);
 
 /* Replaces *scene by a scene that also has the label map of "labels" or the mask of "mask", or in which the

@@ -7,7 +7,7 @@
 #include "text/plain.h"
 #include "text/units.h"
 
-/* Reads the name of a unit, if one is there. False if the name is not known. */
+/* Reads the name of a unit, if one is there. Returns false if the name is not known. */
 static bool read_unit(const char **text, hl_coordinate *coordinate) {
   char name[16] = "";
   const size_t length = strcspn(*text, ":,");

@@ -14,8 +14,8 @@ typedef struct hl_coordinate {
   double metres; /* the length of the number's unit; 0: the number is in the file's own unit */
 } hl_coordinate;
 
-/* Reads "0.25", "10mm", "10u" or nothing, and moves *text past it. False if something else is there. "u"
- * stands for the file's own unit. */
+/* Reads "0.25", "10mm", "10u" or nothing, and moves *text past it. Returns false if something else is there.
+ * "u" stands for the file's own unit. */
 bool hl_read_coordinate(const char **text, hl_coordinate *coordinate);
 
 /* The length of a unit of the volume's world in metres; 0 if the volume's file does not tell its unit. */

@@ -118,7 +118,8 @@ static const char *after_name(const hl_context *context, const char *text) {
   return equals == NULL || hl_file_kind(context, text) != 0 ? NULL : equals + 1;
 }
 
-/* Whether a value "NAME=..." names the part. *rest: the text after "NAME="; null: the value has no name. */
+/* Returns whether a value "NAME=..." names the part. *rest: the text after "NAME="; null: the value has no
+ * name. */
 static bool names_part(const hl_composer *composer, const char *text, part part, const char **rest) {
   char own[256];
   *rest = after_name(composer->context, text);
@@ -252,8 +253,8 @@ bool hl_is_left_out(const hl_composer *composer, const hl_scene_description *des
 
 /* ---- colormaps in a list ---- */
 
-/* Whether the value of "colormap" is a list, with a colormap or a colour for each volume. R,G,B is one
- * colour, and no list. */
+/* Returns whether the value of "colormap" is a list, with a colormap or a colour for each volume. R,G,B is
+ * one colour, and no list. */
 static bool is_list(const hl_composer *composer, const hl_asked *colormap) {
   double color[3];
   return colormap->count == 1 && strchr(colormap->text, ',') != NULL &&

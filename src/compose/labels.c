@@ -211,7 +211,7 @@ static hl_status add_map(const hl_composer *composer, hl_shown_list *show, hl_la
                          : status;
 }
 
-/* Whether the scene's only volume was read without options that select a part of its file. */
+/* Returns whether the scene's only volume was read without options that select a part of its file. */
 static bool is_read_plainly(const hl_scene_volume *volume) {
   hl_scene_volume plain;
   hl_scene_volume_defaults(&plain);
@@ -220,8 +220,8 @@ static bool is_read_plainly(const hl_scene_volume *volume) {
          !(volume->spacing[0] > 0);
 }
 
-/* Whether the scene's only volume is a bare label map whose file has further layers of labels. These are then
- * shown, too. */
+/* Returns whether the scene's only volume is a bare label map whose file has further layers of labels. These
+ * are then shown, too. */
 static bool is_layered(const hl_composer *composer, const hl_scene_description *description) {
   const hl_scene_volume *only = description->volume_count == 1 ? &description->volumes[0] : NULL;
   if (!composer->bare || (composer->flags & HL_COMPOSE_CHANGED) != 0 || only == NULL || only->file == NULL ||

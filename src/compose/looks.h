@@ -10,8 +10,8 @@ struct hl_composer;
 /* The library's look that "look" asks for; null: "look" is not given, or asks for a maximum projection. */
 const char *hl_asked_look(const struct hl_composer *composer);
 
-/* True if "look" replaces the volumes' transfer functions. It does not for bare volumes, which were made with
- * their look already, nor for a maximum projection, in which a scene's transfer functions stay. */
+/* Returns true if "look" replaces the volumes' transfer functions. It does not for bare volumes, which were
+ * made with their look already, nor for a maximum projection, in which a scene's transfer functions stay. */
 bool hl_look_replaces_functions(const struct hl_composer *composer);
 
 /* Gives one volume the transfer function (hl_transfer_function_release) and the shading of the look. */
@@ -28,8 +28,8 @@ void hl_tell_of_function(const struct hl_composer *composer);
 /* Makes the picture a maximum projection, or a picture with light, as "look" asks. */
 void hl_compose_look(const struct hl_composer *composer, hl_scene_description *description);
 
-/* True if the picture is a maximum projection, as "look" says; where "look" is not given, as the scene
- * says. */
+/* Returns true if the picture is a maximum projection, as "look" says; where "look" is not given, as the
+ * scene says. */
 bool hl_is_maximum(const struct hl_composer *composer, const hl_scene_description *description);
 
 /* The colour, as "#rrggbb", of volume number `index` in a maximum projection of several bare volumes, so that

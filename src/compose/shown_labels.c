@@ -63,7 +63,8 @@ static bool is_whole(const hl_label *label, const hl_shown_label *shown) {
   return label->name != NULL && strcmp(label->name, shown->whole) == 0;
 }
 
-/* Whether a label has the name of the item. Upper and lower case count as the same, unless `exactly`. */
+/* Returns whether a label has the name of the item. Upper and lower case count as the same, unless
+ * `exactly`. */
 static bool has_name(const hl_label *label, const hl_shown_label *shown, bool exactly) {
   if (label->name == NULL) return false;
   return exactly ? strcmp(label->name, shown->name) == 0 : hl_plain_equal(label->name, shown->name);

@@ -8,7 +8,8 @@
 #include "guess/looks.h"
 #include "scene/function/transfer_function.h"
 
-/* Whether options say how values are drawn, or ask for a mask, which only volumes of values can have. */
+/* Returns whether options say how values are drawn, or ask for a mask, which only volumes of values can
+ * have. */
 static bool asks_for_values(const hl_composer *composer, const hl_scene_volume *volume, size_t index) {
   static const hl_ask named[] = {HL_ASK_TF, HL_ASK_COLORMAP, HL_ASK_ISO};
   const hl_asked *asked = composer->asked;

@@ -51,7 +51,7 @@ static size_t count_holder_planes(const hl_scene_description *description) {
   return planes;
 }
 
-/* Whether "whole" asks to show the parts that hl_scene_for_volume() has cut off. */
+/* Returns whether "whole" asks to show the parts that hl_scene_for_volume() has cut off. */
 static bool shows_whole(const hl_composer *composer, const hl_scene_description *description) {
   return composer->bare && composer->asked[HL_ASK_WHOLE].given && count_holder_planes(description) > 0;
 }

@@ -5,7 +5,7 @@
 
 #include "compose/composer.h"
 
-/* The arrays of changed volumes, all of them owned. An array is null where no option asks for it. */
+/* The arrays of changed volumes, all of them owned. An array is null if no option asks for it. */
 typedef struct hl_changed_volumes {
   hl_scene_volume *volumes;        /* [count] */
   hl_transfer_function *functions; /* [count]; with their points */

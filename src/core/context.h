@@ -24,7 +24,7 @@ struct hl_context {
                                 * its blocks of memory */
 };
 
-/* Whether the context opens only files below a folder. */
+/* Returns whether the context opens only files below a folder. */
 static inline bool hl_is_confined(const hl_context *context) { return context->whole != context; }
 
 /* Removes one user of a confined context. The context is destroyed with its last user. */
@@ -39,7 +39,7 @@ bool hl_cancelled(const hl_context *context);
 
 hl_instruction_set hl_cpu_best_instruction_set(void);
 
-/* Whether this build has functions for the instruction set and this processor can run them. */
+/* Returns whether this build has functions for the instruction set and this processor can run them. */
 int hl_cpu_has_instruction_set(hl_instruction_set set);
 
 #endif

@@ -125,8 +125,8 @@ hl_status hl_pool_check(hl_pool *pool, const char *doing, hl_error *error) {
   return hl_pool_cancelled(pool) ? hl_fail(error, HL_ERROR_CANCELLED, "cancelled while %s", doing) : HL_OK;
 }
 
-/* Whether it is time to call the cancel callback. Reads the clock seldom where calls follow each other
- * quickly. */
+/* Returns whether it is time to call the cancel callback. Reads the clock seldom where calls follow each
+ * other quickly. */
 static bool is_time_to_ask(hl_pool *pool) {
   if (pool->unread > 0) {
     pool->unread--;

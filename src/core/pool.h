@@ -21,8 +21,8 @@ typedef struct hl_pool hl_pool;
 hl_status hl_pool_create(hl_context *context, int threads, hl_pool **pool, hl_error *error);
 void hl_pool_destroy(hl_pool *pool); /* `pool` may be null */
 
-/* Whether the pool belongs to this process. In a child process made by fork() the result is false: the child
- * has no threads of the pool, and can only destroy it. */
+/* Returns whether the pool belongs to this process. In a child process made by fork() the result is false:
+ * the child has no threads of the pool, and can only destroy it. */
 bool hl_pool_is_own(const hl_pool *pool);
 int hl_pool_threads(const hl_pool *pool);
 /* How often the caller has waited for other threads since the pool was made: at the end of each run with
@@ -49,16 +49,16 @@ void hl_pool_fill(hl_pool *pool, float *floats, size_t count, float value);
 void hl_pool_set(hl_pool *pool, void *memory, size_t bytes, int value);
 void hl_pool_clear(hl_pool *pool, void *memory, size_t bytes);
 
-/* Whether work must stop. The function polls the cancel callback. Only the calling thread may call it,
- * between runs. */
+/* Returns whether work must stop. The function polls the cancel callback. Only the calling thread may call
+ * it, between runs. */
 bool hl_pool_cancelled(hl_pool *pool);
 
 /* Returns HL_ERROR_CANCELLED, with the line "cancelled while DOING", if hl_pool_cancelled() is true; else
  * HL_OK. */
 hl_status hl_pool_check(hl_pool *pool, const char *doing, hl_error *error);
 
-/* Whether work must stop. Functions that take long for a single index call hl_pool_stops() while they work.
- * The call is cheap: only worker 0 polls the cancel callback. */
+/* Returns whether work must stop. Functions that take long for a single index call hl_pool_stops() while they
+ * work. The call is cheap: only worker 0 polls the cancel callback. */
 bool hl_pool_stops(hl_pool *pool, int worker);
 
 /* Clears the pool's stop state, so that the pool runs indices again. */

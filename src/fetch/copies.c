@@ -39,7 +39,8 @@ static void copy_path(const char *folder, const char *key, char path[COPIES_PATH
 
 /* ---- one copy ---- */
 
-/* Reads the lines at the end of a copy. False if they are another key's, or if the copy is cut short. */
+/* Reads the lines at the end of a copy. Returns false if they are another key's, or if the copy is cut
+ * short. */
 static bool read_lines(const char *key, hl_fetched_file *file, char *condition) {
   const int descriptor = file->descriptor;
   struct stat about;

@@ -61,7 +61,7 @@ static FILE *make_list(const curl_transfer *transfers, size_t count, uint64_t mo
 
 /* ---- what curl says ---- */
 
-/* Copies a line without its end. False if it is too long or has unprintable bytes. */
+/* Copies a line without its end. Returns false if it is too long or has unprintable bytes. */
 static bool copy_line(const char *line, char *text, size_t size) {
   size_t length = strcspn(line, "\r\n");
   if (length >= size) return false;

@@ -50,7 +50,7 @@ static bool is_unreserved(char c) {
          (c != '\0' && strchr("-._~/", c) != NULL);
 }
 
-/* Whether a URL can be written into curl's list without escapes. */
+/* Returns whether a URL can be written into curl's list without escapes. */
 static bool is_plain(const char *url) {
   for (const char *c = url; *c != '\0'; c++)
     if ((unsigned char)*c <= ' ' || (unsigned char)*c > '~' || *c == '"' || *c == '\\' || *c == '#')
@@ -99,7 +99,7 @@ static hl_status begin(fetching *t, wanted *file) {
   return status;
 }
 
-/* Whether a transfer failed for a reason that may be temporary. */
+/* Returns whether a transfer failed for a reason that may be temporary. */
 static bool may_pass(const curl_transfer *transfer) {
   if (transfer->problem == CURL_TOO_LONG) return false;
   return transfer->problem != 0 || transfer->answer == 408 || transfer->answer == 429 ||
@@ -195,8 +195,8 @@ static hl_status take(fetching *t, wanted *file, hl_fetched_file *result) {
   return HL_OK;
 }
 
-/* Whether a file takes part in the next run: it was redirected in the run before, or, at the beginning of a
- * try, it is not done. */
+/* Returns whether a file takes part in the next run: it was redirected in the run before, or, at the
+ * beginning of a try, it is not done. */
 static bool takes_part(const wanted *file, bool begins) { return begins ? !file->done : file->moved; }
 
 /* Runs curl on files that are not done. begins: on all of them, at the store's URLs; otherwise on those that

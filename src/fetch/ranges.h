@@ -15,8 +15,8 @@ enum { RANGE_BYTES = 64 };
  * for the whole file. False: there are no such bytes. */
 bool range_write(const hl_fetch_range *range, char text[RANGE_BYTES]);
 
-/* Whether "Content-Range" says that an answer has exactly the wanted bytes, of which there is one at least.
- * Sets file->begin, file->size and file->whole to what it says. */
+/* Returns whether "Content-Range" says that an answer has exactly the wanted bytes, of which there is one at
+ * least. Sets file->begin, file->size and file->whole to what it says. */
 bool range_is_answered(const hl_fetch_range *range, const char *content_range, hl_fetched_file *file);
 
 #endif

@@ -58,7 +58,7 @@ typedef struct opacity_job {
   int32_t first, end; /* the range of z for which this process samples cells */
 } opacity_job;
 
-/* Whether a relevant brick of the grid holds points around `at` (index space). */
+/* Returns whether a relevant brick of the grid holds points around `at` (index space). */
 static bool reaches_matter(const grid *grid, const float at[3], const float reach[3]) {
   int32_t first[3], last[3];
   for (int a = 0; a < 3; a++) {
@@ -71,8 +71,8 @@ static bool reaches_matter(const grid *grid, const float at[3], const float reac
   return hl_any_brick_relevant(grid, first, last);
 }
 
-/* Whether a volume reaches a box around `middle` (frame space), which is `side` cells long and wide and one
- * cell high. */
+/* Returns whether a volume reaches a box around `middle` (frame space), which is `side` cells long and wide
+ * and one cell high. */
 static bool volume_reaches(const opacity_job *job, int volume, const float middle[3], float side) {
   const field_matter *matter = &job->content->matter[volume];
   float at[3], reach[3];

@@ -153,7 +153,7 @@ LANES_INLINE float factor_of_length(const classifier *classifier, float length) 
   return factors[0] + (factors[1] - factors[0]) * (entry - (float)(int32_t)entry);
 }
 
-/* Whether the transfer function may show something in the grid's cell around a position. */
+/* Returns whether the transfer function may show something in the grid's cell around a position. */
 LANES_INLINE int cell_shows(const grid *grid, const float at[3]) {
   int32_t cell[3], brick[3];
   if (grid->cell_bits == NULL) return 1;
@@ -167,8 +167,8 @@ LANES_INLINE int cell_shows(const grid *grid, const float at[3]) {
   return (int)(grid->cell_bits[hl_brick_index(grid, brick)] >> bit & 1);
 }
 
-/* Whether matter at a position absorbs light: either the cuts leave the matter there, or cut matter still
- * casts shadows. */
+/* Returns whether matter at a position absorbs light: either the cuts leave the matter there, or cut matter
+ * still casts shadows. */
 LANES_INLINE int cuts_leave_position(const grid *grid, const float at[3]) {
   return grid->cut_count == 0 || grid->cut_casts_shadow ||
          hl_cuts_leave(grid->cuts, grid->cut_count, (vec3){at[0], at[1], at[2]});

@@ -315,8 +315,8 @@ static bool attenuates_in_color(const sky_content *content) {
 }
 
 /* Finds the links that surfaces cut along an axis. Where a surface cuts the way from a cell to the next cell
- * along the axis, stores the place of the cut in one of the cell's last three floats. Returns null where
- * there are no surfaces. */
+ * along the axis, stores the place of the cut in one of the cell's last three floats. Returns null if there
+ * are no surfaces. */
 static const surface_links *find_links(const sky_content *content, const surface_links *links,
                                        const sky_target *target, float *field, int axis, hl_pool *pool) {
   const field_content *of = &content->content;

@@ -118,8 +118,8 @@ LANES_INLINE void darken(const sky_slice *slice, size_t at, uint64_t directions)
 }
 
 /* Moves the light of all directions to sixteen cells. block: the number of the cells' block. at: the index of
- * the first direction's light in the block. squared: null where no matter lies in the cells. open: null where
- * no surface cuts their links. */
+ * the first direction's light in the block. squared: null if no matter lies in the cells. open: null if no
+ * surface cuts their links. */
 LANES_INLINE void move_light(const sky_slice *slice, size_t block, size_t at, const lanes *squared,
                              const lanes *open, sky_reaching *reaching) {
   const int32_t row = FIELD_DIRECTIONS * slice->light_stride;

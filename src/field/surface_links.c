@@ -82,7 +82,7 @@ static void cut_link(const link_lines *lines, int32_t across, int32_t down, doub
   if (*place == 0 || way < *place) *place = way;
 }
 
-/* Whether the cuts of a mesh leave the mesh at a point of a line. */
+/* Returns whether the cuts of a mesh leave the mesh at a point of a line. */
 static bool is_left(const link_lines *of, int32_t column, int32_t row, double height) {
   const lattice_lines *lines = &of->lines;
   double at[3];

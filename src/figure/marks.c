@@ -123,8 +123,8 @@ static point_on_page anchor_of(const hl_mark *mark, const point_on_page first[3]
   }
 }
 
-/* Whether a ruler's line rises to the right on the page. Its text then lies below the line, and else above,
- * so that the text covers neither the line nor its end. */
+/* Returns whether a ruler's line rises to the right on the page. Its text then lies below the line, and else
+ * above, so that the text covers neither the line nor its end. */
 static bool rises(const hl_mark *mark, const point_on_page first[3]) {
   return mark->kind == HL_MARK_RULER && (first[1].x - first[0].x) * (first[1].y - first[0].y) < 0;
 }

@@ -63,7 +63,7 @@ static hl_status find_box(const hl_ink *ink, const hl_overlay_place *place, over
 /* The number of a picture's pixel at a place, from 0 to `count`; part: the place, from 0 to 1. */
 static int pixel_at(double part, int count) { return (int)fmin(fmax(floor(part * count), 0), count); }
 
-/* Whether the picture shows matter in a box on the page. */
+/* Returns whether the picture shows matter in a box on the page. */
 static bool shows_matter(const hl_image *image, hl_rectangle picture, hl_rectangle box) {
   const int width = hl_image_width(image), height = hl_image_height(image);
   const float *pixels = hl_image_pixels_const(image);

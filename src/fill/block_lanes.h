@@ -143,8 +143,8 @@ LANES_INLINE int cells_visible_in_bricks(const grid *grid, size_t first_brick, c
   return !_mm_testz_si128(word, _mm_shuffle_epi8(bit_of, bit));
 }
 
-/* Whether all cells of a block lie in the 2x2x2 bricks whose first cell is `first`. Sets `within` to the
- * cells' coordinates counted from `first`, a byte each. */
+/* Returns whether all cells of a block lie in the 2x2x2 bricks whose first cell is `first`. Sets `within` to
+ * the cells' coordinates counted from `first`, a byte each. */
 LANES_INLINE int cells_in_bricks(const lanes_int cell[3], const int32_t first[3], __m128i within[3]) {
   for (int axis = 0; axis < 3; axis++) within[axis] = narrow_bytes(cell[axis] - first[axis]);
   __m128i all = _mm_or_si128(_mm_or_si128(within[0], within[1]), within[2]);
@@ -179,9 +179,9 @@ LANES_INLINE int cells_in_bricks(const lanes_int cell[3], const int32_t first[3]
 typedef lanes_int cell_offsets;
 #endif
 
-/* Whether any of a block's points lies in a cell that may show something. cell: the floors of the points'
- * coordinates, clamped as in find_points(). low: the least of these floors along each axis. Usually all cells
- * lie in 2x2x2 bricks; the first of these bricks holds the cell with the least coordinates. */
+/* Returns whether any of a block's points lies in a cell that may show something. cell: the floors of the
+ * points' coordinates, clamped as in find_points(). low: the least of these floors along each axis. Usually
+ * all cells lie in 2x2x2 bricks; the first of these bricks holds the cell with the least coordinates. */
 LANES_INLINE int cells_visible(const grid *grid, const lanes_int cell[3], const int32_t low[3]) {
   int32_t first_cell[3];
   cell_offsets within[3];

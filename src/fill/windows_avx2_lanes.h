@@ -37,7 +37,7 @@ typedef struct window_copies {
   _Alignas(32) unsigned char slice[WINDOW_SIDE][SLICE_BYTES];
 } window_copies;
 
-/* Whether windows of voxels can be opened in a grid. */
+/* Returns whether windows of voxels can be opened in a grid. */
 LANES_INLINE int has_windows(const grid *grid) {
   return grid->columns != NULL && grid->dimension[2] >= USUAL_SLICES;
 }

@@ -59,7 +59,7 @@ LANES_INLINE void locate_window(const grid *grid, const int32_t low[3], voxel_wi
   }
 }
 
-/* Whether windows of voxels can be opened in a grid. */
+/* Returns whether windows of voxels can be opened in a grid. */
 LANES_INLINE int has_windows(const grid *grid) {
   if (grid->storage == HL_STORAGE_U8) return grid->columns != NULL;
   return grid->dimension[0] >= WINDOW_SIDE && grid->dimension[1] >= WINDOW_SIDE;

@@ -27,7 +27,7 @@
 #ifdef HL_WINDOWS
 /* The weighted sums of a block's active lanes. They are taken from one window, or from one window for each
  * half of the block. lowest: the least of the lanes' cells along each axis, up to rounding, if every lane is
- * active; else null. Returns false where the taps lie too far apart. */
+ * active; else null. Returns false if the taps lie too far apart. */
 LANES_INLINE int sum_of_windows(const grid *grid, const lanes_int cell[3], const int32_t *lowest,
                                 uint32_t active, const lanes weight[3][4], lanes *sum) {
   hl_storage storage = grid->storage;

@@ -75,7 +75,7 @@ static json_t *number_like(const json_t *before, double value) {
   return json_is_integer(before) ? json_integer(llround(value)) : json_real(value);
 }
 
-/* Whether a scene has a setting with this name that is a colour. */
+/* Returns whether a scene has a setting with this name that is a colour. */
 static bool is_color(const char *name) {
   const hl_setting *setting;
   for (int kind = 0; (setting = hl_setting_get((hl_setting_kind)kind, 0)) != NULL; kind++) {

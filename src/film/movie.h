@@ -12,7 +12,7 @@ typedef struct movie movie;
 /* The extensions of films that can be written. The first one is ".mp4"; null follows the last one. */
 extern const char *const movie_extensions[];
 
-/* Whether the program ffmpeg is in the PATH. */
+/* Returns whether the program ffmpeg is in the PATH. */
 bool movie_available(void);
 
 /* Begins a film. `path` ends in one of the extensions; the file appears, complete, when movie_end() returns.

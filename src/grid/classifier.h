@@ -55,7 +55,7 @@ static inline bool hl_classifier_is_weighed(const classifier *classifier) {
   return classifier->steepness != NULL || classifier->mask.factors != NULL || classifier->plane.sums != NULL;
 }
 
-/* Whether the factor that multiplies extinction depends on the gradient of the volume. */
+/* Returns whether the factor that multiplies extinction depends on the gradient of the volume. */
 static inline bool hl_classifier_needs_gradient(const classifier *classifier) {
   return classifier->steepness != NULL ||
          (classifier->plane.sums != NULL && classifier->plane.axis == HL_SECOND_GRADIENT);
@@ -75,9 +75,9 @@ void hl_classifier_release(hl_context *context, classifier *classifier);
  * between the empty value and the least value; else it is -infinity. */
 double hl_transparent_below(const hl_volume *volume, const hl_transfer_function *function, double empty);
 
-/* Whether some stored value from `low` to `high` is visible. */
+/* Returns whether some stored value from `low` to `high` is visible. */
 bool hl_classifier_span_visible(const classifier *classifier, const grid *grid, float low, float high);
-/* Whether some stored value in the range from `low` to `high`, widened to include the empty value, is
+/* Returns whether some stored value in the range from `low` to `high`, widened to include the empty value, is
  * visible. */
 bool hl_classifier_range_visible(const classifier *classifier, const grid *grid, float low, float high);
 

@@ -32,8 +32,7 @@ enum {
 enum { LOOKUP_SIZES = 2, LOOKUP_REACH = 3 /* units along an axis that one look-up covers */ };
 typedef struct cell_lookup {
   int32_t count[3];
-  unsigned char
-      *visible; /* in the grid's memory; [count z][y][x]; null where 32 bits cannot number the cells */
+  unsigned char *visible; /* in the grid's memory; [count z][y][x]; null if 32 bits cannot number the cells */
 } cell_lookup;
 
 typedef struct grid {
@@ -60,8 +59,7 @@ typedef struct grid {
   /* A second copy of u8 voxels, in columns eight voxels wide. Eight rows of a column are 64 consecutive
    * bytes. So two loads of 512 bits take a window of 8x8 voxels from two columns, and neighbouring windows
    * lie in the same cache lines for any direction of the sheets. The values are reduced by 128 and stored as
-   * signed numbers. [column][dimension[2]][dimension[1]][GRID_COLUMN]; null where nothing reads the
-   * columns. */
+   * signed numbers. [column][dimension[2]][dimension[1]][GRID_COLUMN]; null if nothing reads the columns. */
   unsigned char *columns;
   size_t column_slice_bytes, column_bytes; /* number of bytes from one slice of a column to the next, and from
                                             * one column to the next */
@@ -85,7 +83,7 @@ typedef struct grid {
   cell_lookup lookup[LOOKUP_SIZES]; /* two look-ups: of groups of 2x2x2 cells, and of bricks */
   /* [bricks z]; for each layer of bricks, the packed bounds of all groups of 2x2x2 cells in the layer
    * (bounds.h). Each layer is owned, and has the size that packing finds. A bound stands for the stored value
-   * cell_base + cell_step * bound. Null where 32 bits cannot number the cells */
+   * cell_base + cell_step * bound. Null if 32 bits cannot number the cells */
   unsigned char **cell_bounds;
   float cell_base, cell_step; /* the stored value for the bound 0, and the step from one bound to the next;
                                * stored units */

@@ -127,7 +127,7 @@ static int32_t greatest_cell(const hl_volume *volume, int axis) {
   return (int32_t)fmin(end, (double)hl_bricks_cells(volume->bricks, axis) - 1);
 }
 
-/* Whether a grid gets one array of values in place of the sparse pages of its volume. */
+/* Returns whether a grid gets one array of values in place of the sparse pages of its volume. */
 static bool leaves_sparse_pages(const hl_volume *volume, const kernel *kernel) {
   return volume->pages != NULL && hl_pages_are_sparse(volume->pages) && needs_other_values(volume, kernel);
 }

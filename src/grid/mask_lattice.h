@@ -32,7 +32,7 @@ typedef struct mask_cell {
   float part[3];
 } mask_cell;
 
-/* Finds the points of the lattice around a position of frame space. Returns false where the position lies
+/* Finds the points of the lattice around a position of frame space. Returns false if the position lies
  * outside the lattice. */
 static inline bool hl_mask_cell_at(const mask_lattice *lattice, const float point[3], mask_cell *cell) {
   for (int a = 0; a < 3; a++) {
@@ -71,8 +71,8 @@ static inline float hl_mask_factor(const mask_lattice *lattice, const float poin
   return sum * (1.0f / 65535);
 }
 
-/* Whether the mask's factor is 0 everywhere in a box of frame space: middle + t0 half[0] + t1 half[1] + t2
- * half[2], each t from -1 to 1. */
+/* Returns whether the mask's factor is 0 everywhere in a box of frame space: middle + t0 half[0] + t1 half[1]
+ * + t2 half[2], each t from -1 to 1. */
 bool hl_mask_hides_box(const mask_lattice *lattice, vec3 middle, const vec3 half[3]);
 
 /* Mixes a colour with the mask's colour at a position in frame space. */

@@ -45,10 +45,10 @@ typedef struct plane_values {
 } plane_values;
 
 /* Fills the tables of a function of two numbers. volume: the function's volume, in frame space. second: the
- * other volume; null where the second number is the gradient. entries: the number of entries of the
- * classifier's tables, less one. greatest: [entries + 1]; element [0] of each entry receives a bound: the
- * greatest extinction that values around the entry have with any second number. The bound is 0 if no such
- * value is visible. */
+ * other volume; null if the second number is the gradient. entries: the number of entries of the classifier's
+ * tables, less one. greatest: [entries + 1]; element [0] of each entry receives a bound: the greatest
+ * extinction that values around the entry have with any second number. The bound is 0 if no such value is
+ * visible. */
 void hl_plane_table_fill(const hl_scene_volume *volume, const hl_scene_volume *second, const grid *grid,
                          const plane_values *values, int entries, plane_table *table, float (*greatest)[4]);
 

@@ -47,8 +47,8 @@ typedef struct brick_job {
   const classifier *classifier;
 } brick_job;
 
-/* Whether the cells of brick b overlap the box to which the volume is clipped, or come closer to it than a
- * voxel. */
+/* Returns whether the cells of brick b overlap the box to which the volume is clipped, or come closer to it
+ * than a voxel. */
 static bool overlaps_box(const grid *grid, const int32_t b[3]) {
   for (int axis = 0; axis < 3; axis++) {
     double low = (double)b[axis] * HL_BRICK_CELLS - 1, high = low + HL_BRICK_CELLS;
@@ -72,7 +72,7 @@ static bool is_cut_away(const grid *grid, const int32_t b[3]) {
   return hl_cuts_remove_box(grid->cuts, grid->cut_count, low, high);
 }
 
-/* Whether a mask hides brick b and its surroundings. */
+/* Returns whether a mask hides brick b and its surroundings. */
 static bool is_hidden(const brick_job *job, const int32_t b[3]) {
   const mask_lattice *mask = &job->classifier->mask;
   const affine3 *place = &job->grid->index_to_frame;
@@ -130,7 +130,8 @@ static int voxels_along(int32_t b, int32_t count) {
   return last > first ? last - first : 0;
 }
 
-/* Whether a brick has a visible cell. Call this function after mark_cells() and before fill_lookups(). */
+/* Returns whether a brick has a visible cell. Call this function after mark_cells() and before
+ * fill_lookups(). */
 static bool has_visible_cell(const grid *grid, size_t brick) {
   return grid->lookup[1].visible == NULL || grid->lookup[1].visible[brick];
 }

@@ -57,10 +57,10 @@ static void shape_of(const distances *d, double low, double high, double counts[
   }
 }
 
-/* True if the histogram falls from `low` to `high`, as for the density of a simulation. False if it has
- * peaks, as for materials; a peak rises at least by the factor `peak` above the valley before it. Sums of two
- * bins bridge the gaps of quantised data. The last two bins, which may hold saturated values, and bins of
- * very few voxels are ignored. */
+/* Returns true if the histogram falls from `low` to `high`, as for the density of a simulation. Returns false
+ * if it has peaks, as for materials; a peak rises at least by the factor `peak` above the valley before it.
+ * Sums of two bins bridge the gaps of quantised data. The last two bins, which may hold saturated values, and
+ * bins of very few voxels are ignored. */
 static bool falls(const distances *d, double low, double high, double peak) {
   double counts[BINS], least = INFINITY;
   shape_of(d, low, high, counts);
@@ -86,15 +86,15 @@ static double share_beyond(const distances *d, double distance) {
   return d->count > 0 ? (double)beyond / (double)d->count : 0;
 }
 
-/* True if the sample has more different values than a byte has. */
+/* Returns true if the sample has more different values than a byte has. */
 static bool is_continuous(const hl_sample *sample) {
   size_t levels = 1;
   for (size_t n = 1; n < sample->count; n++) levels += sample->values[n] != sample->values[n - 1];
   return levels > 256;
 }
 
-/* True if more than two fifths of the objects' voxels have about the same value, as the body of a cloud
- * has. */
+/* Returns true if more than two fifths of the objects' voxels have about the same value, as the body of a
+ * cloud has. */
 static bool has_one_body(const distances *d, double low, double high) {
   double counts[BINS], sum = 0, most = 0;
   shape_of(d, low, high, counts);
@@ -139,8 +139,8 @@ static void find_thresholds(const distances *d, double noise, hl_data_analysis *
   measure_objects(d, a);
 }
 
-/* True if more than three tenths of the grid's border are not background: the matter then goes on beyond the
- * grid. */
+/* Returns true if more than three tenths of the grid's border are not background: the matter then goes on
+ * beyond the grid. */
 static bool fills_grid(const hl_sample *sample, double background, double range) {
   size_t near = 0;
   for (size_t n = 0; n < sample->border_count; n++)
@@ -171,8 +171,9 @@ static spread spread_of(const hl_sample *sample, double background) {
   return s;
 }
 
-/* True if the volume is a flow: its values fill the grid, and they are smooth, or rough with a single peak in
- * their histogram. (Scanned data have noise, too, but several peaks.) distance: scratch, [sample->count]. */
+/* Returns true if the volume is a flow: its values fill the grid, and they are smooth, or rough with a single
+ * peak in their histogram. (Scanned data have noise, too, but several peaks.) distance: scratch,
+ * [sample->count]. */
 static bool is_flow(const hl_volume *volume, const hl_sample *sample, const spread *s, double mode,
                     float *distance) {
   if (!s->fills || !is_floating(volume) || !is_continuous(sample)) return false;
@@ -185,9 +186,9 @@ static bool is_flow(const hl_volume *volume, const hl_sample *sample, const spre
   return roughness < NOISY && one_peak && falls(&d, 0.02, fmax(s->high - mode, 0.03), PEAK);
 }
 
-/* True if many of the objects' voxels have the greatest value. They are then the inside of a solid shape.
- * Fewer of them are enough in smooth data with more levels than bytes have, because in bytes the maxima of a
- * field may be clipped. */
+/* Returns true if many of the objects' voxels have the greatest value. They are then the inside of a solid
+ * shape. Fewer of them are enough in smooth data with more levels than bytes have, because in bytes the
+ * maxima of a field may be clipped. */
 static bool is_filled_up(const hl_sample *sample, const distances *d, const hl_data_analysis *a,
                          double roughness) {
   const double least = roughness < SMOOTH && is_continuous(sample) ? 0.1 : 0.3;
@@ -197,8 +198,8 @@ static bool is_filled_up(const hl_sample *sample, const distances *d, const hl_d
   return (double)greatest > least * (double)things;
 }
 
-/* True if the objects are a smooth quantity that falls off from its maxima. If the histogram does not tell
- * this, noise decides: with a scanner's noise, the histogram's bumps are materials; without it, they are
+/* Returns true if the objects are a smooth quantity that falls off from its maxima. If the histogram does not
+ * tell this, noise decides: with a scanner's noise, the histogram's bumps are materials; without it, they are
  * saddles between the maxima of a field. */
 static hl_status falls_off(const hl_volume *volume, const hl_sample *sample, const distances *d,
                            const hl_data_analysis *a, bool *falling, hl_error *error) {
@@ -211,9 +212,9 @@ static hl_status falls_off(const hl_volume *volume, const hl_sample *sample, con
   return status;
 }
 
-/* Whether the data are the density of a fog, as the file says. The file's word counts where the data have no
- * other sign than that they are smooth or filled up: they fall off from their maxima or are solid, and
- * nothing is below 0, which is empty. A scan's materials and a signed quantity remain what they are. */
+/* Returns whether the data are the density of a fog, as the file says. The file's word counts where the data
+ * have no other sign than that they are smooth or filled up: they fall off from their maxima or are solid,
+ * and nothing is below 0, which is empty. A scan's materials and a signed quantity remain what they are. */
 static bool is_fog(const hl_volume *volume, const hl_data_analysis *a) {
   return volume->says_fog && volume->minimum >= 0 && a->direction > 0;
 }
@@ -231,9 +232,9 @@ static hl_data_kind kind_of(const hl_volume *volume, const hl_sample *sample, co
   return fog && (falling || has_one_body(d, a->faint, a->top)) ? HL_DATA_MEDIUM : HL_DATA_SURFACES;
 }
 
-/* True if objects have values on both sides of the background (lobes), these values become rarer with the
- * distance, and they are not a scanner's noise. It is not enough that values lie on both sides of the data
- * value 0: in such data the commonest value may be a material, and air has low values. */
+/* Returns true if objects have values on both sides of the background (lobes), these values become rarer with
+ * the distance, and they are not a scanner's noise. It is not enough that values lie on both sides of the
+ * data value 0: in such data the commonest value may be a material, and air has low values. */
 static bool has_lobes(const hl_volume *volume, const hl_sample *sample, const spread *s, double background,
                       float *distance) {
   double above = s->high - background, below = background - s->low;
@@ -426,8 +427,9 @@ static int place_of(value_table *table, int64_t value) {
  * plates, repetitions would be found by chance. */
 enum { MOST_REPEATED = 8, LEAST_REPEATED = 8 };
 
-/* Whether each voxel is repeated `count` times along an axis, as in a volume that was enlarged by repeating
- * its voxels. Only the voxels at the points of a coarse lattice are examined. count: a power of two. */
+/* Returns whether each voxel is repeated `count` times along an axis, as in a volume that was enlarged by
+ * repeating its voxels. Only the voxels at the points of a coarse lattice are examined. count: a power of
+ * two. */
 static bool is_repeated(const hl_volume *volume, int axis, size_t count) {
   const size_t *n = volume->dimension, step = hl_lattice_step(n, HL_LATTICE_PLACES);
   if (n[axis] < LEAST_REPEATED * count || n[axis] % count != 0) return false;
@@ -445,9 +447,9 @@ static bool is_repeated(const hl_volume *volume, int axis, size_t count) {
   return true;
 }
 
-/* Counts, for each value, the neighbours of its voxels, and the neighbours that also have this value. False
- * if a value is no whole number, or if there are too many values. If the volume was enlarged by repeating
- * voxels, the neighbours are those of the smaller volume. */
+/* Counts, for each value, the neighbours of its voxels, and the neighbours that also have this value. Returns
+ * false if a value is no whole number, or if there are too many values. If the volume was enlarged by
+ * repeating voxels, the neighbours are those of the smaller volume. */
 static bool count_neighbours(const hl_volume *volume, value_table *table) {
   const size_t *n = volume->dimension;
   size_t step = hl_lattice_step(n, HL_LATTICE_PLACES), apart[3] = {1, 1, 1};

@@ -89,11 +89,11 @@ hl_status hl_data_find_boundary(const hl_volume *volume, const hl_sample *sample
  * Measured: four such objects have .21 to .96; eleven objects with natural rims have at most .07. */
 #define HL_CUT_OUT 0.15
 
-/* True if the grid cuts objects off, as it cuts a head off at the neck. A brain without its skull is not cut
- * off. */
+/* Returns true if the grid cuts objects off, as it cuts a head off at the neck. A brain without its skull is
+ * not cut off. */
 static inline bool hl_data_is_cut_off(const hl_data_analysis *analysis) { return analysis->cut_off >= 0.02; }
 
-/* True if the values can be Hounsfield units: they reach from air to matter denser than water. */
+/* Returns true if the values can be Hounsfield units: they reach from air to matter denser than water. */
 static inline bool hl_is_hounsfield(const hl_volume *volume) {
   return volume->minimum <= -500 && volume->minimum >= -10000 && volume->maximum >= 300;
 }
@@ -107,8 +107,8 @@ static inline bool hl_is_hounsfield(const hl_volume *volume) {
  * has room for. Fails for lack of memory. */
 hl_status hl_data_find_labels(const hl_volume *volume, hl_data_analysis *analysis, hl_error *error);
 
-/* Whether a volume's values are names of regions, because its file names segments or because the values look
- * like labels. */
+/* Returns whether a volume's values are names of regions, because its file names segments or because the
+ * values look like labels. */
 static inline bool hl_data_is_label_map(const hl_volume *volume, const hl_data_analysis *analysis) {
   return volume->segment_count > 0 || analysis->kind == HL_DATA_LABELS;
 }

@@ -65,8 +65,8 @@ static double value_beside(const hl_volume *volume, const size_t at[3], int axis
   return hl_volume_value_within(volume, place[0], place[1], place[2]);
 }
 
-/* Whether the values between a voxel and the next one along an axis change faster along this axis than along
- * the other two: the surface there faces the axis. change: the difference of the two voxels. */
+/* Returns whether the values between a voxel and the next one along an axis change faster along this axis
+ * than along the other two: the surface there faces the axis. change: the difference of the two voxels. */
 static bool faces_axis(const hl_volume *volume, const size_t at[3], int axis, double change) {
   for (int other = 0; other < 3; other++) {
     if (other == axis) continue;

@@ -134,7 +134,7 @@ static bool told_color(const hl_volume *volume, double srgb[3]) {
   return channel->has_color;
 }
 
-/* Whether the files give each volume a colour, and no colour twice. */
+/* Returns whether the files give each volume a colour, and no colour twice. */
 static bool colors_differ(const hl_scene_description *description) {
   double own[3], other[3];
   for (size_t n = 0; n < description->volume_count; n++) {

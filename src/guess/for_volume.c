@@ -73,9 +73,9 @@ static void choose_lights(const hl_look *look, hl_light lights[2], size_t *count
   lights[1].shadows = HL_SHADOWS_OFF;
 }
 
-/* True if the memory limit leaves room for a number of bytes beside the voxels and the copy of them that a
- * renderer makes. Memory that is held at present does not count, so that all processes that share a volume
- * make the same choice. */
+/* Returns true if the memory limit leaves room for a number of bytes beside the voxels and the copy of them
+ * that a renderer makes. Memory that is held at present does not count, so that all processes that share a
+ * volume make the same choice. */
 static bool has_room(const hl_volume *volume, uint64_t bytes) {
   uint64_t limit = volume->context->options.memory_limit, taken = 0;
   if (hl_volume_is_in_memory(volume))

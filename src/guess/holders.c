@@ -326,7 +326,8 @@ static hl_status is_met(const search *s, uint32_t body, bool *met, hl_error *err
   return status;
 }
 
-/* True if a point lies beyond the object's hull in some direction, so that a plane could cut it off. */
+/* Returns true if a point lies beyond the object's hull in some direction, so that a plane could cut it
+ * off. */
 static bool is_beside(const search *s, vec3 point) {
   bool beside = false;
   for (int d = 0; d < DIRECTIONS && !beside; d++) beside = lies_beyond(point, &s->sides[d]);

@@ -59,11 +59,11 @@ static bool ends_with(const char *text, const char *end) {
   return length >= tail && hl_plain_equal(text + length - tail, end);
 }
 
-/* True if the file's format (NIfTI) tells the left and right of a patient. */
+/* Returns true if the file's format (NIfTI) tells the left and right of a patient. */
 static bool is_anatomical(const char *file) { return ends_with(file, ".nii") || ends_with(file, ".nii.gz"); }
 
-/* True if more than two fifths of the voxels denser than air are tissue: from -200 to 200 Hounsfield units.
- * Few voxels of metal, stone and wood have these values. */
+/* Returns true if more than two fifths of the voxels denser than air are tissue: from -200 to 200 Hounsfield
+ * units. Few voxels of metal, stone and wood have these values. */
 static bool is_mostly_tissue(const hl_volume *volume) {
   double width = (volume->maximum - volume->minimum) / HL_HISTOGRAM_BINS, tissue = 0, matter = 0;
   for (int bin = 0; bin < HL_HISTOGRAM_BINS; bin++) {
@@ -74,8 +74,8 @@ static bool is_mostly_tissue(const hl_volume *volume) {
   return tissue > 0.4 * matter;
 }
 
-/* True for the scan of a body. A body fills the grid; trees, vessels and machine parts leave most of it
- * empty. */
+/* Returns true for the scan of a body. A body fills the grid; trees, vessels and machine parts leave most of
+ * it empty. */
 bool hl_is_body(const hl_volume *volume, const char *file, const hl_data_analysis *a) {
   if (a->kind != HL_DATA_SURFACES || a->direction < 0 || a->vessels > 0) return false;
   if (hl_is_hounsfield(volume)) return is_mostly_tissue(volume);
@@ -339,10 +339,10 @@ static double projected_white(const hl_volume *volume) {
   return metal ? DENSE_BONE : white;
 }
 
-/* Whether the window of values that a file asks for (DICOM) ends where a projection can end. Windows are
- * meant for slices. A pixel of a projection has the greatest of some hundred values; where more than about
- * one value in 200 lies above the window, as bone does above a window of soft tissue, most of the pixels
- * would be white. */
+/* Returns whether the window of values that a file asks for (DICOM) ends where a projection can end. Windows
+ * are meant for slices. A pixel of a projection has the greatest of some hundred values; where more than
+ * about one value in 200 lies above the window, as bone does above a window of soft tissue, most of the
+ * pixels would be white. */
 static bool is_window_for_projections(const hl_volume *volume) {
   return isfinite(volume->window[1]) && share_above(volume, volume->window[1]) < 0.005;
 }

@@ -8,7 +8,7 @@
 /* The look for a volume and its analysis; file: as in hl_scene_volume. */
 const hl_look *hl_look_for(const hl_volume *volume, const char *file, const hl_data_analysis *analysis);
 
-/* True for the scan of a body, with or without its skull. file: as in hl_scene_volume. */
+/* Returns true for the scan of a body, with or without its skull. file: as in hl_scene_volume. */
 bool hl_is_body(const hl_volume *volume, const char *file, const hl_data_analysis *analysis);
 
 /* Gives a bare volume the shading and the material of its look. */

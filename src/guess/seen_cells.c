@@ -236,7 +236,7 @@ static hl_status forget_specks(hl_seen *seen, hl_error *error) {
 
 /* ---- what holds a patient ---- */
 
-/* Whether there is one body of a patient, and all other bodies are head rests, straps or a table. */
+/* Returns whether there is one body of a patient, and all other bodies are head rests, straps or a table. */
 static bool has_holder(const hl_bodies *bodies) {
   double most = bodies->places[bodies->largest], all = 0;
   bool any = false;

@@ -105,8 +105,8 @@ static bool are_spread(const met *tubes, const met *things) {
   return tubes->count > 0 && axes >= 2;
 }
 
-/* True if the voxels beyond the level are vessels. expected: the approximate number of these voxels in the
- * sample. *few: whether they are few enough to be vessels. */
+/* Returns true if the voxels beyond the level are vessels. expected: the approximate number of these voxels
+ * in the sample. *few: whether they are few enough to be vessels. */
 static bool are_vessels(const vessel_search *s, size_t expected, bool *few) {
   met things, bright, tubes;
   size_t every = expected / MOST_SEEDS + 1;

@@ -245,7 +245,7 @@ static int axis_of(vec3 v, int *end) {
   return axis;
 }
 
-/* True if the side that v points to has clearly less relief than the opposite one. */
+/* Returns true if the side that v points to has clearly less relief than the opposite one. */
 static bool opposite_shows_more(const shape *s, vec3 v) {
   int end, axis = axis_of(v, &end);
   return relief(s, axis, !end) > CLEARLY * relief(s, axis, end);
@@ -285,8 +285,9 @@ hl_status hl_scene_upright(const hl_scene_volume *volume, const hl_data_analysis
 
 static vec3 left_of(hl_space space) { return (vec3){space == HL_SPACE_RAS ? -1 : 1, 0, 0}; }
 
-/* True if the first volume decides which way is up: it is the only volume and the scene does not rotate it,
- * or no volume is made of shapes, rotated or moved by the scene. In other scenes z counts as up. */
+/* Returns true if the first volume decides which way is up: it is the only volume and the scene does not
+ * rotate it, or no volume is made of shapes, rotated or moved by the scene. In other scenes z counts as
+ * up. */
 static bool first_decides(const hl_scene_description *description) {
   if (description->volume_count == 1) return description->volumes[0].rotate_angle_deg == 0;
   for (size_t v = 0; v < description->volume_count; v++) {

@@ -49,7 +49,7 @@ typedef struct hl_image_format {
 extern const hl_image_format hl_png_format, hl_exr_format, hl_npy_format, hl_hdr_format, hl_tif_format,
     hl_tiff_format;
 
-/* Whether a picture's file, which may be anything, has the text chunk of a scene. */
+/* Returns whether a picture's file, which may be anything, has the text chunk of a scene. */
 bool hl_png_has_scene(const unsigned char *bytes, size_t length);
 
 /* Refuses impossible options for writing a picture. caller: the public function's name, for errors. */

@@ -44,8 +44,8 @@ static hl_status fail_end(const hdr_cursor *cursor) {
 
 /* ---- the header ---- */
 
-/* Copies the next line of the header without its end. Returns false where the file ends before the line does,
- * or the line is too long. */
+/* Copies the next line of the header without its end. Returns false if the file ends before the line does, or
+ * the line is too long. */
 static bool take_line(hdr_cursor *cursor, char line[LINE_MAX_BYTES]) {
   size_t most = cursor->length - cursor->at;
   const unsigned char *from = cursor->bytes + cursor->at, *end = memchr(from, '\n', most);

@@ -69,7 +69,7 @@ hl_status hl_image_create_for_file(hl_context *context, const char *name, uint64
   return status != HL_OK ? status : hl_image_create(context, (int)width, (int)height, image, error);
 }
 
-/* Whether a text can name a layer: OpenEXR names a channel "layer.C", and NPY names a file
+/* Returns whether a text can name a layer: OpenEXR names a channel "layer.C", and NPY names a file
  * "picture-layer.npy". */
 static bool is_layer_name(const char *name) {
   static const char letters[] = "abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789_";

@@ -127,7 +127,7 @@ static hl_status cut_all(cutting *cut, hl_error *error) {
   return HL_OK;
 }
 
-/* Whether some vertex lies on the side of a face that is not kept. */
+/* Returns whether some vertex lies on the side of a face that is not kept. */
 static bool cuts(const cutting *cut) {
   for (size_t v = 0; v < cut->made->vertex_count; v++)
     if (height(cut, (uint32_t)v) < 0) return true;

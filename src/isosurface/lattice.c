@@ -23,9 +23,9 @@ const lattice_brick *hl_lattice_brick(const lattice *lattice, const int32_t at[3
 
 enum { CROSSED = 1, KEPT = 2 };
 
-/* Whether the surface's value may occur in the cells of a lattice's brick. These are the cells of the grid's
- * brick at the same place. With an interpolating kernel the voxels are coefficients. The field is a weighted
- * mean of coefficients, so the bounds of the coefficients are bounds of the field. */
+/* Returns whether the surface's value may occur in the cells of a lattice's brick. These are the cells of the
+ * grid's brick at the same place. With an interpolating kernel the voxels are coefficients. The field is a
+ * weighted mean of coefficients, so the bounds of the coefficients are bounds of the field. */
 static bool brick_crossed(const lattice *lattice, const int32_t at[3]) {
   const grid *grid = lattice->grid;
   float bounds[2];

@@ -7,7 +7,7 @@
 #include "text/plain.h"
 #include "volume/volume.h"
 
-/* Whether a value is a text like "99.5%". */
+/* Returns whether a value is a text like "99.5%". */
 static bool is_percentage(const json_t *value, double *percent) {
   const char *text = json_string_value(value);
   size_t digits = text != NULL ? strspn(text, "0123456789.") : 0;

@@ -91,8 +91,8 @@ json_t *hl_json_expand_shapes(const json_t *shapes, const json_t *groups) {
   return expand_list(shapes, groups, 0, &left);
 }
 
-/* Whether a JSON text contains the whole tree `root`. If memory is short, jansson leaves keys out of the
- * text, and still reports success. */
+/* Returns whether a JSON text contains the whole tree `root`. If memory is short, jansson leaves keys out of
+ * the text, and still reports success. */
 static bool says(const char *text, const json_t *root) {
   json_t *again = text != NULL ? hl_plain_json_load_text(text) : NULL;
   bool same = json_equal(root, again);

@@ -238,7 +238,7 @@ char *hl_json_path(const hl_json_reader *reader, const char *file) {
                       data ? file + strlen(DATA_PREFIX) : file);
 }
 
-/* Whether the scene neither rotates nor translates the volume. Only then do the world's axes keep the
+/* Returns whether the scene neither rotates nor translates the volume. Only then do the world's axes keep the
  * anatomical meaning that the file gives them. */
 static bool stays_as_it_is(const hl_scene_volume *volume) {
   return volume->rotate_angle_deg == 0 && volume->translate[0] == 0 && volume->translate[1] == 0 &&
@@ -381,8 +381,8 @@ static hl_status read_mask(hl_json_reader *reader, const json_t *value, hl_volum
   return status;
 }
 
-/* Whether a volume is made of shapes and is a solid. Orbitals are no solids, because their values are signed
- * floats. */
+/* Returns whether a volume is made of shapes and is a solid. Orbitals are no solids, because their values are
+ * signed floats. */
 static bool is_solid(const hl_scene_volume *volume) {
   return volume->shapes != NULL && volume->volume->storage != HL_STORAGE_F32;
 }
@@ -401,8 +401,8 @@ static hl_status choose_shading(hl_json_reader *reader, const json_t *value, hl_
   return HL_OK;
 }
 
-/* Whether a volume's file is available: whether it exists or, for a reader that opens no files, whether the
- * scene `like` has a volume of this file. */
+/* Returns whether a volume's file is available: whether it exists or, for a reader that opens no files,
+ * whether the scene `like` has a volume of this file. */
 static bool is_there(const hl_json_reader *reader, const char *file) {
   if (is_data(file) && reader->context->options.data_folder == NULL) return false;
   char *path = hl_json_path(reader, file);

@@ -141,7 +141,7 @@ static point_box box_of_brick(const size_t dimension[3], const size_t brick[3]) 
   return box;
 }
 
-/* Whether all points of a box have the value of the box's first point. values: [k][j][i][bytes]. */
+/* Returns whether all points of a box have the value of the box's first point. values: [k][j][i][bytes]. */
 static bool is_even(const size_t dimension[3], const void *values, size_t bytes, const point_box *box) {
   const unsigned char *from = values, *one = NULL;
   for (size_t k = box->first[2]; k <= box->last[2]; k++)

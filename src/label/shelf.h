@@ -9,7 +9,7 @@
 
 /* Gets the occupancies of labels. Occupancies that were made of the map before are taken from the shelf.
  * hl_label_occupancy() makes the others; the boxes that hold the labels are found in one pass over the map.
- * labels: [count]; data values, rising. made: [count]; retained for the caller; an element is null where no
+ * labels: [count]; data values, rising. made: [count]; retained for the caller; an element is null if no
  * voxel has the label; all are null after a failure. threads: 0 for one per processor. work: the voxels of
  * all these labels' boxes are reported to it; null: progress is reported for these labels alone. Any thread
  * may call this function. */

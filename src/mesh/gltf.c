@@ -30,7 +30,7 @@ static const json_t *item(const gltf_reader *reader, const char *list, size_t in
   return json_array_get(json_object_get(reader->file.root, list), index);
 }
 
-/* Reads an array of numbers from a JSON object. Returns false where the key has no array of this length. */
+/* Reads an array of numbers from a JSON object. Returns false if the key has no array of this length. */
 static bool read_numbers(const json_t *object, const char *key, size_t count, double *numbers) {
   const json_t *list = json_object_get(object, key);
   if (json_array_size(list) != count) return false;
@@ -151,8 +151,8 @@ static hl_status add_faces(gltf_reader *reader, const gltf_accessor *indices, si
   return status;
 }
 
-/* Whether a primitive with compressed positions also has uncompressed positions in a buffer. Files have these
- * for programs that cannot decompress. */
+/* Returns whether a primitive with compressed positions also has uncompressed positions in a buffer. Files
+ * have these for programs that cannot decompress. */
 static bool has_plain_positions(const gltf_reader *reader, const json_t *primitive) {
   size_t index;
   return hl_gltf_index(json_object_get(primitive, "attributes"), "POSITION", &index) &&
@@ -270,7 +270,7 @@ static uint32_t word_at(const unsigned char *at) {
   return (uint32_t)at[0] | (uint32_t)at[1] << 8 | (uint32_t)at[2] << 16 | (uint32_t)at[3] << 24;
 }
 
-/* Whether a chunk that is a buffer begins at `at`. */
+/* Returns whether a chunk that is a buffer begins at `at`. */
 static bool is_buffer(mesh_text text, size_t at) {
   return text.length >= 8 && at <= text.length - 8 && memcmp(text.bytes + at + 4, "BIN", 4) == 0;
 }

@@ -168,7 +168,7 @@ static bool find_view(const gltf_file *file, size_t index, size_t offset, gltf_b
   return true;
 }
 
-/* Sets an accessor's bytes and stride from its buffer view. Returns false where the view does not hold all
+/* Sets an accessor's bytes and stride from its buffer view. Returns false if the view does not hold all
  * numbers of the accessor. */
 static bool place_accessor(const gltf_file *file, const json_t *described, size_t count,
                            gltf_accessor *accessor) {

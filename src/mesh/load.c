@@ -33,7 +33,7 @@ hl_status hl_mesh_get_format(size_t index, hl_file_format *format) {
   return HL_OK;
 }
 
-/* Whether a file's first bytes say that it is PolyData. Other .vtk files are volumes. */
+/* Returns whether a file's first bytes say that it is PolyData. Other .vtk files are volumes. */
 static bool begins_as_polydata(hl_context *context, const char *path) {
   char bytes[1025];
   struct stat about;

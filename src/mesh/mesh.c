@@ -43,7 +43,7 @@ hl_status hl_mesh_get_box(const hl_mesh *mesh, double low[3], double high[3]) {
 
 static bool is_finite(const float v[3]) { return isfinite(v[0]) && isfinite(v[1]) && isfinite(v[2]); }
 
-/* Whether a triangle has an area, so that the cross product of its edges is not zero. */
+/* Returns whether a triangle has an area, so that the cross product of its edges is not zero. */
 static bool has_area(const float a[3], const float b[3], const float c[3]) {
   double p[3], q[3];
   for (int i = 0; i < 3; i++) p[i] = (double)b[i] - a[i], q[i] = (double)c[i] - a[i];

@@ -94,7 +94,7 @@ static bool flatten(const mesh_parts *parts, outline *o) {
   return true;
 }
 
-/* Whether the fan covers the polygon: whether no triangle of the fan is turned over. */
+/* Returns whether the fan covers the polygon: whether no triangle of the fan is turned over. */
 static bool fan_fits(const outline *o) {
   for (size_t n = 1; n + 1 < o->count; n++)
     if (area(o->at[0], o->at[n], o->at[n + 1]) < 0) return false;
@@ -103,7 +103,7 @@ static bool fan_fits(const outline *o) {
 
 static bool same_place(const double a[2], const double b[2]) { return a[0] == b[0] && a[1] == b[1]; }
 
-/* Whether a corner is an ear: it is convex, and no other corner lies in its triangle. */
+/* Returns whether a corner is an ear: it is convex, and no other corner lies in its triangle. */
 static bool is_ear(const outline *o, uint32_t corner) {
   const double *a = o->at[o->before[corner]], *b = o->at[corner], *c = o->at[o->next[corner]];
   if (!(area(a, b, c) > 0)) return false;

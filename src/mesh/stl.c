@@ -103,7 +103,7 @@ static bool next_word(const char **at, const char *end, const char **word, size_
   return *length > 0;
 }
 
-/* Whether a word is a wanted word; upper and lower case count as the same. */
+/* Returns whether a word is a wanted word; upper and lower case count as the same. */
 static bool is_word(const char *word, size_t length, const char *wanted) {
   if (length != strlen(wanted)) return false;
   for (size_t n = 0; n < length; n++)
@@ -138,8 +138,8 @@ static hl_status read_ascii(mesh_text text, mesh_parts *parts, corner_table *tab
   return status;
 }
 
-/* Whether the file is text. A text begins with "solid", in letters of either case, after an optional byte
- * order mark and blanks. It has no zero bytes near its beginning; a binary file whose title begins with
+/* Returns whether the file is text. A text begins with "solid", in letters of either case, after an optional
+ * byte order mark and blanks. It has no zero bytes near its beginning; a binary file whose title begins with
  * "solid" has some. */
 static bool is_text(mesh_text text) {
   enum { LOOKED_AT = 512 };

@@ -123,7 +123,7 @@ static void add_tube(tube *tube, size_t first, size_t count) {
   }
 }
 
-/* Whether a point can be drawn. before: the previous point of its line; null if there is none. */
+/* Returns whether a point can be drawn. before: the previous point of its line; null if there is none. */
 static bool is_drawn(const float point[4], const float *before) {
   for (int c = 0; c < 4; c++)
     if (!isfinite(point[c])) return false;

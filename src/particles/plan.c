@@ -116,7 +116,7 @@ static void mark_coarser(planning *p) {
     }
 }
 
-/* Whether a kernel of this level or of a coarser level reaches a block. */
+/* Returns whether a kernel of this level or of a coarser level reaches a block. */
 static bool is_reached(const planning *p, int level, const int32_t block[3]) {
   if (p->all) return true;
   for (int coarser = level; coarser < p->plan->lattice.levels; coarser++) {

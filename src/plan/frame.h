@@ -46,8 +46,8 @@ hl_status hl_frame_eye(const hl_camera *camera, int width, int height, view *eye
  * content must have been set. */
 hl_status hl_frame_set_up_eye(frame *frame, const hl_scene_description *scene, hl_error *error);
 
-/* Whether the picture of any volume or mesh depends on arriving light. Flat colours and maximum projections
- * do not depend on it. */
+/* Returns whether the picture of any volume or mesh depends on arriving light. Flat colours and maximum
+ * projections do not depend on it. */
 bool hl_is_lit(const hl_scene_description *scene);
 
 static inline bool hl_is_maximum(const hl_render_settings *settings) {

@@ -86,7 +86,7 @@ hl_status hl_plan_sweeps(hl_context *context, frame_plan *plan, hl_error *error)
 
 /* ---- the lights ---- */
 
-/* Whether some volume that the eye sees has surfaces on which shadows fall. */
+/* Returns whether some volume that the eye sees has surfaces on which shadows fall. */
 static bool has_surfaces(const plan_volumes *volumes) {
   for (int v = 0; v < volumes->count; v++) {
     const frame_volume *volume = &volumes->list[v];

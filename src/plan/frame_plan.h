@@ -104,8 +104,8 @@ void hl_frame_plan_release(hl_context *context, frame_plan *plan);
  * frame's eye and lights are set up. */
 hl_status hl_plan_sweeps(hl_context *context, frame_plan *plan, hl_error *error);
 
-/* Whether some wanted layer must be measured: depth, normals or objects. If so, some sweep must go from front
- * to back. */
+/* Returns whether some wanted layer must be measured: depth, normals or objects. If so, some sweep must go
+ * from front to back. */
 bool hl_layers_measure(const hl_layers *wanted);
 
 /* Plans the shadows of all lights. This is the last step of planning; the picture must have been divided into
@@ -114,7 +114,7 @@ hl_status hl_plan_lights(hl_context *context, frame_plan *plan, hl_error *error)
 
 /* ---- what light reaches ---- */
 
-/* Whether a slab lies beyond a light, on the side to which the light's rays travel in this sweep. */
+/* Returns whether a slab lies beyond a light, on the side to which the light's rays travel in this sweep. */
 static inline bool hl_is_beyond(const sheet_stack *sheets, const light_source *source, int sheet) {
   return source->parallel || hl_sheet_height(sheets, sheet - 1) >= vec3_dot(sheets->normal, source->position);
 }

@@ -60,7 +60,7 @@ static double brightness(const share_content *content, const light_source *sourc
   return color / fmax(vec3_dot(way, way), 1e-12);
 }
 
-/* Whether each part computes only those of a light's shadows that it needs. */
+/* Returns whether each part computes only those of a light's shadows that it needs. */
 static bool is_divided(const picture_share *share, const light_source *source) {
   const shadow_method *method = hl_shadow_method(source);
   if (method == NULL) return false;
@@ -248,7 +248,7 @@ static void place_brick(const share_content *content, const picture_share *share
     arrays->depths[i][arrays->cut[i][cell]][at] += bricks * arrays->each[cell];
 }
 
-/* Whether a cell lies beside a cell of another part. */
+/* Returns whether a cell lies beside a cell of another part. */
 static bool is_at_border(const picture_share *share, const int32_t *part_of, int32_t index) {
   int x = index % share->cells_x, y = index / share->cells_x;
   int32_t own = part_of[index];
@@ -297,7 +297,7 @@ static int choose_bands(const share_content *content, const picture_share *share
   return chosen;
 }
 
-/* Whether any volume lies in pages over ranks. */
+/* Returns whether any volume lies in pages over ranks. */
 static bool lies_over_ranks(const share_content *content) {
   for (int g = 0; g < content->grid_count; g++)
     if (content->grids[g].pages != NULL && content->grids[g].pages->version != NULL) return true;

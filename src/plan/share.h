@@ -47,7 +47,7 @@ hl_status hl_share_create(hl_context *context, const share_content *content, pic
                           hl_error *error);
 void hl_share_release(hl_context *context, picture_share *share);
 
-/* Whether a tile of the frame belongs to this renderer's part. */
+/* Returns whether a tile of the frame belongs to this renderer's part. */
 static inline bool hl_share_has(const picture_share *share, int tile_x, int tile_y) {
   if (share->part_of == NULL) return true;
   return share->part_of[tile_y / share->oversampling * share->cells_x + tile_x / share->oversampling] ==

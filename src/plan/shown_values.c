@@ -43,7 +43,7 @@ static double end_of_step(const shown_values *values, int entry, bool greatest) 
   return (inside + outside) / 2;
 }
 
-/* Whether opacity rises from 0 without a jump at `from`, so that the value at this end is itself not
+/* Returns whether opacity rises from 0 without a jump at `from`, so that the value at this end is itself not
  * shown. */
 static bool rises_from(const shown_values *values, double from) {
   double near = values->low + (from + values->end) * values->step,

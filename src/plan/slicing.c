@@ -125,7 +125,8 @@ static bool axis_of_light(const frame *frame, const hl_render_settings *settings
   return true;
 }
 
-/* Whether the same sheets suit a light and the eye. If not, the light must be divided into sectors. */
+/* Returns whether the same sheets suit a light and the eye. If not, the light must be divided into
+ * sectors. */
 static bool serves(const frame *frame, const hl_render_settings *settings, const light_source *source) {
   bool back_to_front;
   vec3 h;

@@ -20,7 +20,7 @@ typedef struct hl_byte_stream {
 /* Opens a stream. The caller closes it with fclose(); null, with errno set, on failure. */
 FILE *hl_byte_stream_open(hl_byte_stream *stream);
 
-/* Makes sure that all bytes were given to the functions. False if that failed. */
+/* Makes sure that all bytes were given to the functions. Returns false if that failed. */
 bool hl_byte_stream_finish(hl_byte_stream *stream, FILE *file);
 
 #endif

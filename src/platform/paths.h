@@ -4,8 +4,8 @@
 
 #include <stdbool.h>
 
-/* Whether a name begins at the root of a file system or of a drive, so that it does not depend on the current
- * folder. */
+/* Returns whether a name begins at the root of a file system or of a drive, so that it does not depend on the
+ * current folder. */
 bool hl_path_is_absolute(const char *path);
 
 /* The folder in which large temporary files are put if the user names no other. */

@@ -19,7 +19,7 @@ typedef struct process {
  * an errno. Call process_end() even after a failure. */
 int process_start(process *p, const char *const *words, int input);
 
-/* Whether a program of this name is in the PATH. */
+/* Returns whether a program of this name is in the PATH. */
 bool process_is_there(const char *name);
 
 /* Limits a child: memory is the greatest number of bytes that it may hold, file the greatest length of each

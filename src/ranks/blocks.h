@@ -48,7 +48,7 @@ void hl_blocks_release(hl_blocks *blocks, bool together);
 void hl_blocks_fetch(hl_blocks *blocks, const hl_box *box, unsigned char *to, size_t row_bytes,
                      size_t slice_bytes);
 
-/* Sets *both to the elements that lie in both boxes. False where the boxes do not overlap. */
+/* Sets *both to the elements that lie in both boxes. Returns false if the boxes do not overlap. */
 bool hl_boxes_meet(const hl_box *a, const hl_box *b, hl_box *both);
 
 hl_ranks *hl_blocks_ranks(const hl_blocks *blocks);

@@ -64,7 +64,8 @@ void hl_ranks_send(hl_ranks *ranks, const void *from, size_t bytes, void *to, si
   pthread_mutex_unlock(&ranks->calling);
 }
 
-/* Whether all requests are done. A request that is done becomes MPI_REQUEST_NULL, and may be tested again. */
+/* Returns whether all requests are done. A request that is done becomes MPI_REQUEST_NULL, and may be tested
+ * again. */
 static bool all_done(hl_ranks *ranks, mpi_handle *pending) {
   bool all = true;
   pthread_mutex_lock(&ranks->calling);

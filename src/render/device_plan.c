@@ -461,8 +461,8 @@ static hl_status plan_all_rays(hl_context *context, const sweep_task *task, plan
 
 /* ---- the sweep ---- */
 
-/* Whether the lights' buffers keep the light at the outside of surfaces. Either all of them do, or none
- * does. */
+/* Returns whether the lights' buffers keep the light at the outside of surfaces. Either all of them do, or
+ * none does. */
 static bool keeps_outside(const sweep_task *task) {
   for (int i = 0; i < task->plan->geometry->light_count; i++)
     if (task->plan->lights[i].shadow.method != NULL && task->plan->lights[i].shadow.plan.outside) return true;

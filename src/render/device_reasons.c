@@ -39,11 +39,11 @@ static bool is_soft_otherwise(const frame_plan *plan) {
 
 static bool is_masked(const frame_plan *plan) { return volume_of(plan)->classifier->mask.factors != NULL; }
 
-/* Whether the frame has soft shadows on surfaces. If a factor multiplies extinction, matter that the factor
- * hides ends surfaces for all pixels of a block (shadow/attenuate_lanes.h). If everything in a block lies
- * behind a cut or is hidden by a mask, the processors skip the block, and a pixel of a device does not know
- * which blocks are skipped. Hard shadows do not depend on the skipped blocks, because surfaces have ended
- * before them. Soft shadows do: blurs move absorbed light of surfaces into these blocks. */
+/* Returns whether the frame has soft shadows on surfaces. If a factor multiplies extinction, matter that the
+ * factor hides ends surfaces for all pixels of a block (shadow/attenuate_lanes.h). If everything in a block
+ * lies behind a cut or is hidden by a mask, the processors skip the block, and a pixel of a device does not
+ * know which blocks are skipped. Hard shadows do not depend on the skipped blocks, because surfaces have
+ * ended before them. Soft shadows do: blurs move absorbed light of surfaces into these blocks. */
 static bool has_soft_surfaces(const frame_plan *plan) {
   bool soft = false;
   for (int i = 0; i < plan->frame.light_count; i++)
@@ -56,8 +56,8 @@ static bool steepens_soft_surfaces(const frame_plan *plan) {
 }
 static bool masks_soft_surfaces(const frame_plan *plan) { return is_masked(plan) && has_soft_surfaces(plan); }
 
-/* Whether slabs are so thick that they may lead from visible matter into a brick that a mask hides. A device
- * skips slabs whose ends lie in such bricks. Around these bricks the mask is 0 for three voxels
+/* Returns whether slabs are so thick that they may lead from visible matter into a brick that a mask hides. A
+ * device skips slabs whose ends lie in such bricks. Around these bricks the mask is 0 for three voxels
  * (grid/relevant.c), and no ray's way through a slab is longer than twice its thickness. */
 static bool masks_thick_slabs(const frame_plan *plan) {
   const double most = 1.5 * hl_smallest_edge(&plan->volumes.grids[0]);

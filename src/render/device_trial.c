@@ -122,7 +122,7 @@ static hl_status render(hl_renderer *owner, bool on_device, const hl_scene *scen
   if (renderer->device.gpu != NULL) hl_gpu_forget(renderer->device.gpu);
   for (int i = 0; i < frames && status == HL_OK; i++)
     status = hl_renderer_render(renderer, scene, pixels, 4 * PICTURE, statistics, error);
-  if (on_device) owner->device.gpu = renderer->device.gpu; /* null where the device failed */
+  if (on_device) owner->device.gpu = renderer->device.gpu; /* null if the device failed */
   if (on_device && renderer->device.gpu == NULL && status == HL_OK)
     status = hl_fail(error, HL_ERROR_UNSUPPORTED, "%s", renderer->device.problem);
   renderer->device.gpu = NULL;

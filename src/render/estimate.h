@@ -15,8 +15,8 @@ void hl_prepare_count(const hl_scene_description *scene, const prepared_volume *
 /* The bytes that the counted sweeps of a frame take together. */
 size_t hl_sweeps_bytes(const sweeps_memory *sweeps);
 
-/* Whether `bytes` more bytes fit below the context's limit. *estimate is raised to the number of bytes that
- * the context would hold then. */
+/* Returns whether `bytes` more bytes fit below the context's limit. *estimate is raised to the number of
+ * bytes that the context would hold then. */
 hl_status hl_check_room(const hl_context *context, uint64_t bytes, uint64_t *estimate, hl_error *error);
 
 /* The greatest number of bytes that the context was expected to hold during the last frame. It includes the

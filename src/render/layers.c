@@ -27,8 +27,8 @@ static void lay_out_light(const hl_layers *wanted, const light_source *source, s
   light->open = take_pixels(layout, shadow && of_sky, tiles, COLORS);
 }
 
-/* Lays out the arrays of pixels of the wanted layers. The array of lights is null where an estimate only
- * counts bytes. */
+/* Lays out the arrays of pixels of the wanted layers. The array of lights is null if an estimate only counts
+ * bytes. */
 static void lay_out(const frame *frame, size_t tiles, layer_pixels *pixels, hl_layout *layout) {
   const hl_layers *wanted = pixels->wanted;
   pixels->ambient = take_pixels(layout, wanted->ambient != NULL, tiles, COLORS);

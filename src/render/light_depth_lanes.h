@@ -187,8 +187,8 @@ LANES_INLINE void add_before(int channels, lanes before[HL_CHANNELS][NEAR_PIXELS
   }
 }
 
-/* Finds the optical depths of a slab for one light. light->near is null where no face of a volume's box can
- * be near the slab. */
+/* Finds the optical depths of a slab for one light. light->near is null if no face of a volume's box can be
+ * near the slab. */
 LANES_INLINE light_depths depths_of_light(const shade_job *job, const block_slab *slab,
                                           block_density *densities, int count, const seen_light *light) {
   const lanes3 towards = light->towards;

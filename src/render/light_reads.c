@@ -72,11 +72,11 @@ static bool bound_points(const read_buffer *buffer, const vec3 *points, int coun
   return count > 0;
 }
 
-/* Widens the bounds by the pixels that look-ups read beside a sample. Returns false where samples may be
- * moved to places that do not lie ahead of the light. Derived: look-ups at surfaces are moved by at most d =
- * 1.25 w' / |r1'|, where w' and r1' belong to the buffer `moves`. The column u = (r1.p) / w moves by (r1.d -
- * u r0.d) / (w + r0.d), which is at most d (|r1| + |u| |r0|) / (w - d |r0|). For the row v, take r2 in place
- * of r1. */
+/* Widens the bounds by the pixels that look-ups read beside a sample. Returns false if samples may be moved
+ * to places that do not lie ahead of the light. Derived: look-ups at surfaces are moved by at most d = 1.25
+ * w' / |r1'|, where w' and r1' belong to the buffer `moves`. The column u = (r1.p) / w moves by (r1.d - u
+ * r0.d) / (w + r0.d), which is at most d (|r1| + |u| |r0|) / (w - d |r0|). For the row v, take r2 in place of
+ * r1. */
 static bool widen(const read_buffer *buffer, const vec3 *points, int count, read_bounds *bounds) {
   double farthest = 0, way = 0;
   for (int i = 0; i < count && buffer->moves != NULL; i++)
@@ -283,7 +283,7 @@ static int owner_of(const int32_t *all, size_t tile, size_t tiles, int parts) {
   return (int)(tile * (size_t)parts / tiles);
 }
 
-/* Whether this part owns a tile, or a tile that lies at most `around` tiles away. */
+/* Returns whether this part owns a tile, or a tile that lies at most `around` tiles away. */
 static bool is_owned_around(const sweep_light *light, int tile, int around) {
   const view *view = &light->shadow.buffer->view;
   const int across = hl_tiles(view->width), down = hl_tiles(view->height);

@@ -13,8 +13,8 @@
 
 /* ---- volumes and surfaces ---- */
 
-/* Whether a position lies in a volume's box. The rays of an eye or a light at such a position begin within
- * the box. */
+/* Returns whether a position lies in a volume's box. The rays of an eye or a light at such a position begin
+ * within the box. */
 static bool inside_box(const grid *grid, vec3 origin) {
   vec3 p = affine3_apply(grid->frame_to_index, origin);
   const double at[3] = {p.x, p.y, p.z};

@@ -44,8 +44,8 @@ LANES_INLINE int is_dark(const color_lanes *light) {
   return lanes_bits((light->c[0] > 0.0f) | (light->c[1] > 0.0f) | (light->c[2] > 0.0f)) == 0;
 }
 
-/* Whether light from the direction `towards` can light anything that is visible in the lanes `seen`: a
- * medium, a surface that faces the light, or a surface that sends on light from any angle (even). */
+/* Returns whether light from the direction `towards` can light anything that is visible in the lanes `seen`:
+ * a medium, a surface that faces the light, or a surface that sends on light from any angle (even). */
 LANES_INLINE int is_faced(const block_density *densities, int count, lanes_int seen, lanes3 towards) {
   lanes_int faced = lanes_set_int(0);
   for (int i = 0; i < count; i++) {

@@ -38,7 +38,7 @@ LANES_INLINE sky_cap cap_of_sky(const lanes *light) {
 
 /* The mean, over all directions, of the light times Henyey and Greenstein's phase function. The factors of
  * this function for harmonics of degree l are g^l (derived from its series in Legendre polynomials). onwards:
- * the direction of the eye's ray. table: null where g is 0. */
+ * the direction of the eye's ray. table: null if g is 0. */
 LANES_INLINE lanes light_of_medium(const phase_table *table, float g, const lanes *light, lanes3 onwards) {
   if (g == 0) return lanes_max(light[0] * (float)HARMONIC_0, lanes_set(0));
   const float size = fabsf(g), most = 1 / ((1 - size) * (1 - size));

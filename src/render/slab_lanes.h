@@ -313,8 +313,8 @@ LANES_INLINE lanes_int shows_on_face(const shade_volume *volume, lanes3 crossing
   return may_be_visible(volume->classifier, there, there);
 }
 
-/* Whether some points lie so near to a face of the box with visible matter that the points may belong to the
- * face. */
+/* Returns whether some points lie so near to a face of the box with visible matter that the points may belong
+ * to the face. */
 LANES_INLINE int is_near_box_face(const shade_volume *volume, lanes3 point, lanes_int seen) {
   const float reach = FACE_VOXELS * volume->voxel * 1.001f; /* a little is added for rounding */
   lanes_int near = lanes_set_int(0);

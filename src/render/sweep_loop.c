@@ -179,7 +179,7 @@ static void finish_picture(sweep *sweep) {
   sweep->loop.times.seconds_tiles += hl_clock_seconds() - start;
 }
 
-/* Whether the buffer of some light changes as a whole at a sheet. */
+/* Returns whether the buffer of some light changes as a whole at a sheet. */
 static bool any_advances(const sweep *sweep, int sheet) {
   for (int i = 0; i < sweep->geometry->light_count; i++) {
     const light_shadow *shadow = &sweep->lights[i].shadow;

@@ -106,7 +106,8 @@ void hl_sweep_shade(sweep *sweep, const shade_job *job, size_t tile, int worker)
 
 /* ---- the lights ---- */
 
-/* Whether faces that cut a volume's visible matter are lit as surfaces, and such a face is near the slab. */
+/* Returns whether faces that cut a volume's visible matter are lit as surfaces, and such a face is near the
+ * slab. */
 static bool faces_are_lit(const shade_volume *volume, const patch_slab *slab) {
   return volume->phong && volume->cut_shading == HL_CUT_SHADING_FACE &&
          (volume->any_face || volume->light_cut_count > 0) && slab->enter != NULL && !slab->uncut;

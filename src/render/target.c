@@ -30,8 +30,8 @@ static hl_status take_pixels(hl_renderer *renderer, const frame_request *request
   return HL_OK;
 }
 
-/* Whether the sweep composites directly into the caller's pixels. It does so if there is only one sweep, and
- * tiles fill these pixels exactly. */
+/* Returns whether the sweep composites directly into the caller's pixels. It does so if there is only one
+ * sweep, and tiles fill these pixels exactly. */
 static bool is_in_place(const frame_request *request, const frame_plan *plan) {
   const bool whole = plan->picture.width % TILE == 0 && plan->picture.height % TILE == 0 &&
                      request->row_stride == 4 * (size_t)plan->picture.width;

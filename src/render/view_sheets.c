@@ -7,8 +7,8 @@ enum { INTERVAL_FLOATS = 2 * TILE_PIXELS };
 
 #define NO_ENTRY UINT32_MAX
 
-/* Whether the box of some volume cuts visible matter. If so, the places where rays enter and leave boxes are
- * needed. */
+/* Returns whether the box of some volume cuts visible matter. If so, the places where rays enter and leave
+ * boxes are needed. */
 static bool any_cut(const sheet_content *content) {
   bool any = false;
   for (int g = 0; g < content->volume_count; g++) any = any || content->grids[g].cut;
@@ -228,7 +228,7 @@ static slab_run *run_of_grid(const view_sheets *sheets, int first, int grid) {
   return &sheets->runs[run * sheets->content->volume_count + grid];
 }
 
-/* Whether a grid touches a slab that begins or ends at one of the sheets from `first` to `last`. */
+/* Returns whether a grid touches a slab that begins or ends at one of the sheets from `first` to `last`. */
 static bool reaches_sheets(const view_sheets *sheets, int grid, int first, int last) {
   const sheet_range *range = &sheets->occupancy.sheets_of[grid];
   return last >= range->first - 1 && first <= range->last + 1;

@@ -111,8 +111,8 @@ typedef struct slab_place {
 } slab_place;
 
 bool hl_patch_reaches(view_sheets *sheets, size_t patch, int slab);
-/* Whether a slab touches a patch. Ask for the slabs in rising order. The test saves time if many volumes
- * share a tile, because most of these volumes lie before or behind a slab. */
+/* Returns whether a slab touches a patch. Ask for the slabs in rising order. The test saves time if many
+ * volumes share a tile, because most of these volumes lie before or behind a slab. */
 static inline bool hl_patch_is_touched(view_sheets *sheets, size_t patch, int slab) {
   const slab_row *row = &sheets->rows[patch];
   return slab >= row->first && (slab <= row->last || hl_patch_reaches(sheets, patch, slab));
@@ -126,7 +126,7 @@ uint32_t hl_patch_relevant(const view_sheets *sheets, slab_place place, uint32_t
 typedef struct patch_slab {
   const float *before, *current; /* [256] block-major; valid in blocks */
   const float *enter, *leave;    /* [256], block-major; the heights at which rays enter and leave the box;
-                                  * null where the box cuts nothing visible; not set where `uncut` is set */
+                                  * null if the box cuts nothing visible; not set where `uncut` is set */
   int uncut; /* whether the box cuts nothing in this slab, and cuts none of the light's ways through the box
               * to the eye's pixels in this slab */
   const slab_run *run; /* run: the run to which the slab belongs; slab: the slab's number in the run */

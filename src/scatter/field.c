@@ -26,7 +26,7 @@ void hl_scatter_release(hl_context *context, scatter_field *field) {
   *field = (scatter_field){0};
 }
 
-/* Whether some matter scatters more light in some directions than in others. */
+/* Returns whether some matter scatters more light in some directions than in others. */
 static bool is_uneven(const hl_scene_description *scene) {
   bool uneven = false;
   for (size_t v = 0; v < scene->volume_count; v++)

@@ -55,7 +55,7 @@ static void meet_between(void *data, const surface_hit *hit) {
 
 static void meet_beyond(void *data, const surface_hit *hit) { *(double *)data *= passing_of(hit); }
 
-/* Whether the grid has a node at a place, which is given in steps from the first node. */
+/* Returns whether the grid has a node at a place, which is given in steps from the first node. */
 static bool is_node(const scatter_nodes *nodes, const int32_t at[3]) {
   for (int a = 0; a < 3; a++)
     if (at[a] < 0 || at[a] >= nodes->count[a]) return false;

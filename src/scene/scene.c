@@ -331,8 +331,8 @@ static hl_status copy_sky(hl_scene *scene, const hl_sky *from, hl_error *error) 
                       &to->pixels, &to->file, error);
 }
 
-/* Whether bright spots of the sky's image become lights of the scene (suns). They do only if the scene has
- * shadows, half-vector slicing and lit matter. */
+/* Returns whether bright spots of the sky's image become lights of the scene (suns). They do only if the
+ * scene has shadows, half-vector slicing and lit matter. */
 static bool has_suns(const hl_scene_description *d) {
   return d->sky.suns && d->sky.strength > 0 && d->render.shadows != HL_SHADOWS_OFF &&
          d->render.slicing == HL_SLICING_HALF_VECTOR && d->render.compositing == HL_COMPOSITING_LIGHT;

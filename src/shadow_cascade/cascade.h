@@ -62,8 +62,7 @@ enum { CASCADE_LEVELS = 16, CASCADE_GROUPS = 7, CASCADE_FEW_GROUPS = 4, CASCADE_
  * is also the margin before the next row. Likewise, the margin after a field is also the margin before the
  * next field. */
 typedef struct cascade_field {
-  field_pixel *pixels;  /* pixel (0,0) of the field, in the level's memory; null where a device has the
-                         * pixels */
+  field_pixel *pixels;  /* pixel (0,0) of the field, in the level's memory; null if a device has the pixels */
   unsigned char *zeros; /* [tiles]; 1 where all pixels of the tile are zeros, so that work skips it; a part
                          * of the level's flags */
   /* index of the field's pixel (0,0) in an array of the pixels of all levels, one level after the other */
@@ -114,8 +113,7 @@ typedef struct cascade_level {
                                        * `thin` of one group, averaged over the step between taps */
   cascade_box *boxes;                 /* owned; [tiles_x + tiles_y]; the blur of each column of tiles, then
                                        * of each row of tiles */
-  field_pixel *memory;                /* borrowed from the shadow_memory; null where a device has the
-                                       * pixels */
+  field_pixel *memory;                /* borrowed from the shadow_memory; null if a device has the pixels */
   size_t planes;
   unsigned char *flags; /* owned; the arrays `zeros` of the level's fields */
 } cascade_level;

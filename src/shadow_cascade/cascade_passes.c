@@ -51,7 +51,7 @@ typedef struct add_task {
   bool doubled; /* whether b is coarser than the output; in this case an `a` of zeros may be left out */
 } add_task;
 
-/* Whether a sum is all zeros in the tiles from x0 to x1, both included, of a row of tiles. */
+/* Returns whether a sum is all zeros in the tiles from x0 to x1, both included, of a row of tiles. */
 static bool sum_is_zeros(const add_task *task, int x0, int x1, int y) {
   const cascade_sum *sum = &task->sum;
   const cascade_level *levels[2] = {sum->level_a, sum->level_b};

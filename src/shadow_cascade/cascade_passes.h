@@ -38,7 +38,7 @@ typedef struct cascade_sum {
   const cascade_level *level_a;  /* the level of the fields a and thin */
   const cascade_field *a, *thin; /* a may be null, which stands for zeros, only if b is coarser than `to`.
                                   * thin may be null, which stands for zeros */
-  const cascade_level *level_b;  /* the level of the field b; null where b is null */
+  const cascade_level *level_b;  /* the level of the field b; null if b is null */
   const cascade_field *b;        /* may be null, which stands for zeros, only if a is not coarser than `to` */
   const cascade_level *level;    /* the level of the field `to` */
   const cascade_field *to;
@@ -83,7 +83,7 @@ void hl_cascade_merge(const cascade_crew *crew, const cascade_merger *merger);
 /* The task of adding the light that a chunk's slabs absorbed to the groups at the chunk's two ends. */
 typedef struct cascade_absorption {
   const soft_cascade *cascade;
-  const shadow_buffer *buffer; /* null where the buffer is in the memory of a device */
+  const shadow_buffer *buffer; /* null if the buffer is in the memory of a device */
   cascade_group *start, *end;
   double length; /* length of the chunk, measured in omega */
   int edge;      /* the width in pixels of a strip along the edges of opaque surfaces, as in absorbed_job */
@@ -93,7 +93,7 @@ typedef struct cascade_absorption {
 /* The task of refilling the shadow buffer from cascade->absorbed. */
 typedef struct cascade_refilling {
   soft_cascade *cascade;
-  shadow_buffer *buffer; /* null where the buffer is in the memory of a device */
+  shadow_buffer *buffer; /* null if the buffer is in the memory of a device */
   int sheet;
   bool any; /* whether any pixel of cascade->absorbed is not zero */
 } cascade_refilling;
@@ -120,7 +120,7 @@ void hl_cascade_find_boxes(const cascade_level *level, const cascade_blur *blur,
  * scale `to`; in pixels of the buffer. */
 int hl_cascade_doubling_reach(int from, int to);
 
-/* Whether all tiles of a rectangle are zeros. Tiles outside the level count as zeros. */
+/* Returns whether all tiles of a rectangle are zeros. Tiles outside the level count as zeros. */
 bool hl_cascade_all_zeros(const cascade_level *level, const cascade_field *field, int x0, int x1, int y0,
                           int y1);
 

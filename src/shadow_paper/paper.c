@@ -199,7 +199,7 @@ static bool any_touched(const shadow_buffer *buffer, int x, int y, int around) {
   return false;
 }
 
-/* Whether any pixel in a tile, or within `reach` pixels around it, is below 1. */
+/* Returns whether any pixel in a tile, or within `reach` pixels around it, is below 1. */
 static bool any_below_one(const shadow_buffer *buffer, int x, int y, int reach) {
   const ptrdiff_t stride = (ptrdiff_t)buffer->stride;
   for (int c = 0; c < buffer->channels; c++) {

@@ -226,7 +226,7 @@ static bool any_touched(const shadow_buffer *slab, int x0, int x1, int y0, int y
   return false;
 }
 
-/* Whether the slab has a pixel below 1 in some tile of a rectangle of tiles. */
+/* Returns whether the slab has a pixel below 1 in some tile of a rectangle of tiles. */
 static bool any_present(const sublight_job *job, int x0, int x1, int y0, int y1) {
   for (int y = y0; y <= y1; y++)
     for (int x = x0; x <= x1; x++)

@@ -145,8 +145,8 @@ static void mark(size_t first, size_t end, unsigned char *live, unsigned char va
   for (size_t index = first; index < end; index++) live[index] = value;
 }
 
-/* Whether a shape whose distances lie within the bounds `own` can change the distances of the shapes before
- * it, which lie within the bounds `before`. */
+/* Returns whether a shape whose distances lie within the bounds `own` can change the distances of the shapes
+ * before it, which lie within the bounds `before`. */
 static bool has_say(const hl_shape *shape, hl_interval before, hl_interval own) {
   switch (shape->operation) {
     case HL_SHAPE_ADD: return own.low < before.high + shape->blend;

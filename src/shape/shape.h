@@ -125,7 +125,8 @@ hl_interval hl_shapes_bounds(const hl_shape_list *list, vec3 p, double radius, u
  * point of the shape's own frame. foot: the point of the surface that is nearest to p. */
 double hl_hypertexture_distance(const hl_shape *shape, double distance, vec3 p, vec3 foot);
 hl_interval hl_hypertexture_bounds(const hl_shape *shape, hl_interval distance);
-/* Whether a texture can change the density at a point with a given distance from the surface of its shape. */
+/* Returns whether a texture can change the density at a point with a given distance from the surface of its
+ * shape. */
 bool hl_hypertexture_matters(const hl_shape *shape, double distance);
 
 /* The value of the real hydrogen-like wave function at a point; it is not normalised. p: a point of the

@@ -18,7 +18,7 @@ LANES_INLINE __m128i narrow_bytes(lanes_int x) {
   return _mm_packs_epi16(_mm256_castsi256_si128(shorts), _mm256_extracti128_si256(shorts, 1));
 }
 
-/* Whether any of sixteen numbers of 16 bits, taken as an unsigned number, is above a limit. */
+/* Returns whether any of sixteen numbers of 16 bits, taken as an unsigned number, is above a limit. */
 LANES_INLINE int any_short_above(__m256i x, int limit) {
   __m256i above = _mm256_subs_epu16(x, _mm256_set1_epi16((short)limit));
   return !_mm256_testz_si256(above, above);

@@ -4,7 +4,7 @@
 
 #include <halflight/compose.h>
 
-/* Choices that a page makes by name for its scene. A text is null where the page has made no choice. */
+/* Choices that a page makes by name for its scene. A text is null if the page has made no choice. */
 typedef struct composed_choices {
   const char *look; /* a value of the option "look" of hl_scene_compose() */
   const char *rig;  /* a value of the option "light-rig" */

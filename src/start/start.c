@@ -87,7 +87,7 @@ static void put_absence(FILE *out, const hl_scene_volume *volume) {
   fprintf(out, ",\"absent_chunks\":[%zu,%zu]", absent, chunks + of_mask);
 }
 
-/* Whether the volume's cuts are the automatic ones, which remove the table or another holder. */
+/* Returns whether the volume's cuts are the automatic ones, which remove the table or another holder. */
 static bool has_chosen_cuts(hl_context *context, const hl_scene_volume *volume) {
   hl_scene *chosen = NULL;
   if (volume->cut_count == 0 ||

@@ -135,7 +135,7 @@ static size_t write_pixel(pixel_fragments *pixel, fragment *to) {
   return kept;
 }
 
-/* Whether two fragments of a pixel share samples and may cross. */
+/* Returns whether two fragments of a pixel share samples and may cross. */
 static bool any_may_cross(const pixel_fragments *pixel, const fragment *list, size_t count) {
   uint32_t seen = 0;
   for (size_t i = 0; i < count; seen |= list[i++].samples)

@@ -34,7 +34,7 @@ uint32_t hl_ordered_bits(float height, bool falling);
 /* Sorts keys in rising order; equal keys keep their order. spare: [count]. */
 void hl_sort_keys(order_key *list, order_key *spare, size_t count);
 
-/* Whether a fragment absorbs all light that arrives at its samples. */
+/* Returns whether a fragment absorbs all light that arrives at its samples. */
 static inline bool hl_is_opaque(const fragment *f, const float *least) {
   return f->opacity * least[f->mesh] >= 1;
 }

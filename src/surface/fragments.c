@@ -57,15 +57,15 @@ static bool is_outside(const view *view, const surface_mesh *mesh) {
   return !view->perspective || hl_surface_is_outside(mesh, view->origin, 0);
 }
 
-/* Whether the eye sees no back side of a mesh: the mesh is closed and opaque, and the eye is outside of
- * it. */
+/* Returns whether the eye sees no back side of a mesh: the mesh is closed and opaque, and the eye is outside
+ * of it. */
 static bool has_hidden_backs(const fragments_source *source, const surface_mesh *mesh) {
   return !source->of_light && !source->unseen && hl_surface_is_closed(mesh) && mesh->colors == NULL &&
          mesh->face_colors == NULL && is_outside(source->view, mesh);
 }
 
-/* Whether a light lights no back side of a mesh: the mesh is closed and lets no light through, and the light
- * is outside of it. */
+/* Returns whether a light lights no back side of a mesh: the mesh is closed and lets no light through, and
+ * the light is outside of it. */
 static bool has_dark_backs(const fragments_source *source, const surface_mesh *mesh) {
   return source->of_light && hl_surface_is_closed(mesh) && hl_surface_is_opaque(mesh) &&
          is_outside(source->view, mesh);

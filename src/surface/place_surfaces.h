@@ -17,8 +17,8 @@ void hl_surfaces_release(hl_context *context, surfaces *kept);
  * 32 bits cannot number all primitives. */
 hl_status hl_surfaces_count_memory(const hl_scene_description *scene, hl_layout *layout, hl_error *error);
 
-/* Whether the meshes are the same as in the earlier frame, and stand in the same places. If so, an update
- * allocates only a few cuts. */
+/* Returns whether the meshes are the same as in the earlier frame, and stand in the same places. If so, an
+ * update allocates only a few cuts. */
 bool hl_surfaces_current(const surfaces *kept, const hl_scene_description *scene);
 
 #endif

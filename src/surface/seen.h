@@ -35,7 +35,8 @@ static inline int64_t hl_polygon_area(const int32_t *x, const int32_t *y) {
   return (int64_t)(x[1] - x[0]) * (y[2] - y[0]) - (int64_t)(x[2] - x[0]) * (y[1] - y[0]);
 }
 
-/* Whether a triangle faces the view. A triangle that is seen from its edge counts as facing the view. */
+/* Returns whether a triangle faces the view. A triangle that is seen from its edge counts as facing the
+ * view. */
 bool hl_faces_view(const seen_surfaces *seen, uint32_t triangle);
 
 /* A rectangle, in pixels with fractions, around the part of a sphere or of a box that a view sees. The

@@ -42,8 +42,8 @@ static uint32_t cover_small(const surface_functions *functions, small_batch *bat
 
 /* ---- one at a time ---- */
 
-/* Whether a light does not light a sphere from within: the sphere's surface lets no light pass, and the light
- * is outside. */
+/* Returns whether a light does not light a sphere from within: the sphere's surface lets no light pass, and
+ * the light is outside. */
 static bool has_dark_inside(const fragment_work *work, const float sphere[4], const fragment *f) {
   const view *view = work->source->view;
   if (f->opacity < 1 || work->least[f->mesh] < 1) return false;
@@ -87,7 +87,8 @@ static void add_side(const fragment_work *work, fragment_worker *worker, const t
   }
 }
 
-/* Whether a sphere's far side is needed. A view sees the far side of an opaque sphere only from within. */
+/* Returns whether a sphere's far side is needed. A view sees the far side of an opaque sphere only from
+ * within. */
 static bool has_far_side(const fragment_work *work, const float sphere[4], float opacity) {
   const view *view = work->source->view;
   if (work->source->rise > 0 || opacity < 1) return true;

@@ -245,8 +245,8 @@ static bool overlap(const float low[3], const float high[3], const double from[3
   return true;
 }
 
-/* Whether a leaf has a primitive that reaches a box or the convex hull of balls. balls: null: it is enough
- * that boxes overlap. */
+/* Returns whether a leaf has a primitive that reaches a box or the convex hull of balls. balls: null: it is
+ * enough that boxes overlap. */
 static bool leaf_reaches(const surface_tree *tree, const surface_box *leaf, const double low[3],
                          const double high[3], const hull_ball *balls, int count, double least) {
   for (uint32_t i = leaf->first; i < leaf->first + leaf->count; i++) {
@@ -307,7 +307,7 @@ static box_ray ray_of_boxes(const surface_ray *ray) {
   return made;
 }
 
-/* Whether a ray meets a box (slab method); for a bundle, whether any of its rays may meet the box. */
+/* Returns whether a ray meets a box (slab method); for a bundle, whether any of its rays may meet the box. */
 static bool meets_box(const surface_box *box, const box_ray *ray) {
   double nearest = ray->first, farthest = ray->last;
   for (int a = 0; a < 3; a++) {

@@ -51,7 +51,7 @@ void hl_surface_tree_release(hl_context *context, surface_tree *tree);
  * nothing. */
 bool hl_surface_tree_count(const surfaces *all, double distance, hl_layout *layout);
 
-/* Whether a mesh absorbs light: it casts a shadow, and its opacity is above 0. */
+/* Returns whether a mesh absorbs light: it casts a shadow, and its opacity is above 0. */
 static inline bool hl_mesh_takes_light(const surface_mesh *mesh) {
   return mesh->look.casts_shadow && mesh->look.opacity > 0;
 }

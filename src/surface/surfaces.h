@@ -85,7 +85,7 @@ void hl_surfaces_key_add(hl_key *key, const surfaces *all);
 /* The number of primitives. */
 static inline uint32_t hl_surfaces_count(const surfaces *all) { return all->first[PRIMITIVE_KINDS]; }
 
-/* Whether the scene's cuts leave a mesh at a point of frame space. */
+/* Returns whether the scene's cuts leave a mesh at a point of frame space. */
 static inline bool hl_surface_left(const surfaces *all, const surface_mesh *mesh, vec3 point) {
   return !mesh->is_cut || hl_cuts_leave(all->cuts, all->cut_count, point);
 }

@@ -6,7 +6,7 @@
 #include <stdio.h>
 #include <string.h>
 
-/* Whether two letters differ by more than their case. */
+/* Returns whether two letters differ by more than their case. */
 static bool differ(char a, char b) {
   if (a >= 'A' && a <= 'Z') a += 'a' - 'A';
   if (b >= 'A' && b <= 'Z') b += 'a' - 'A';

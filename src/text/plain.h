@@ -12,12 +12,13 @@ double hl_plain_number(const char *text, char **end);
 int hl_plain_vprint(char *text, size_t size, const char *format, va_list arguments);
 __attribute__((format(printf, 3, 4))) int hl_plain_print(char *text, size_t size, const char *format, ...);
 
-/* Whether two texts are equal if the case of the letters A to Z is ignored. */
+/* Returns whether two texts are equal if the case of the letters A to Z is ignored. */
 bool hl_plain_equal(const char *a, const char *b);
-/* Whether the first `length` bytes of two texts are equal if the case of the letters A to Z is ignored. */
+/* Returns whether the first `length` bytes of two texts are equal if the case of the letters A to Z is
+ * ignored. */
 bool hl_plain_equal_bytes(const char *a, const char *b, size_t length);
 
-/* Whether a text is a URL of a web server, "http://..." or "https://...". */
+/* Returns whether a text is a URL of a web server, "http://..." or "https://...". */
 bool hl_plain_is_url(const char *text);
 
 /* Between hl_plain_begin() and hl_plain_end() the calling thread is in the locale "C", for calls of other

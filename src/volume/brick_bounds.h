@@ -33,7 +33,7 @@ void hl_brick_bounds_release(hl_brick_bounds *bounds); /* null is allowed */
  * added. */
 void hl_brick_bounds_add(hl_brick_bounds *bounds, size_t k0, size_t k1, const void *values);
 
-/* Whether all slices were added. */
+/* Returns whether all slices were added. */
 bool hl_brick_bounds_whole(const hl_brick_bounds *bounds);
 
 #endif

@@ -10,8 +10,8 @@
 
 enum { HL_COLOR_BYTES = 4 };
 
-/* Whether voxels of this type and number of components can be colours: 3 or 4 unsigned components of 8 or 16
- * bits. */
+/* Returns whether voxels of this type and number of components can be colours: 3 or 4 unsigned components of
+ * 8 or 16 bits. */
 bool hl_can_be_colors(hl_voxel_type type, size_t components);
 
 /* Returns whether a chosen component stands for colours of all components: HL_COMPONENT_COLOR or

@@ -311,8 +311,9 @@ static void choose_strides(const hl_volume_description *description, ptrdiff_t s
  * few slices in 32 bits. */
 #define LARGEST_GAP ((ptrdiff_t)1 << 26)
 
-/* Whether the caller's voxels can be borrowed without a copy. Their type must be a storage type, they must be
- * aligned for vector loads, the voxels of a row must be adjacent, and neither rows nor slices may overlap. */
+/* Returns whether the caller's voxels can be borrowed without a copy. Their type must be a storage type, they
+ * must be aligned for vector loads, the voxels of a row must be adjacent, and neither rows nor slices may
+ * overlap. */
 static bool can_borrow(const hl_volume_description *description, const ptrdiff_t stride[3]) {
   hl_voxel_type type = description->type;
   ptrdiff_t bytes = (ptrdiff_t)hl_voxel_type_bytes(type);

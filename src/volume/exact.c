@@ -34,8 +34,8 @@ static bool is_wide(hl_voxel_type type) {
          type == HL_VOXEL_F64;
 }
 
-/* Whether a float rounds this whole number: whether it has more than 24 bits from its first to its last set
- * bit. */
+/* Returns whether a float rounds this whole number: whether it has more than 24 bits from its first to its
+ * last set bit. */
 static bool rounds_whole(uint64_t magnitude) {
   return magnitude >> 24 != 0 && magnitude >> __builtin_ctzll(magnitude) >> 24 != 0;
 }
@@ -48,8 +48,8 @@ static bool rounds_double(double value) {
 /* The magnitude of a signed number. */
 static uint64_t magnitude_of(int64_t value) { return value < 0 ? 0 - (uint64_t)value : (uint64_t)value; }
 
-/* Whether any number may lie beyond 2^24 or -2^24. Most files have no such number. For them, this quick test
- * saves slower tests. Compilers vectorise the loop. */
+/* Returns whether any number may lie beyond 2^24 or -2^24. Most files have no such number. For them, this
+ * quick test saves slower tests. Compilers vectorise the loop. */
 static bool any_great_32(bool is_signed, bool swap, const unsigned char *from, size_t count) {
   uint32_t bits = 0;
   for (size_t n = 0; n < count; n++) {

@@ -49,8 +49,8 @@ hl_status hl_exact_take(hl_exact *exact, const float *stored, void **numbers, hl
 /* Hands the recorded numbers over as a file, which the caller owns. *file becomes -1 if floats hold all
  * numbers without rounding. */
 hl_status hl_exact_take_file(hl_exact *exact, int *file, hl_error *error);
-/* Reads `count` numbers of a file that hl_exact_take_file() gave, beginning with number `first`. stored:
- * the stored values of these voxels. False if the file cannot be read. */
+/* Reads `count` numbers of a file that hl_exact_take_file() gave, beginning with number `first`. stored: the
+ * stored values of these voxels. Returns false if the file cannot be read. */
 bool hl_exact_read(int file, hl_voxel_type type, size_t first, size_t count, const float *stored,
                    void *numbers);
 void hl_exact_release(hl_exact *exact);

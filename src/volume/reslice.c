@@ -50,8 +50,8 @@ static hl_status check(const hl_volume *volume, const hl_reslice_options *option
   return HL_OK;
 }
 
-/* Whether a place, in voxel indices, lies in one of the grid's voxels, which reach half a voxel beyond their
- * centres. */
+/* Returns whether a place, in voxel indices, lies in one of the grid's voxels, which reach half a voxel
+ * beyond their centres. */
 static bool is_within(const hl_volume *volume, const double at[3]) {
   for (int axis = 0; axis < 3; axis++)
     if (!(at[axis] >= -0.5 && at[axis] < (double)volume->dimension[axis] - 0.5)) return false;

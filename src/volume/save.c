@@ -53,7 +53,7 @@ typedef struct saving {
 
 /* ---- the type ---- */
 
-/* The range of whole numbers that a type holds. False for floats. */
+/* The range of whole numbers that a type holds. Returns false for floats. */
 static bool whole_range(hl_voxel_type type, double *low, double *high) {
   bool is_signed = type == HL_VOXEL_I8 || type == HL_VOXEL_I16 || type == HL_VOXEL_I32 ||
                    type == HL_VOXEL_I64;
@@ -71,8 +71,8 @@ static bool holds(hl_voxel_type type, double least, double greatest) {
   return whole_range(type, &low, &high) && least >= low && greatest <= high;
 }
 
-/* Whether all data values are finite whole numbers, because the file's are integers, and scale and offset are
- * whole numbers. */
+/* Returns whether all data values are finite whole numbers, because the file's are integers, and scale and
+ * offset are whole numbers. */
 static bool is_whole(const hl_volume *volume) {
   double low, high;
   return whole_range(volume->type, &low, &high) && volume->value_scale == floor(volume->value_scale) &&
@@ -154,7 +154,7 @@ static void place_box(saving *s) {
 
 /* ---- rows ---- */
 
-/* Whether the file's own numbers are written unchanged. Doubles would round numbers of 64 bits. */
+/* Returns whether the file's own numbers are written unchanged. Doubles would round numbers of 64 bits. */
 static bool keeps_numbers(const saving *s) {
   const hl_volume *volume = s->volume;
   return hl_volume_is_exact(volume) && (s->shrink == 1 || s->labels) && s->grid.type == volume->type &&

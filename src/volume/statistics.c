@@ -103,7 +103,7 @@ static size_t room_of(const hl_volume *volume) {
   return stored > row ? stored : row;
 }
 
-/* Moves to the next piece. False at the end and after cancellation. */
+/* Moves to the next piece. Returns false at the end and after cancellation. */
 static bool next_piece(walk *w) {
   size_t most = w->buffer == NULL ? PIECE : COPIED_PIECE;
   w->first += w->piece;
@@ -119,7 +119,8 @@ static bool next_piece(walk *w) {
   return true;
 }
 
-/* Counts how often each stored value occurs. counts: must be zeros before the call. False if cancelled. */
+/* Counts how often each stored value occurs. counts: must be zeros before the call. Returns false if
+ * cancelled. */
 static bool count_values(const hl_volume *volume, void *buffer, uint64_t *counts) {
   walk w = {.volume = volume, .buffer = buffer, .count = counted_voxels(volume)};
   while (next_piece(&w))
@@ -235,7 +236,7 @@ static hl_status record(hl_volume *volume, tally total, const char *subject, hl_
   return HL_OK;
 }
 
-/* Whether one number of 64 bits is less than another. type: I64 or U64. */
+/* Returns whether one number of 64 bits is less than another. type: I64 or U64. */
 static bool is_less(hl_voxel_type type, uint64_t a, uint64_t b) {
   return type == HL_VOXEL_I64 ? (int64_t)a < (int64_t)b : a < b;
 }
@@ -433,7 +434,7 @@ static bool number_at(ranking *r, uint64_t rank, double *number) {
 }
 
 /* Finds the number at a rank, which is the number of finite voxels before it in ascending order. The result
- * is the file's own number if the volume keeps these, else the stored value. False if cancelled. */
+ * is the file's own number if the volume keeps these, else the stored value. Returns false if cancelled. */
 static bool stored_at(ranking *r, uint64_t rank, double *stored) {
   if (hl_volume_is_exact(r->volume)) return number_at(r, rank, stored);
   uint32_t key = place_of(r->upper, &rank);

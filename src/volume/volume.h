@@ -150,7 +150,7 @@ static inline size_t hl_volume_voxel_count(const hl_volume *volume) {
   return volume->dimension[0] * volume->dimension[1] * volume->dimension[2];
 }
 
-/* Whether voxels are in memory without gaps between rows and slices. */
+/* Returns whether voxels are in memory without gaps between rows and slices. */
 static inline bool hl_volume_is_packed(const hl_volume *volume) {
   size_t row = volume->dimension[0] * hl_storage_bytes(volume->storage);
   return volume->voxels != NULL && volume->row_bytes == row &&
@@ -190,11 +190,11 @@ size_t hl_volume_row_room(const hl_volume *volume);
 /* Gives a row of numbers of any volume. Data value = value_scale * number + value_offset. buffer:
  * hl_volume_row_room() bytes, aligned for doubles; used if the numbers are not in memory. */
 hl_number_row hl_volume_numbers(const hl_volume *volume, size_t j, size_t k, void *buffer);
-/* Whether the stored values round some of the file's own numbers, so that these are kept, too. */
+/* Returns whether the stored values round some of the file's own numbers, so that these are kept, too. */
 bool hl_volume_is_exact(const hl_volume *volume);
 double hl_row_number(hl_number_row row, size_t i);
 
-/* Whether two voxels of a row have the same number. */
+/* Returns whether two voxels of a row have the same number. */
 static inline bool hl_row_repeats(hl_number_row row, size_t a, size_t b) {
   switch (row.type) {
     case HL_VOXEL_U8: return ((const uint8_t *)row.numbers)[a] == ((const uint8_t *)row.numbers)[b];

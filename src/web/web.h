@@ -9,8 +9,8 @@
 #include <stddef.h>
 #include <stdint.h>
 
-/* Whether this engine rounds a product and a sum only once, as pictures need. 1: it does; 0: it rounds twice,
- * as engines may choose with relaxed SIMD. */
+/* Returns whether this engine rounds a product and a sum only once, as pictures need. 1: it does; 0: it
+ * rounds twice, as engines may choose with relaxed SIMD. */
 int web_fuses(void);
 
 /* Makes the context; must be called first. mebibytes: the most memory; threads: the most threads of a

@@ -148,10 +148,10 @@ DEVICE float length_left(GLOBAL const plan_cut *cuts, int count, vector from, ve
   return greater(left.leave - left.enter - removed, 0.0f);
 }
 
-/* Whether a sample is so far from the faces of all cuts that no face changes the light's ways to it and to
- * the pixels around it. Only planes, and boxes whose inside is left, are tested, because behind them the
- * nearest face is also the first face on the light's way. If there is any other cut, the result is 0. step:
- * the step along the eye's ray through the slab. */
+/* Returns whether a sample is so far from the faces of all cuts that no face changes the light's ways to it
+ * and to the pixels around it. Only planes, and boxes whose inside is left, are tested, because behind them
+ * the nearest face is also the first face on the light's way. If there is any other cut, the result is 0.
+ * step: the step along the eye's ray through the slab. */
 DEVICE int is_far_from_cuts(GLOBAL const plan_cut *cuts, int count, vector position, vector step) {
   int far = 1;
   for (int i = 0; i < count && far; i++) {

@@ -351,8 +351,8 @@ DEVICE float way_before(const ways_around *around, float u, float v, float along
   return greater(left.leave - left.enter, 0.0f);
 }
 
-/* Whether a sample is so far from the faces of the box and of cuts that no face changes the light's ways to
- * it and to the pixels around it. */
+/* Returns whether a sample is so far from the faces of the box and of cuts that no face changes the light's
+ * ways to it and to the pixels around it. */
 DEVICE int is_deep(const volume_data *data, GLOBAL const plan_light *light, const slab_sample *s) {
   GLOBAL const plan_volume *volume = data->plan;
   int deep = 1;

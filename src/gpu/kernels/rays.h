@@ -19,7 +19,7 @@ DEVICE vector position_on(GLOBAL const plan_rays *rays, int perspective, float u
   return vector_of(fused(p.x, s, rays->base[0]), fused(p.y, s, rays->base[1]), fused(p.z, s, rays->base[2]));
 }
 
-/* Whether the sheet lies ahead of the view's origin, or at most `reach` behind it. */
+/* Returns whether the sheet lies ahead of the view's origin, or at most `reach` behind it. */
 DEVICE int is_ahead(GLOBAL const plan_rays *rays, float climb, float reach) {
   return fused(magnitude(climb), reach, climb * rays->step) > 0.0f;
 }

@@ -48,8 +48,8 @@ DEVICE grid_point point_in_grid(GLOBAL const plan_volume *volume, vector p) {
   return point;
 }
 
-/* Whether the point's cell may show something (grid/relevant.h). *voxels: a distance, in voxels along each
- * axis, within which no cell shows anything; 0 if the point's own brick may show something. */
+/* Returns whether the point's cell may show something (grid/relevant.h). *voxels: a distance, in voxels along
+ * each axis, within which no cell shows anything; 0 if the point's own brick may show something. */
 DEVICE int cell_may_show(const volume_data *volume, const grid_point *point, float *voxels) {
   GLOBAL const plan_volume *plan = volume->plan;
   *voxels = 0.0f;
@@ -111,8 +111,8 @@ DEVICE tap_place place_of_taps(const volume_data *volume, const float at[3]) {
   return place;
 }
 
-/* Whether any tap around a cell lies outside the grid along an axis. In a field in bricks no tap does,
- * because bricks hold all taps of their cells. */
+/* Returns whether any tap around a cell lies outside the grid along an axis. In a field in bricks no tap
+ * does, because bricks hold all taps of their cells. */
 DEVICE int taps_leave(GLOBAL const plan_volume *volume, int cell, int axis) {
   return !BRICKS && !taps_inside(cell, volume->dimension[axis]);
 }

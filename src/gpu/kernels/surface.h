@@ -23,8 +23,8 @@ DEVICE_CALL float density_on_face(const volume_data volume, vector crossing) {
   return density_at(volume, at[0], at[1], at[2]);
 }
 
-/* Whether a point lies so near to a face of the box with visible matter that the point may belong to this
- * face. */
+/* Returns whether a point lies so near to a face of the box with visible matter that the point may belong to
+ * this face. */
 DEVICE int is_near_face(GLOBAL const plan_volume *volume, vector point) {
   const float reach = FACE_VOXELS * volume->voxel * 1.001f;
   int close = 0;

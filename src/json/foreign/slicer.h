@@ -11,7 +11,7 @@
 hl_status hl_json_read_slicer(hl_json_reader *reader, const json_t *root, const hl_volume *volume,
                               hl_transfer_function *function);
 
-/* Whether a path names a file of Slicer's text formats: NAME.vp, NAME.xml (with one preset) or
+/* Returns whether a path names a file of Slicer's text formats: NAME.vp, NAME.xml (with one preset) or
  * NAME.xml:PRESET. */
 bool hl_slicer_is_text(const char *path);
 

@@ -87,7 +87,7 @@ static double quota_of_path(const char *hierarchy, const char *path, bool unifie
   }
 }
 
-/* Whether a list of controllers, such as "cpu,cpuacct", has the controller of processor time. */
+/* Returns whether a list of controllers, such as "cpu,cpuacct", has the controller of processor time. */
 static bool has_cpu(const char *controllers) {
   for (const char *at = controllers; at != NULL; at = strchr(at, ',')) {
     at += *at == ',';

@@ -14,8 +14,8 @@ enum { MOST_HELPERS = 30 };
  * caller of a pool. The limit is 1 at first. */
 void hl_helpers_allow(int threads);
 
-/* Reports that a helper has started. number: each helper has its own number, from 0 on. False if the number
- * is impossible. */
+/* Reports that a helper has started. number: each helper has its own number, from 0 on. Returns false if the
+ * number is impossible. */
 bool hl_helper_arrive(int number);
 
 /* Runs threads of the library, in the worker of a helper, after hl_helper_arrive(). Does not return. */

@@ -33,7 +33,7 @@ DIR *opendir(const char *path) {
   return folder;
 }
 
-/* Reads the next entries. False after the last. */
+/* Reads the next entries. Returns false after the last. */
 static bool fetch(DIR *folder) {
   HANDLE handle = (HANDLE)_get_osfhandle(folder->descriptor);
   FILE_INFO_BY_HANDLE_CLASS how = folder->begun ? FileIdBothDirectoryInfo : FileIdBothDirectoryRestartInfo;

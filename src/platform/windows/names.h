@@ -15,7 +15,7 @@ wchar_t *hl_wide_name(const char *path);
 /* The same text in UTF-16, with '\' for '/' and without a prefix. */
 wchar_t *hl_wide_text(const char *text);
 
-/* Writes UTF-16 of `length` characters as UTF-8, with '/' for '\'. False if it does not fit. */
+/* Writes UTF-16 of `length` characters as UTF-8, with '/' for '\'. Returns false if it does not fit. */
 bool hl_narrow_name(const wchar_t *wide, size_t length, char *text, size_t size);
 
 /* Replaces the last six characters of a name by random letters. False, with errno set, on failure. */

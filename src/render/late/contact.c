@@ -45,7 +45,7 @@ typedef struct contact_ray {
   double (*passing)[HL_CHANNELS]; /* [points of the light] */
 } contact_ray;
 
-/* Whether two triangles share a vertex. */
+/* Returns whether two triangles share a vertex. */
 static bool are_neighbours(const surfaces *all, uint32_t a, uint32_t b) {
   if (!hl_has_corners(all, a) || !hl_has_corners(all, b)) return false;
   for (int i = 0; i < 3; i++)
@@ -107,8 +107,8 @@ static hull_ball ends_of_rays(const contact_light *light, vec3 point, double lat
   return (hull_ball){vec3_add(point, vec3_scale(way, part)), 2 * part * light->points->reach};
 }
 
-/* Whether there may be a surface close before some sample. Samples that face away from the light count only
- * where a layer asks for both sides. */
+/* Returns whether there may be a surface close before some sample. Samples that face away from the light
+ * count only where a layer asks for both sides. */
 static bool may_find(const sweep *sweep, const contact_light *light, const contact_ray *rays, int count) {
   hull_ball balls[2 * SURFACE_SAMPLES];
   int balls_count = 0;
@@ -261,8 +261,8 @@ static void hold_rays(const sweep *sweep, const contact_light *light, vec3 point
   vec3_bound_ball(ends.at, aside + ends.radius, low, high);
 }
 
-/* Whether the light on any sample of the batch is needed. The picture needs it on samples that face the
- * light; layers need it on all samples. */
+/* Returns whether the light on any sample of the batch is needed. The picture needs it on samples that face
+ * the light; layers need it on all samples. */
 static bool is_asked(const sweep *sweep, const contact_light *light, const surface_batch *batch) {
   if (sweep->layers.pass_count > 0) return true;
   for (int i = 0; i < batch->count; i++) {
@@ -272,9 +272,9 @@ static bool is_asked(const sweep *sweep, const contact_light *light, const surfa
   return false;
 }
 
-/* Whether some surface may be close before the batch's samples. The test is quick, and the answer is nearly
- * always no. The rays of parallel light are all alike, so the rays from two opposite corners of the samples'
- * box bound them all; for other lights, the rays from all eight corners are taken. */
+/* Returns whether some surface may be close before the batch's samples. The test is quick, and the answer is
+ * nearly always no. The rays of parallel light are all alike, so the rays from two opposite corners of the
+ * samples' box bound them all; for other lights, the rays from all eight corners are taken. */
 static bool is_close(const sweep *sweep, const contact_light *light, const surface_batch *batch) {
   vec3 least, greatest;
   double aside = 0, low[3] = {INFINITY, INFINITY, INFINITY}, high[3] = {-INFINITY, -INFINITY, -INFINITY};
@@ -290,8 +290,9 @@ static bool is_close(const sweep *sweep, const contact_light *light, const surfa
   return hl_surface_tree_overlaps(sweep->frame->contact, low, high);
 }
 
-/* Whether all of a light is outside of a mesh. `reach` is the greatest distance, from the light's centre, of
- * the points that stand for the light. The light itself extends to less than 1.5 times this distance. */
+/* Returns whether all of a light is outside of a mesh. `reach` is the greatest distance, from the light's
+ * centre, of the points that stand for the light. The light itself extends to less than 1.5 times this
+ * distance. */
 static bool is_outside(const contact_light *light, const surface_mesh *mesh) {
   const light_source *source = light->source;
   return source->parallel || hl_surface_is_outside(mesh, source->position, 1.5 * light->points->reach);
@@ -336,8 +337,8 @@ static void set_passing(contact_search *search, int light, int sample, const dou
   }
 }
 
-/* Whether a ray towards a point of a light, which begins on a hollow surface, meets this surface again close
- * by. */
+/* Returns whether a ray towards a point of a light, which begins on a hollow surface, meets this surface
+ * again close by. */
 static bool returns(const contact_search *search, const surface_batch *batch, const hollow *at, vec3 way) {
   double sine = vec3_dot(way, at->normal), chord = 2 * sine / at->bend;
   if (sine <= 0) return true;
@@ -370,7 +371,7 @@ static void shade_hollows(contact_search *search, int l, const contact_light *li
   }
 }
 
-/* Whether the eye may see a mesh from within: cuts open it, or it has open edges. */
+/* Returns whether the eye may see a mesh from within: cuts open it, or it has open edges. */
 static bool may_be_hollow(const surface_mesh *mesh) {
   return (mesh->is_cut || !mesh->mesh->closed) && hl_surface_takes_all(mesh);
 }

@@ -17,7 +17,7 @@ double hl_transfer_function_opacity(const hl_transfer_function *function, double
 double hl_transfer_function_gradient_opacity(const hl_transfer_function *function, double gradient);
 void hl_transfer_function_color(const hl_transfer_function *function, double value, double color[3]);
 
-/* Whether some value from `low` to `high` has an opacity above zero. */
+/* Returns whether some value from `low` to `high` has an opacity above zero. */
 int hl_transfer_function_visible(const hl_transfer_function *function, double low, double high);
 
 /* Finds the transparent value between `low` and `high` that is nearest to `target`, which lies between them.

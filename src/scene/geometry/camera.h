@@ -18,7 +18,7 @@ bool hl_camera_basis(const hl_camera *camera, vec3 *right, vec3 *up, vec3 *forwa
 /* Finds the axes of a view's picture; unit vectors. */
 void hl_view_axes(const hl_view *view, vec3 *right, vec3 *up, vec3 *forward);
 
-/* Whether a view is possible: its up and front are unit vectors at a right angle, and its angles are
+/* Returns whether a view is possible: its up and front are unit vectors at a right angle, and its angles are
  * finite. */
 bool hl_view_is_possible(const hl_view *view);
 

@@ -49,7 +49,7 @@ void hl_placed_cuts_release(hl_context *context, placed_cuts *made);
 /* Adds the shapes of cuts to a key. */
 void hl_cuts_key_add(hl_key *key, const cut_shape *cuts, size_t count);
 
-/* Whether two shapes are the same. */
+/* Returns whether two shapes are the same. */
 bool hl_cut_same(const cut_shape *a, const cut_shape *b);
 
 /* Returns whether no cut removes a point of the space on which the shapes' maps act. */
@@ -59,8 +59,8 @@ bool hl_cuts_leave(const cut_shape *cuts, size_t count, vec3 point);
  * one single cut removes all of it. */
 bool hl_cuts_remove_box(const cut_shape *cuts, size_t count, const double low[3], const double high[3]);
 
-/* Whether a box along the axes of the space on which the shapes' maps act is surely left, because no cut
- * removes any part of it. */
+/* Returns whether a box along the axes of the space on which the shapes' maps act is surely left, because no
+ * cut removes any part of it. */
 bool hl_cuts_leave_box(const cut_shape *cuts, size_t count, const double low[3], const double high[3]);
 
 #endif

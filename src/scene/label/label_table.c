@@ -78,7 +78,7 @@ static bool is_word(const char *text, size_t length, const char *word) {
   return strlen(word) == length && memcmp(text, word, length) == 0;
 }
 
-/* Whether a line is the header of a table with tabs, whose columns may be in any order. */
+/* Returns whether a line is the header of a table with tabs, whose columns may be in any order. */
 static bool read_header(const char *line, columns *found) {
   *found = (columns){-1, -1, -1};
   if (strchr(line, '\t') == NULL) return false;

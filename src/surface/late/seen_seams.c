@@ -10,7 +10,7 @@ static bool set_end(const fragments_source *source, uint32_t vertex, double at[2
   return hl_view_project(source->view, place, at);
 }
 
-/* Whether a triangle casts a shadow and lets no light through, and no cut may remove a part of it. */
+/* Returns whether a triangle casts a shadow and lets no light through, and no cut may remove a part of it. */
 static bool is_opaque_shade(const fragment_work *work, uint32_t triangle) {
   const surfaces *all = work->source->surfaces;
   size_t mesh = hl_surface_mesh_of(all, triangle);

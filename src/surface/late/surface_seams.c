@@ -68,7 +68,7 @@ static void add_edges(seam_search *search, uint32_t triangle) {
   }
 }
 
-/* Whether a cluster may hold a large triangle. */
+/* Returns whether a cluster may hold a large triangle. */
 static bool may_hold_large(const seam_search *search, const surface_cluster *cluster) {
   return hl_has_corners(search->all, cluster->first) &&
          vec3_length(vec3_subtract(hl_surface_vector(cluster->high), hl_surface_vector(cluster->low))) >

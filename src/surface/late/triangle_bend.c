@@ -38,8 +38,8 @@ static double bend_along(const bent_triangle *bent, vec3 along) {
   return -vec3_dot(turn, along);
 }
 
-/* Whether the surface bends the other way along one of the triangle's edges. If so, the triangle is rough, or
- * a saddle. */
+/* Returns whether the surface bends the other way along one of the triangle's edges. If so, the triangle is
+ * rough, or a saddle. */
 static bool bends_both_ways(const bent_triangle *bent, double bend) {
   for (int i = 0; i < 3; i++) {
     vec3 edge = vec3_subtract(bent->at[(i + 1) % 3], bent->at[i]),

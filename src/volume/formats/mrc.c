@@ -55,12 +55,12 @@ static double load_real(const mrc_header *header, int place) {
   return (double)value;
 }
 
-/* Whether a number is a mode that the pages of IMOD or CCP-EM list. */
+/* Returns whether a number is a mode that the pages of IMOD or CCP-EM list. */
 static bool is_mode(int64_t mode) {
   return (mode >= 0 && mode <= 4) || mode == 6 || mode == 12 || mode == 16 || mode == 101;
 }
 
-/* Whether the sizes and the mode are possible if they are read in this byte order. */
+/* Returns whether the sizes and the mode are possible if they are read in this byte order. */
 static bool is_possible(const unsigned char *bytes, bool big_endian) {
   for (int axis = 0; axis < 3; axis++)
     if ((int32_t)load_word(bytes + AT_SIZES + 4 * axis, big_endian) < 1) return false;
@@ -95,8 +95,8 @@ static hl_status read_header(hl_stream *stream, mrc_header *header, hl_error *er
   return HL_OK;
 }
 
-/* Whether the bytes of a file of mode 0 are unsigned. By the format they are signed, but IMOD writes unsigned
- * bytes, too. A file of IMOD has IMOD's stamp, and a flag says whether its bytes are signed. */
+/* Returns whether the bytes of a file of mode 0 are unsigned. By the format they are signed, but IMOD writes
+ * unsigned bytes, too. A file of IMOD has IMOD's stamp, and a flag says whether its bytes are signed. */
 static bool has_unsigned_bytes(const mrc_header *header) {
   enum { STAMP = 1146047817, SIGNED = 1 };
   return load_integer(header, AT_IMOD_STAMP) == STAMP && (load_integer(header, AT_IMOD_FLAGS) & SIGNED) == 0;

@@ -148,8 +148,8 @@ static const char *unit_of(const nifti_header *header) {
   return units[code & 7];
 }
 
-/* Whether the header's intent code says that values are labels (nifti1.h, NIFTI_INTENT_LABEL). ANALYZE has
- * another field at this place. */
+/* Returns whether the header's intent code says that values are labels (nifti1.h, NIFTI_INTENT_LABEL).
+ * ANALYZE has another field at this place. */
 static bool says_labels(const nifti_header *header) {
   enum { LABEL = 1002 };
   return !header->is_analyze && load_code(header, header->layout->intent) == LABEL;

@@ -14,7 +14,7 @@
 
 /* ---- which axes belong to the grid, which hold components, and where the grid lies ---- */
 
-/* Whether an axis is of components instead of voxels. */
+/* Returns whether an axis is of components instead of voxels. */
 static bool is_component_axis(const nrrd_header *header, const nrrd_axis *axis) {
   if (header->space.has_directions) return !axis->has_direction;
   int space = 0;
@@ -24,9 +24,9 @@ static bool is_component_axis(const nrrd_header *header, const nrrd_axis *axis) 
   return axis->kind[0] != 0 && !hl_text_is_one_of(axis->kind, "domain|space|none|???");
 }
 
-/* Whether the first axis is assumed to be of components although the file does not say so. This is the case
- * if the axis has at most four samples, the file states neither directions nor kinds of axes, and at least
- * four axes have several samples. */
+/* Returns whether the first axis is assumed to be of components although the file does not say so. This is
+ * the case if the axis has at most four samples, the file states neither directions nor kinds of axes, and at
+ * least four axes have several samples. */
 static bool is_first_of_components(const nrrd_header *header) {
   bool unsaid = header->axis[0].size <= 4 && !header->space.has_directions;
   int thick = 0;

@@ -164,8 +164,8 @@ static bool scan_vector(const char **cursor, double vector[3], bool *beyond) {
   return count >= 1;
 }
 
-/* Whether a vector is no direction in space. This is the case if it has no numbers, as some programs write in
- * place of "none", or if it runs only along a fourth axis, such as time. */
+/* Returns whether a vector is no direction in space. This is the case if it has no numbers, as some programs
+ * write in place of "none", or if it runs only along a fourth axis, such as time. */
 static bool is_no_direction(const double v[3], bool beyond) {
   return (isnan(v[0]) && isnan(v[1]) && isnan(v[2])) || (beyond && v[0] == 0 && v[1] == 0 && v[2] == 0);
 }

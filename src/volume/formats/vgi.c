@@ -35,7 +35,7 @@ static bool is_word_byte(unsigned char byte) {
   return is_digit(byte) || (byte >= 'a' && byte <= 'z') || (byte >= 'A' && byte <= 'Z');
 }
 
-/* Whether a file begins with a word in braces. In JSON a quotation mark follows the brace. */
+/* Returns whether a file begins with a word in braces. In JSON a quotation mark follows the brace. */
 static bool has_content(const unsigned char *bytes, size_t length) {
   size_t at = length >= 3 && memcmp(bytes, "\xef\xbb\xbf", 3) == 0 ? 3 : 0;
   while (at < length && hl_is_space((char)bytes[at])) at++;
@@ -51,7 +51,7 @@ static hl_status refuse(const vgi_header *header, const char *key, const char *v
                       hl_text_printable(shown, value));
 }
 
-/* Whether a part's name is `word` and a number. */
+/* Returns whether a part's name is `word` and a number. */
 static bool is_numbered(const char *name, const char *word) {
   return hl_text_starts(name, word) && is_digit((unsigned char)name[strlen(word)]);
 }

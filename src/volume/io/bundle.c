@@ -73,8 +73,8 @@ typedef struct folder_walk {
   size_t files, depth; /* number of entries of all kinds so far */
 } folder_walk;
 
-/* Whether a name below the folder is a regular file, which is reached without a link that leads out of the
- * folder. */
+/* Returns whether a name below the folder is a regular file, which is reached without a link that leads out
+ * of the folder. */
 static bool is_inside(const hl_bundle *bundle, const char *name, struct stat *about) {
   int file = hl_beneath_open(bundle->folder, name, O_PATH);
   bool inside = file >= 0 && fstat(file, about) == 0 && S_ISREG(about->st_mode);

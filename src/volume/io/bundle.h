@@ -62,8 +62,8 @@ hl_status hl_bundle_entry_open(const hl_bundle *bundle, const hl_bundle_entry *e
 /* Makes a bundle of a store on a server. Its files cannot be listed, but are found by their names. */
 hl_status hl_bundle_open_server(hl_context *context, const char *url, hl_bundle *bundle, hl_error *error);
 static inline bool hl_bundle_is_on_server(const hl_bundle *bundle) { return bundle->brought != NULL; }
-/* Whether the file, or its absence, is known from an earlier request, so that hl_bundle_find() does not need
- * the server. */
+/* Returns whether the file, or its absence, is known from an earlier request, so that hl_bundle_find() does
+ * not need the server. */
 bool hl_bundle_has_brought(const hl_bundle *bundle, const char *name);
 /* Fetches files of a server in one request. Files that were fetched before are left out. most: the greatest
  * length of a file in bytes. Only the caller's thread may call it. */
@@ -74,7 +74,7 @@ hl_status hl_bundle_bring(const hl_bundle *bundle, const char *const *names, siz
  * `most` bytes. Fails if a file has changed between two parts. Only the caller's thread may call it. */
 hl_status hl_bundle_bring_parts(const hl_bundle *bundle, const char *const *names,
                                 const hl_fetch_range *ranges, size_t count, uint64_t most, hl_error *error);
-/* Whether the server has this file, of which only parts were fetched. */
+/* Returns whether the server has this file, of which only parts were fetched. */
 bool hl_bundle_has_parts(const hl_bundle *bundle, const char *name);
 /* The first function gives the number of files that were fetched so far. The second forgets the files that
  * were fetched after the first `count`; no source of such a file may be open. */

@@ -76,14 +76,14 @@ hl_status hl_destination_open(hl_context *context, const hl_volume_description *
 #define CROWDED 0.25
 enum { LEAST_SPARSE = 4 << 20 };
 
-/* Whether floats may round numbers of the type, so that the numbers may be kept in an array beside the voxels
- * (exact.h). */
+/* Returns whether floats may round numbers of the type, so that the numbers may be kept in an array beside
+ * the voxels (exact.h). */
 static bool may_be_rounded(hl_voxel_type type) {
   return hl_voxel_type_storage(type) == HL_STORAGE_F32 && type != HL_VOXEL_F16 && type != HL_VOXEL_F32;
 }
 
-/* Whether memory has room for one array beside the sparse pages that are moved into it. Without a limit it is
- * the machine's memory: a file's header may name a volume beyond all memory. */
+/* Returns whether memory has room for one array beside the sparse pages that are moved into it. Without a
+ * limit it is the machine's memory: a file's header may name a volume beyond all memory. */
 static bool has_room_to_spread(const hl_context *context, double bytes) {
   const double limit = (double)context->options.memory_limit,
                taken = (double)atomic_load(&context->whole->held) +

@@ -40,7 +40,7 @@ hl_status hl_destination_open_sparse(hl_context *context, const hl_volume_descri
 static inline bool hl_destination_is_sparse(const hl_destination *destination) {
   return destination->pages != NULL && hl_pages_are_sparse(destination->pages);
 }
-/* Whether so many voxels were stored in sparse pages that one array should hold them. */
+/* Returns whether so many voxels were stored in sparse pages that one array should hold them. */
 bool hl_destination_is_crowded(const hl_destination *destination);
 /* Moves the voxels of sparse pages into one array, which also holds the value of voxels that are not stored.
  * No other thread may use the destination meanwhile. */
@@ -53,11 +53,11 @@ hl_status hl_destination_take(hl_destination *destination, size_t first, size_t 
                               hl_error *error);
 void hl_destination_put(hl_destination *destination, size_t first, size_t count, void *place);
 
-/* Whether any of these voxels is kept. Over ranks, voxels of other ranks are not kept, and need not be
- * read. */
+/* Returns whether any of these voxels is kept. Over ranks, voxels of other ranks are not kept, and need not
+ * be read. */
 bool hl_destination_wants(const hl_destination *destination, size_t first, size_t count);
 
-/* Whether voxels are not in one array in memory. Then hl_destination_store() must copy them to their
+/* Returns whether voxels are not in one array in memory. Then hl_destination_store() must copy them to their
  * places. */
 static inline bool hl_destination_is_apart(const hl_destination *destination) {
   return destination->voxels == NULL;

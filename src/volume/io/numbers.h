@@ -6,7 +6,7 @@
 #include "volume/io/text.h"
 #include "volume/volume.h"
 
-/* Whether a character may stand between numbers of a text. */
+/* Returns whether a character may stand between numbers of a text. */
 static inline bool hl_is_separator(unsigned char c) { return hl_is_space((char)c) || c == ','; }
 
 /* Reads the next number of a text. *found is set to false at the end. */

@@ -41,14 +41,14 @@ hl_status hl_stream_open_memory(hl_context *context, const char *path, const voi
                                 hl_stream **stream, hl_error *error);
 /* Replaces *stream by another file, whose name is relative to the folder of the file of *stream. */
 hl_status hl_stream_switch(hl_stream **stream, const char *name, hl_error *error);
-/* Whether the file of *stream can be read a second time, because it is a regular file or memory. */
+/* Returns whether the file of *stream can be read a second time, because it is a regular file or memory. */
 bool hl_stream_can_restart(const hl_stream *stream);
-/* Whether the stream is a regular file without any decoders on top of it. */
+/* Returns whether the stream is a regular file without any decoders on top of it. */
 bool hl_stream_is_plain_file(const hl_stream *stream);
 /* The descriptor of a plain file. */
 int hl_stream_descriptor(const hl_stream *stream);
-/* Whether the stream is the caller's memory without any decoders on top of it. *bytes, *length: set to this
- * memory. */
+/* Returns whether the stream is the caller's memory without any decoders on top of it. *bytes, *length: set
+ * to this memory. */
 bool hl_stream_memory(const hl_stream *stream, const unsigned char **bytes, size_t *length);
 /* Opens *stream's file again from the start. hl_stream_can_restart() must be true. */
 hl_status hl_stream_restart(hl_stream **stream, hl_error *error);

@@ -8,11 +8,12 @@
 
 enum { HL_NUMBER_CHARACTERS = 128, HL_PRINTABLE_BYTES = 64 };
 
-/* Whether a character is a space, tab, CR, LF, FF or VT. */
+/* Returns whether a character is a space, tab, CR, LF, FF or VT. */
 static inline bool hl_is_space(char c) { return c == ' ' || (c >= '\t' && c <= '\r'); }
 
 /* Converts all of [text, text + length) to a number, correctly rounded. Also accepts nan, inf and infinity in
- * upper or lower case. False if the text is no number or has HL_NUMBER_CHARACTERS or more characters. */
+ * upper or lower case. Returns false if the text is no number or has HL_NUMBER_CHARACTERS or more
+ * characters. */
 bool hl_text_number(const char *text, size_t length, double *value);
 
 /* Converts a whole text to a whole number. The text may also have the form 13.0 or 1e3. Returns false if it
@@ -31,14 +32,14 @@ bool hl_text_equal(const char *a, const char *b);
 bool hl_text_starts(const char *text, const char *prefix);
 bool hl_text_ends(const char *text, const char *suffix);
 
-/* Whether text equals one of the alternatives, which '|' separates: "data file|datafile". */
+/* Returns whether text equals one of the alternatives, which '|' separates: "data file|datafile". */
 bool hl_text_is_one_of(const char *text, const char *alternatives);
 
 /* Cuts white space from both ends, in place; returns the new start. */
 char *hl_text_trim(char *text);
 
-/* Takes the next word (up to white space) at *cursor, and moves *cursor past it. False if there is none or it
- * is too long. */
+/* Takes the next word (up to white space) at *cursor, and moves *cursor past it. Returns false if there is
+ * none or it is too long. */
 bool hl_text_word(const char **cursor, char *word, size_t capacity);
 
 /* Makes a text from outside fit for an error line: cuts it to the buffer, and replaces unprintable bytes by

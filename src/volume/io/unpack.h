@@ -7,9 +7,9 @@
 
 #include "core/error.h"
 
-/* Whether packed data of `length` bytes can unpack to `count` bytes. Callers ask this before they allocate
- * memory. For deflate data, the greatest possible ratio decides; for Blosc data, the size in the block's
- * header. */
+/* Returns whether packed data of `length` bytes can unpack to `count` bytes. Callers ask this before they
+ * allocate memory. For deflate data, the greatest possible ratio decides; for Blosc data, the size in the
+ * block's header. */
 bool hl_deflate_can_hold(size_t length, size_t count);
 bool hl_blosc_can_hold(const unsigned char *packed, size_t length, size_t count);
 
@@ -31,8 +31,8 @@ hl_status hl_unpack_bzip2(const char *path, const unsigned char *packed, size_t 
 hl_status hl_unpack_xz(const char *path, const unsigned char *packed, size_t length, void *bytes,
                        size_t count, bool *sound, hl_error *error);
 
-/* Whether `length` packed bytes can unpack to `count` bytes. ratio: the greatest number of bytes that one
- * packed byte can give. */
+/* Returns whether `length` packed bytes can unpack to `count` bytes. ratio: the greatest number of bytes that
+ * one packed byte can give. */
 static inline bool hl_packed_can_hold(size_t length, size_t count, size_t ratio) {
   return count / ratio <= length;
 }

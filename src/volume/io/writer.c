@@ -237,8 +237,8 @@ static hl_status make_vti(const char *path, const hl_volume_description *grid, h
 
 /* ---- MRC2014 (Cheng et al., J. Struct. Biol. 192, 2015, table 1) ---- */
 
-/* Whether the grid's axes have the directions that a crystal's cell has: the first one along X, the second
- * one in the plane of X and Y. */
+/* Returns whether the grid's axes have the directions that a crystal's cell has: the first one along X, the
+ * second one in the plane of X and Y. */
 static bool is_cell(const hl_volume_description *grid) {
   const double(*axis)[3] = grid->axis;
   double flat = 1e-6 * vec3_length(vec3_of(axis[0]));

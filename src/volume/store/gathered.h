@@ -10,7 +10,7 @@
 #include "core/error.h"
 #include "volume/volume.h"
 
-/* Whether all voxels are in this process's memory: in one array, or in sparse pages. */
+/* Returns whether all voxels are in this process's memory: in one array, or in sparse pages. */
 bool hl_volume_is_in_memory(const hl_volume *volume);
 
 /* Gets a volume whose voxels are in one array in memory. It is the map itself, or for a map over ranks or in

@@ -109,8 +109,8 @@ void hl_pages_store_box(hl_pages *pages, const size_t begin[3], const size_t cou
  * they are copied. Afterwards the pages can only be released. */
 void hl_pages_spread(hl_pages *pages, void *voxels);
 
-/* Whether none of `count` voxels from number `first` on ([k][j][i]) lies in a sparse page in which voxels
- * were stored. False for pages of another kind. */
+/* Returns whether none of `count` voxels from number `first` on ([k][j][i]) lies in a sparse page in which
+ * voxels were stored. Returns false for pages of another kind. */
 bool hl_pages_have_one_value(const hl_pages *pages, size_t first, size_t count);
 
 /* Returns whether a volume should be put into a scratch file. It should if its voxels, together with a

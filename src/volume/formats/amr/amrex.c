@@ -389,7 +389,7 @@ static hl_status read_level(plotfile *file, int level, hl_error *error) {
 
 /* ---- the whole ---- */
 
-/* Whether the folder has a Header of a plotfile. */
+/* Returns whether the folder has a Header of a plotfile. */
 static hl_status recognise(hl_bundle *bundle, bool *claimed, hl_error *error) {
   hl_source *source = NULL;
   const unsigned char *bytes;

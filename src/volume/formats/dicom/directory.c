@@ -12,7 +12,7 @@
 
 enum { REFERENCED_FILE = 0x00041500, NAME_BYTES = 512 };
 
-/* Whether the bundle's folder has a file of this name. */
+/* Returns whether the bundle's folder has a file of this name. */
 static bool is_there(const hl_bundle *bundle, const char *name) {
   char *path = hl_path_join(bundle->context, bundle->path, name);
   bool there = path != NULL && hl_file_kind(bundle->context, path) != 0;

@@ -30,8 +30,8 @@ static bool is_vr(const unsigned char *letters) {
   return letters[0] >= 'A' && letters[0] <= 'Z' && letters[1] >= 'A' && letters[1] <= 'Z';
 }
 
-/* Whether elements of a representation have two reserved bytes and a length of four bytes (PS3.5, table
- * 7.1-1). */
+/* Returns whether elements of a representation have two reserved bytes and a length of four bytes (PS3.5,
+ * table 7.1-1). */
 static bool is_long(uint16_t vr) {
   static const char names[] = "OBODOFOLOVOWSQSVUCUNURUTUV";
   for (size_t n = 0; n + 1 < sizeof names; n += 2)
@@ -39,8 +39,9 @@ static bool is_long(uint16_t vr) {
   return false;
 }
 
-/* Whether an element is a sequence that is to be read. In files without value representations, nothing marks
- * a sequence whose length is stated. Therefore the sequences that are needed are listed here. */
+/* Returns whether an element is a sequence that is to be read. In files without value representations,
+ * nothing marks a sequence whose length is stated. Therefore the sequences that are needed are listed
+ * here. */
 static bool is_wanted_sequence(uint32_t tag) {
   static const uint32_t tags[] = {
       0x52009229, 0x52009230, /* functional groups: shared, per frame */

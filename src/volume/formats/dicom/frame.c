@@ -78,8 +78,8 @@ static hl_status count_fragments(hl_source *source, const hl_dicom_pixels *p, ui
   }
 }
 
-/* Whether a fragment begins a new frame. This is the case if it begins with the first marker of JPEG or JPEG
- * 2000, and for every fragment of RLE. */
+/* Returns whether a fragment begins a new frame. This is the case if it begins with the first marker of JPEG
+ * or JPEG 2000, and for every fragment of RLE. */
 static hl_status begins_picture(hl_source *source, const hl_dicom_pixels *p, uint64_t at, bool *begins,
                                 hl_error *error) {
   const unsigned char *bytes;

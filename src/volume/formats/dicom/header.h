@@ -94,8 +94,8 @@ static inline size_t hl_dicom_read_samples(const hl_dicom_pixels *p) {
   return p->has_palette ? 3 : p->samples;
 }
 
-/* Whether bytes have the mark "DICM" (hl_dicom_has_mark()), or may begin a DICOM file with or without this
- * mark (hl_dicom_may_begin()). */
+/* Returns whether bytes have the mark "DICM" (hl_dicom_has_mark()), or may begin a DICOM file with or without
+ * this mark (hl_dicom_may_begin()). */
 bool hl_dicom_has_mark(const unsigned char *bytes, size_t length);
 bool hl_dicom_may_begin(const unsigned char *bytes, size_t length);
 

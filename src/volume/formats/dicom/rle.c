@@ -12,7 +12,8 @@ enum { HEADER_BYTES = 64, SEGMENTS_MOST = 15 };
 
 static const bool native_is_big_endian = __BYTE_ORDER__ == __ORDER_BIG_ENDIAN__;
 
-/* Unpacks a segment to `count` bytes that lie `step` bytes apart. False if the segment ends too early. */
+/* Unpacks a segment to `count` bytes that lie `step` bytes apart. Returns false if the segment ends too
+ * early. */
 static bool unpack(const unsigned char *bytes, size_t length, size_t count, size_t step, unsigned char *to) {
   size_t done = 0;
   for (size_t n = 0; done < count && n < length;) {

@@ -204,7 +204,7 @@ static void find_axes(sorting *s) {
   if (file_of(s, frame)->frames.is_backwards) s->normal = vec3_scale(s->normal, -1);
 }
 
-/* Whether all frames state their coordinate along the normal, and these coordinates differ. */
+/* Returns whether all frames state their coordinate along the normal, and these coordinates differ. */
 static bool have_locations(const sorting *s) {
   bool differ = false;
   for (size_t n = 0; n < s->count; n++) {
@@ -214,7 +214,7 @@ static bool have_locations(const sorting *s) {
   return differ;
 }
 
-/* Whether there are several frames, which all have the same position. */
+/* Returns whether there are several frames, which all have the same position. */
 static bool all_at_one_place(const sorting *s) {
   for (size_t n = 1; n < s->count; n++)
     for (int axis = 0; axis < 3; axis++)
@@ -381,9 +381,9 @@ static double median_step(const sorting *s) {
   return median;
 }
 
-/* Whether positions are evenly spaced, where some may be missing: the distance of each from the first is a
- * whole multiple of one step. step: the step, approximately. *slices: set to the number of slices without
- * gaps. */
+/* Returns whether positions are evenly spaced, where some may be missing: the distance of each from the first
+ * is a whole multiple of one step. step: the step, approximately. *slices: set to the number of slices
+ * without gaps. */
 static bool is_even(const sorting *s, double step, size_t *slices) {
   const double TOLERANCE = 0.05; /* in parts of a step */
   double span = s->places[s->place_count - 1] - s->places[0], steps = 0;

@@ -18,8 +18,8 @@ typedef struct hl_dicom_slice {
 
 typedef struct hl_dicom_stack {
   hl_context *context;
-  const hl_dicom_frame **frames; /* owned; [place_count][times]; for segmentations: null where a segment has
-                                  * no frame at the position */
+  const hl_dicom_frame **frames; /* owned; [place_count][times]; for segmentations: null if a segment has no
+                                  * frame at the position */
   size_t place_count, times;
   const hl_dicom_segments *segments; /* for a segmentation whose frames show one segment each: its segments,
                                       * whose number is `times`; else null */

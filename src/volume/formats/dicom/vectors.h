@@ -30,7 +30,7 @@ size_t hl_dicom_vectors_slice(const hl_dicom_vectors *vectors, size_t frame);
 /* A number that is the same for all frames of a volume, and greater for each later volume. NAN if no vector
  * tells volumes apart. */
 double hl_dicom_vectors_volume(const hl_dicom_vectors *vectors, size_t frame);
-/* Whether the frames are projections from several directions instead of slices. */
+/* Returns whether the frames are projections from several directions instead of slices. */
 bool hl_dicom_vectors_are_projections(const hl_dicom_vectors *vectors);
 
 #endif

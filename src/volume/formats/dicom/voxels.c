@@ -282,7 +282,7 @@ static hl_status read_slices(reading *r, hl_error *error) {
                           r->stack->grid.dimensions[2], read_one, r, error);
 }
 
-/* Whether any slice has padding. Over ranks: whether any rank has such a slice. */
+/* Returns whether any slice has padding. Over ranks: whether any rank has such a slice. */
 static bool any_padded(const reading *r) {
   uint64_t padded = r->padded;
   if (r->to.own != NULL) hl_ranks_sum_counts(r->set->context->ranks, &padded, 1);

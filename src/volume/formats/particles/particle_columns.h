@@ -48,7 +48,7 @@ hl_particle_role hl_particle_role_of(const char *name);
 /* Adds a column by its name. Columns beyond HL_PARTICLE_COLUMNS_MOST are left out. */
 void hl_particle_columns_add(hl_particle_columns *columns, const char *name);
 
-/* Whether there are x, y and z. */
+/* Returns whether there are x, y and z. */
 bool hl_particle_columns_are_places(const hl_particle_columns *columns);
 
 /* Adds the particle of a line. The text of the line is changed. number: the line's number, for errors. */

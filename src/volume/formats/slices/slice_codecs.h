@@ -35,7 +35,7 @@ hl_status hl_slice_read_jpeg(const hl_slice_file *file, hl_slice_shape *shape, u
 hl_status hl_slice_read_tiff(const hl_slice_file *file, hl_slice_shape *shape, int component, void *voxels,
                              hl_error *error);
 
-/* Whether a file has the name of a file of bare voxels. */
+/* Returns whether a file has the name of a file of bare voxels. */
 bool hl_slice_is_raw(const char *name);
 /* Reads bare voxels. If voxels is null, finds only the shape. */
 hl_status hl_slice_read_raw(const hl_slice_file *file, hl_slice_shape *shape, void *voxels, hl_error *error);

@@ -5,8 +5,8 @@
 
 #include "volume/formats/tiff/tiff.h"
 
-/* Whether the content is TIFF. DICOM files may begin as TIFF files do, so that one file is both (PS3.10,
- * 7.1); such files are left to the DICOM reader. */
+/* Returns whether the content is TIFF. DICOM files may begin as TIFF files do, so that one file is both
+ * (PS3.10, 7.1); such files are left to the DICOM reader. */
 static bool has_content(const unsigned char *bytes, size_t length) {
   if (length >= 132 && memcmp(bytes + 128, "DICM", 4) == 0) return false;
   return length >= 4 && (memcmp(bytes, "II*\0", 4) == 0 || memcmp(bytes, "MM\0*", 4) == 0 ||

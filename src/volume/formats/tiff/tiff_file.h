@@ -59,8 +59,8 @@ hl_status tiff_file_pages(tiff_file *file, uint64_t **offsets, size_t *count, hl
  * each other, and have samples of whole bytes. *bytes: set to the size of a slice. */
 uint64_t tiff_file_plain(tiff_file *file, const tiff_shape *shape, uint64_t *bytes);
 
-/* Whether the file is long enough for the current page, if its compression has reached the greatest possible
- * ratio. */
+/* Returns whether the file is long enough for the current page, if its compression has reached the greatest
+ * possible ratio. */
 bool tiff_file_can_hold(tiff_file *file, const tiff_shape *shape);
 
 /* Where the voxels of a page are put, and how they are read. */

@@ -79,7 +79,7 @@ static hl_status keep_brick(void *data, size_t number, int worker, hl_error *err
   return slot < 0 ? HL_OK : read_brick(r, number, box, r->bricks->pool + (size_t)slot * COEFFICIENTS, error);
 }
 
-/* Gives slots of the pool to the bricks that are not constant. False if a dense volume is better. */
+/* Gives slots of the pool to the bricks that are not constant. Returns false if a dense volume is better. */
 static bool number_slots(hl_bricks *bricks, const size_t size[3], size_t entries) {
   for (size_t n = 0; n < entries; n++)
     if (bricks->directory[n].slot >= 0) bricks->directory[n].slot = (int32_t)bricks->slots++;

@@ -48,7 +48,7 @@ hl_status hl_cell_mesh_set_values(hl_cell_mesh *mesh, const double *values, size
 hl_status hl_cell_mesh_finish(hl_cell_mesh *mesh, hl_volume **volume, hl_error *error);
 void hl_cell_mesh_release(hl_cell_mesh *mesh);
 
-/* Whether VTK's number of a cell type stands for cells that enclose a volume and can be read. */
+/* Returns whether VTK's number of a cell type stands for cells that enclose a volume and can be read. */
 bool hl_cell_kind_is_read(double type);
 
 #endif

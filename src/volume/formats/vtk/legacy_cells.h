@@ -6,7 +6,7 @@
 #include "volume/formats/format.h"
 #include "volume/io/stream.h"
 
-/* Whether a DATASET of this kind is a grid of cells. */
+/* Returns whether a DATASET of this kind is a grid of cells. */
 bool hl_legacy_is_of_cells(const char *kind);
 
 /* Reads the file from its start as a volume of sampled cells (cell_mesh.h). The parameters are those of

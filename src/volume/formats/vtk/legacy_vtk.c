@@ -34,7 +34,7 @@ typedef struct vtk_header {
   size_t arrays; /* number of arrays met so far in this pass that can hold the volume */
 } vtk_header;
 
-/* Whether this pass stops at the array with the index `index`. */
+/* Returns whether this pass stops at the array with the index `index`. */
 static bool is_wanted(const vtk_header *header, const hl_legacy_array *array, size_t index) {
   const hl_load_request *request = header->request;
   if (!header->lists) return index == request->chosen;
@@ -149,7 +149,7 @@ static void release(vtk_header *header) {
   }
 }
 
-/* Whether an error can be ignored, as a suitable array was listed before it. */
+/* Returns whether an error can be ignored, as a suitable array was listed before it. */
 static bool is_enough(const hl_load_request *request, hl_status status) {
   if (status != HL_ERROR_INPUT && status != HL_ERROR_UNSUPPORTED) return false;
   for (size_t n = 0; n < request->array_count; n++)

@@ -29,11 +29,11 @@ typedef struct hl_vtk_array {
                    * appended data */
 } hl_vtk_array;
 
-/* Whether a file that starts with these bytes is an XML file, of VTK or any other kind. */
+/* Returns whether a file that starts with these bytes is an XML file, of VTK or any other kind. */
 bool hl_vtk_xml_has_content(const unsigned char *bytes, size_t length);
 
-/* Whether these bytes, with which a file starts, are XML and name one of these types of VTK. types: [count],
- * such as "ImageData". */
+/* Returns whether these bytes, with which a file starts, are XML and name one of these types of VTK. types:
+ * [count], such as "ImageData". */
 bool hl_vtk_xml_is_of(const unsigned char *bytes, size_t length, const char *const types[], size_t count);
 
 /* Reads the tags up to the appended data, or to the file's end, and calls the function for each of them. */

@@ -189,7 +189,7 @@ int hl_volume_reads_cells(hl_context *context, const char *path) {
   return found;
 }
 
-/* Whether the first tag says that the file is an unstructured or a curvilinear grid. */
+/* Returns whether the first tag says that the file is an unstructured or a curvilinear grid. */
 static bool has_content(const unsigned char *bytes, size_t length) {
   return hl_vtk_xml_is_of(bytes, length, types, TYPES);
 }

@@ -31,7 +31,8 @@ hl_status hl_zarr_chunk_read(hl_zarr_unpacker *unpacker, hl_source *source, uint
 
 /* The CRC32C of RFC 3720, section 12.1. */
 uint32_t hl_zarr_crc32c(const unsigned char *bytes, size_t length);
-/* Whether the last four bytes are the CRC32C of all bytes before them, least significant byte first. */
+/* Returns whether the last four bytes are the CRC32C of all bytes before them, least significant byte
+ * first. */
 bool hl_zarr_check_sum(const unsigned char *bytes, size_t length);
 
 #endif

@@ -21,7 +21,7 @@ hl_status hl_zarr_fail(const hl_bundle *bundle, const char *folder, hl_error *er
   return hl_fail(error, code, "%s%s%s: %s", bundle->path, shown[0] != 0 ? ", " : "", shown, text);
 }
 
-/* Whether a name cannot lead out of its folder: no part of it is empty or "..". */
+/* Returns whether a name cannot lead out of its folder: no part of it is empty or "..". */
 static bool stays_inside(const char *name) {
   for (const char *part = name; part != NULL; part = strchr(part, '/')) {
     part += part != name;

@@ -84,7 +84,7 @@ static hl_status count_parts(reading *r, hl_error *error) {
   return HL_OK;
 }
 
-/* Finds the place of a part. False if the part lies beyond the array's end. */
+/* Finds the place of a part. Returns false if the part lies beyond the array's end. */
 static bool place_part(const reading *r, uint64_t number, part *p) {
   const hl_zarr_array *array = r->array;
   uint64_t inner[3], file[3];
@@ -256,7 +256,7 @@ static hl_status find_chunk(const reading *r, const worker *w, const part *p, ui
              : hl_zarr_fail(r->bundle, w->key, error, HL_ERROR_INPUT, "a chunk lies outside of its shard");
 }
 
-/* Whether any of a part's voxels is kept here. */
+/* Returns whether any of a part's voxels is kept here. */
 static bool wants_part(const reading *r, const part *p) {
   uint64_t slice = r->size[0] * r->size[1];
   return hl_destination_wants(r->to, p->begin[2] * slice, p->count[2] * slice);
@@ -290,7 +290,8 @@ enum { FILES_AT_A_TIME = 64 };
 
 static uint64_t parts_of_file(const reading *r) { return r->inner[0] * r->inner[1] * r->inner[2]; }
 
-/* Whether shards have chunks that are not read: those of other times or channels, or of other ranks. */
+/* Returns whether shards have chunks that are not read: those of other times or channels, or of other
+ * ranks. */
 static bool reads_parts_of_shards(const reading *r) {
   return r->array->shards.are_used && (parts_of_file(r) < r->array->shards.chunks || r->to->own != NULL);
 }
@@ -308,8 +309,8 @@ static uint64_t longest_file(const hl_zarr_array *array) {
   return __builtin_mul_overflow(chunk, array->shards.chunks, &length) ? UINT64_MAX : length + 64;
 }
 
-/* Whether any voxel of a file is kept by this process. number: the number of the file's first part. place:
- * set to the place of one of the file's parts. */
+/* Returns whether any voxel of a file is kept by this process. number: the number of the file's first part.
+ * place: set to the place of one of the file's parts. */
 static bool wants_file(const reading *r, uint64_t number, part *place) {
   for (uint64_t n = 0; n < parts_of_file(r); n++)
     if (place_part(r, number + n, place) && wants_part(r, place)) return true;
