@@ -1,5 +1,5 @@
-/* bricks/bricks.h - a field at levels: bricks of B-spline coefficients, each brick at the spacing that its
- * place needs.
+/* bricks/bricks.h - a field in bricks: blocks of B-spline coefficients. Each brick has the spacing of
+ * coefficients that its place needs.
  *
  * The lattice. Coefficient i of level l stands at x = 2^l i along each axis, in voxels of level 0. The field
  * is f(x) = sum_i c[l][i] beta(x / 2^l - i), where beta is the cubic B-spline. Every second point of level l
@@ -14,8 +14,8 @@
  * A volume whose field is bricks also has a grid of voxels, which sets the volume's box, its framing and the
  * size of saved files. Voxel (0,0,0) stands at the lattice coordinates `origin`, and the distance between
  * voxels is one. The box reaches from half a voxel before the first voxel to half a voxel behind the last
- * one. Where a source's cells have their corners at the lattice points, the voxels are these cells, and the
- * origin is 1/2. Where voxels stand at the lattice points, as in some sparse files, the origin is a whole
+ * one. If a source's cells have their corners at the lattice points, the voxels are these cells, and the
+ * origin is 1/2. If voxels stand at the lattice points, as in some sparse files, the origin is a whole
  * number. Beyond the directory's faces, the field keeps its values at the faces.
  *
  * In:  the builders of fields (meshes of cells, adaptive grids, particles, sparse files) make the bricks.
@@ -28,7 +28,7 @@
 #include <stdint.h>
 
 enum {
-  BRICK_MARGIN = 3,       /* number of coefficients of a brick along an axis, less its number of cells along
+  BRICK_MARGIN = 3,       /* number of coefficients of a brick along an axis, minus its number of cells along
                            * the axis */
   BRICK_LEVELS_LIMIT = 16 /* the most levels of a field */
 };

@@ -1,4 +1,4 @@
-/* bricks/build.c - hl_bricks_build(): the coefficients of each brick.
+/* bricks/build.c - hl_bricks_build(): finds the coefficients of each brick of a field.
  *
  * A brick's coefficients that are not active are subdivided from the coefficients of the next coarser level,
  * which are found by the same rule. So each brick is made by itself, from the source alone, and the order of
@@ -21,7 +21,8 @@ enum {
 typedef struct builder {
   const hl_bricks_source *source;
   const hl_bricks_leaf *leaves;
-  hl_bricks *bricks; /* with a filled directory; its pool has room for the coefficients of each leaf */
+  hl_bricks *bricks; /* the bricks, with a filled directory; the pool has room for the coefficients of each
+                      * leaf */
   hl_pool *pool;
   float *scratch; /* owned; [threads][scratch_floats] */
   size_t scratch_floats;

@@ -35,7 +35,7 @@ typedef struct hl_bricks_source {
    * levels around its border. The function is called from all threads, and must give the same number for a
    * point in every call. */
   void (*fill)(void *data, int level, const ptrdiff_t first[3], const size_t count[3], float *out);
-  /* Says which cells have data, for sources whose data do not end at the borders of bricks. May be null. For
+  /* Tells which cells have data, for sources whose data do not end at the borders of bricks. May be null. For
    * each of the cells first .. first + count - 1 of a level, the function sets an element of covered,
    * [count[2]][count[1]][count[0]]: to 1 where there are data of this level or of a finer level, else to 0. A
    * coefficient is then active only if its cells i - 2 .. i + 1 are all covered. The function is called from
@@ -51,10 +51,11 @@ static inline size_t brick_points(int shift) {
   return side * side * side;
 }
 
-/* Says, for hl_bricks_choose(), what a brick of a level becomes: nothing, a leaf, or eight finer bricks. */
+/* Tells hl_bricks_choose() whether a brick of a level is left out, becomes a leaf, or is split into eight
+ * finer bricks. */
 typedef enum hl_bricks_choice { HL_BRICKS_NOTHING, HL_BRICKS_LEAF, HL_BRICKS_SPLIT } hl_bricks_choice;
 
-/* Lists leaves by descending from the bricks of the coarsest level: `choose` is called for a brick and says
+/* Lists leaves by descending from the bricks of the coarsest level: `choose` is called for a brick and tells
  * whether it is a leaf, is split into the eight bricks of the next finer level, or is left out. A brick of
  * level 0 that `choose` would split is a leaf. source: its `fill` may be null. *leaves is in the order of the
  * descent, and is owned by the caller (hl_release). Fails for lack of memory, also where the memory limit has

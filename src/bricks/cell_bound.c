@@ -1,15 +1,15 @@
-/* bricks/cell_bound.c - see cell_bound.h.
+/* bricks/cell_bound.c - bounds the difference between a field and its mesh of cells (cell_bound.h).
  *
  * Derived: let L be an affine function that is near the mesh's values in one of its cells. A spline whose
  * coefficients are the values of L is L itself. Therefore field - L is the spline of the differences c_i -
  * L(x_i). In one lattice cell this spline is a polynomial, which lies between the least and the greatest of
- * its Bezier coefficients. In a tetrahedron the mesh's values equal L. In a hexahedron places and values are
- * means of the corners' with the same weights, so values - L is such a mean, too, and lies between the
+ * its Bezier coefficients. In a tetrahedron the mesh's values equal L. In a hexahedron, positions and values
+ * are means over the corners, with the same weights. So values - L is such a mean, too, and lies between the
  * differences at the corners. The intervals of field - L and values - L together bound field - values.
  *
- * Where the bound of a lattice cell is greater than the greatest found so far, the lattice cell is halved
- * along each axis, up to HALVINGS times. Halves that lie beyond the mesh's cell are left out, which makes the
- * bound tighter. */
+ * If the bound of a lattice cell is greater than the greatest bound so far, the lattice cell is halved along
+ * each axis, up to HALVINGS times. Halves that lie beyond the mesh's cell are left out, which makes the bound
+ * tighter. */
 #include "bricks/cell_bound.h"
 
 #include <math.h>

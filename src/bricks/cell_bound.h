@@ -1,8 +1,7 @@
-/* bricks/cell_bound.h - a bound of the difference between a field in bricks and the mesh of cells that it was
- * sampled from.
+/* bricks/cell_bound.h - finds a bound of the difference between a field in bricks and the mesh of cells from
+ * which it was sampled.
  *
- * In:  the mesh, and the field that cells.c made of it.
- * Out: a number that the difference exceeds nowhere. */
+ * In:  the mesh, and the field that cells.c made of it. Out: a number that the difference exceeds nowhere. */
 #ifndef HL_BRICKS_CELL_BOUND_H
 #define HL_BRICKS_CELL_BOUND_H
 

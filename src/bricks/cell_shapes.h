@@ -26,7 +26,7 @@ typedef struct hl_cells {
   size_t cell_count;
 } hl_cells;
 
-/* Where a field's lattice stands: point i of level 0 is at origin + spacing * i along each axis. */
+/* The place of a field's lattice: point i of level 0 is at origin + spacing * i along each axis. */
 typedef struct hl_cells_place {
   double origin[3], spacing[3];
   double error; /* the greatest difference between the field and the mesh's values, in the units of the

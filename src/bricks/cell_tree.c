@@ -12,7 +12,7 @@ static float middle(const hl_cell_box *box, int axis) { return box->low[axis] + 
 
 /* The cells of node `n` of a level are order[begin .. end). */
 static size_t range_begin(const hl_cell_tree *tree, int level, size_t n) {
-  /* this is n count / 2^level; it does not overflow, because counts are below 2^32 */
+  /* the product n count does not overflow, because counts are below 2^32 */
   return (size_t)(((uint64_t)n * (uint64_t)tree->count) >> level);
 }
 

@@ -1,4 +1,4 @@
-/* bricks/cells.c - see cells.h.
+/* bricks/cells.c - samples a mesh of cells to bricks (cells.h).
  *
  * Each cell has a level, which depends on the length of its edge. A brick is split where it may meet a cell
  * of a finer level. A lattice point's coefficient is the value of the cell around it; a tree finds the cells
@@ -17,10 +17,9 @@ enum { SHIFT = 4, SIDE = 1 << SHIFT, STORED = SIDE + BRICK_MARGIN, LEVELS_MOST =
 
 /* The wanted number of lattice points along a cell's edge. */
 static const double POINTS_OF_AN_EDGE = 2;
-/* The finest spacing follows from the edge of a small cell. This fraction of the cells may have shorter edges
- * than that cell. */
+/* The finest spacing is chosen so that this fraction of the cells has edges too short for it. */
 static const double FINEST_PART = 0.01;
-/* The most bytes that bricks take where there is no memory limit. */
+/* The greatest number of bytes that bricks take if there is no memory limit. */
 static const double BYTES_MOST = 1073741824.0;
 /* Cells with a corner at this distance from the origin, or farther, are left out. */
 static const double FARTHEST = 1e30;
@@ -195,7 +194,7 @@ typedef struct fill_job {
 } fill_job;
 
 /* Sets the points of the box that lie in a cell of the mesh. It is called for all cells that may hold such
- * points. Where several cells hold a point, the last one in the tree's order sets it. */
+ * points. If several cells hold a point, the last of these cells in the tree's order sets it. */
 static bool fill_from_cell(void *data, uint32_t n) {
   const fill_job *job = data;
   const hl_cell *cell = &job->field->cells->cells[n];

@@ -15,8 +15,8 @@
 #include "bricks/cell_shapes.h"
 
 /* Makes the field. Corners must be below point_count. Voxels are the lattice points of level 0. The finest
- * spacing is made coarser where bricks would need more than a quarter of the context's memory limit, or more
- * than 2^30 bytes; a warning then says so. *bricks is empty on failure. subject: starts error lines. */
+ * spacing is made coarser if bricks would need more than a quarter of the context's memory limit, or more
+ * than 2^30 bytes. A warning then tells this. *bricks is empty on failure. subject: starts error lines. */
 hl_status hl_cells_build(hl_context *context, hl_pool *pool, const hl_cells *cells, const char *subject,
                          hl_bricks *bricks, hl_cells_place *place, hl_error *error);
 

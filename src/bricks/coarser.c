@@ -1,4 +1,5 @@
-/* bricks/coarser.c - see coarser.h. The builder makes the new field, so that its borders are smooth, too. */
+/* bricks/coarser.c - makes a coarser field (coarser.h). The builder of bricks makes it, so that the borders
+ * between its bricks are smooth, too. */
 #include "bricks/coarser.h"
 
 #include "bricks/evaluate.h"
@@ -9,7 +10,7 @@ typedef struct coarsening {
   hl_bricks_source source;
 } coarsening;
 
-/* The coefficient at a point of a level of the new field. It is the coefficient of the old brick where this
+/* The coefficient at a point of a level of the new field. It is the coefficient of the old brick if this
  * brick has the same spacing, else the old field's value. */
 static float number_at(const hl_bricks *fine, int level, const ptrdiff_t point[3]) {
   int64_t block[3];

@@ -1,4 +1,5 @@
-/* bricks/coarser.h - a field in bricks without its finest level, for pictures that cannot show that level. */
+/* bricks/coarser.h - makes a field in bricks without its finest level, for pictures that cannot show this
+ * level. */
 #ifndef HL_BRICKS_COARSER_H
 #define HL_BRICKS_COARSER_H
 

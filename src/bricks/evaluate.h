@@ -1,4 +1,5 @@
-/* bricks/evaluate.h - a field in bricks at single places: coefficients of level 0, values, ranges.
+/* bricks/evaluate.h - evaluates a field in bricks at single places: finds coefficients of level 0, values and
+ * ranges.
  *
  * The whole field is one B-spline of level 0, because the B-splines of each level are sums of B-splines of
  * the next finer level. Its coefficients are the coefficients of the bricks of level 0, and subdivided

@@ -1,4 +1,5 @@
-/* bricks/inverse.c - see inverse.h. Hexahedra are solved by Newton's method. */
+/* bricks/inverse.c - finds a point's place within a cell (inverse.h). For hexahedra it is found by Newton's
+ * method. */
 #include "bricks/inverse.h"
 
 #include <math.h>
@@ -136,8 +137,8 @@ bool hl_cell_weights(const hl_cell_shape *shape, const double point[3], double w
     for (int axis = 0; axis < 3; axis++) {
       double change = 0;
       for (int row = 0; row < 3; row++) change += inverse[axis][row] * (point[row] - value[row]);
-      at[axis] = fmin(fmax(at[axis] + change, -1), 2); /* keeps the iteration near the cell; points beyond lie
-                                                        * outside */
+      at[axis] = fmin(fmax(at[axis] + change, -1), 2); /* keeps the iteration near the cell; a point that
+                                                        * needs a greater step lies outside of the cell */
       step = fmax(step, fabs(change));
     }
   }

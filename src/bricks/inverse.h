@@ -1,4 +1,5 @@
-/* bricks/inverse.h - where a point lies within a cell: the inverse of the map from a unit cell. */
+/* bricks/inverse.h - finds where a point lies within a cell, by the inverse of the map from a unit cell to
+ * the cell. */
 #ifndef HL_BRICKS_INVERSE_H
 #define HL_BRICKS_INVERSE_H
 
@@ -9,7 +10,7 @@
 typedef struct hl_cell_shape {
   bool is_tetrahedron;
   double corner[8][3];
-  double inverse[3][3]; /* of a tetrahedron: maps the vector from the first corner to a point to the point's
+  double inverse[3][3]; /* for a tetrahedron: maps the vector from the first corner to a point to the point's
                          * weights */
 } hl_cell_shape;
 
@@ -26,7 +27,7 @@ bool hl_cell_weights(const hl_cell_shape *shape, const double point[3], double w
 typedef struct hl_cell_affine {
   double middle[3];   /* the mean of the corners */
   double value;       /* the function's, at `middle` */
-  double slope[3];    /* the function's, along x, y, z */
+  double slope[3];    /* the slopes of the function along x, y, z */
   double place[3][3]; /* slopes, along x, y, z, of the cell's three unit coordinates; in a hexahedron, the
                        * slopes in its middle */
 } hl_cell_affine;

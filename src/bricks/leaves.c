@@ -1,6 +1,7 @@
 /* bricks/leaves.c - hl_bricks_choose(): lists leaves by a descent from the coarsest bricks.
  *
- * In: a function that says what becomes of a brick. Out: a list for hl_bricks_build(). */
+ * In: a function that tells whether a brick is left out, is a leaf, or is split. Out: a list for
+ * hl_bricks_build(). */
 #include "bricks/build.h"
 #include "core/context.h"
 #include "core/memory.h"
@@ -13,7 +14,7 @@ typedef struct descent {
   hl_bricks_leaf *leaves; /* owned; [room] */
   size_t count, room;
   size_t visited; /* bricks that the descent has visited */
-  size_t most;    /* leaves whose coefficients the memory limit has room for */
+  size_t most;    /* the number of leaves whose coefficients fit into the memory limit */
   hl_error *error;
 } descent;
 
@@ -38,7 +39,7 @@ static size_t bricks_along(const hl_bricks_source *source, int level, int axis) 
 }
 
 static hl_status descend(descent *d, int level, const size_t brick[3]) {
-  enum { BRICKS_AT_ONCE = 1024 }; /* bricks between two questions whether the call was cancelled */
+  enum { BRICKS_AT_ONCE = 1024 }; /* number of bricks between two checks for cancellation */
   if (d->visited++ % BRICKS_AT_ONCE == 0 && hl_cancelled(d->context))
     return hl_fail(d->error, HL_ERROR_CANCELLED, "cancelled");
   for (int axis = 0; axis < 3; axis++)

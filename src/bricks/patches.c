@@ -1,4 +1,4 @@
-/* bricks/patches.c - see patches.h.
+/* bricks/patches.c - makes a field of an adaptive grid (patches.h).
  *
  * Each level has a table of its blocks, by a hash of their coordinates. */
 #include "bricks/patches.h"
@@ -54,7 +54,8 @@ void hl_patches_destroy(hl_patches *patches) {
 
 /* ---- blocks ---- */
 
-/* The place of a block in a table: where the block is, or where it would be put. */
+/* The place of a block in a table. If the table does not have the block, it is the place where the block
+ * would be put. */
 static size_t place_of(const block_table *table, const uint32_t at[3]) {
   uint64_t hash = at[0] * 0x9e3779b97f4a7c15u + at[1] * 0xbf58476d1ce4e5b9u + at[2] * 0x94d049bb133111ebu;
   hash ^= hash >> 29;

@@ -1,9 +1,10 @@
-/* bricks/patches.h - adaptive grids: patches of cells at levels of refinement, as a field at levels.
+/* bricks/patches.h - converts adaptive grids, which are patches of cells at levels of refinement, to a field
+ * in bricks.
  *
  * A cell's value is the mean over the cell. The field's coefficients stand at the corners of cells, because
  * every corner of a coarse cell is a corner of a finer cell, too. A coefficient is a weighted mean of the
- * cells around its corner. Where finer patches cover a cell, its value is the mean of the finer cells. Beyond
- * a domain's faces the values of the cells along the faces continue.
+ * cells around its corner. If finer patches cover a cell, its value is the mean of the finer cells. Beyond a
+ * domain's faces the values of the cells along the faces continue.
  *
  * In:  boxes of cells with values (readers of files, arrays of callers). Out: hl_bricks whose level 0 is the
  * finest level of refinement. */
@@ -12,7 +13,7 @@
 
 #include "bricks/build.h"
 
-/* All cells that have values, at all levels. They lie in blocks of 8^3 cells, which are made where a patch
+/* All cells that have values, at all levels. They lie in blocks of 8^3 cells, which are made when a patch
  * needs them. */
 typedef struct hl_patches hl_patches;
 

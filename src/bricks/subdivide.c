@@ -1,4 +1,4 @@
-/* bricks/subdivide.c - see subdivide.h. The three axes are done one after the other. */
+/* bricks/subdivide.c - subdivides coefficients (subdivide.h), along one axis after the other. */
 #include "bricks/subdivide.h"
 
 /* i / 2, rounded down. */

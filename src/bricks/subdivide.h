@@ -1,11 +1,11 @@
-/* bricks/subdivide.h - the coefficients of a level from those of the next coarser level: the same field on a
- * lattice twice as fine.
+/* bricks/subdivide.h - finds the coefficients of a level from the coefficients of the next coarser level.
+ * They describe the same field on a lattice twice as fine.
  *
  * Along each axis, with the coarse coefficients d: coefficient 2j is (d[j-1] + 6 d[j] + d[j+1]) / 8, and
  * coefficient 2j + 1 is (d[j] + d[j+1]) / 2 (J. Lane, R. Riesenfeld, A theoretical development for the
  * computer generation and display of piecewise polynomial surfaces, 1980). A coefficient that is NaN stands
- * for a place without data. It is left out of the sums. Where all coefficients of a sum are left out, the
- * result is NaN. */
+ * for a place without data. It is left out of the sums. If all coefficients of a sum are left out, the result
+ * is NaN. */
 #ifndef HL_BRICKS_SUBDIVIDE_H
 #define HL_BRICKS_SUBDIVIDE_H
 
@@ -28,7 +28,7 @@ hl_lattice_box hl_subdivision_source(const hl_lattice_box *box);
 size_t hl_subdivision_scratch(const hl_lattice_box *box);
 
 /* Fills a box, [z][y][x], with subdivided coefficients. coarse: the coefficients of the box
- * hl_subdivision_source(box), [z][y][x]. Where all coefficients are one number, the result is exactly this
+ * hl_subdivision_source(box), [z][y][x]. If all coefficients are the same number, the result is exactly this
  * number. */
 void hl_subdivide(const hl_lattice_box *box, const float *coarse, float *scratch, float *fine);
 

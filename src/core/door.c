@@ -1,6 +1,7 @@
-/* core/door.c - see door.h. To read and write the whole floating-point environment takes about a hundred
- * nanoseconds, which is too long in functions that hosts call for each voxel. On x86 two control words tell
- * in a few nanoseconds whether anything must be changed. One of them also has the flags. */
+/* core/door.c - sets and restores the floating-point environment (door.h). Reading and writing the whole
+ * environment takes about a hundred nanoseconds, which is too long in functions that hosts call for each
+ * voxel. On x86, two control words tell in a few nanoseconds whether anything must be changed. One of the two
+ * words also has the flags. */
 #include "core/door.h"
 
 #if defined(__x86_64__)

@@ -14,7 +14,8 @@
 #include <stdbool.h>
 
 typedef struct hl_door {
-  fenv_t host;         /* the host's floating-point environment, saved completely where `changed` is set */
+  fenv_t host;         /* the host's floating-point environment; it is saved completely only if `changed` is
+                        * set */
   unsigned int vector; /* on x86: the host's value of MXCSR, the control and status register for vectors */
   bool changed;
 } hl_door;

@@ -186,11 +186,11 @@ static char *temporary_path(hl_context *context, const char *path) {
   return made;
 }
 
-/* Creates a file under a free name; the last letters of `path` are replaced. The file's mode is what the
- * process's umask leaves. mkstemp() is not used: it would make the file private, and its mode could not be
- * corrected afterwards, because the umask cannot be read without changing it. */
+/* Creates a file under a free name; the last letters of `path` are replaced. The file's mode follows from the
+ * process's umask. mkstemp() is not used: it would make the file private, and its mode could not be corrected
+ * afterwards, because the umask cannot be read without changing it. */
 static int create_temporary(char *path) {
-  /* 32 letters, so that five random bits choose a letter */
+  /* there are 32 letters, so that five random bits choose one */
   static const char letters[] = "abcdefghijklmnopqrstuvwxyz234567";
   enum { LETTERS = 6, TRIES = 1000 };
   for (int n = 0; n < TRIES; n++) {

@@ -1,4 +1,4 @@
-/* core/instruction_set.c - which instruction sets the processor and the build have. */
+/* core/instruction_set.c - finds which instruction sets the processor and the build have. */
 #include <stddef.h>
 
 #include "core/context.h"

@@ -6,7 +6,8 @@
 
 #include "core/context.h"
 
-/* Each block starts with its size; 64 bytes keep the payload aligned for vectors. */
+/* Each block starts with its size. This head takes 64 bytes, so that the bytes for the user are aligned for
+ * vectors. */
 typedef struct block_header {
   size_t size; /* number of bytes that the block's user asked for */
 } block_header;

@@ -1,5 +1,6 @@
-/* core/pool.c - the thread team. Jobs follow each other quickly (two for each sheet). So a worker without
- * work spins for a while before it sleeps; with more threads than processors it sleeps at once.
+/* core/pool.c - a team of threads that run jobs together. Jobs follow each other quickly (two for each
+ * sheet). So a worker without work spins for a while before it sleeps; with more threads than processors it
+ * sleeps at once.
  *
  * Each thread owns a share: a run of consecutive indices of the job. In all jobs of one length a thread has
  * the same run, so that it uses the same memory again. A share is one 64-bit word on its own cache line:

@@ -1,5 +1,5 @@
-/* core/sheet_constants.h - numbers of the method. The functions of the sheet loop for processors and the
- * kernels for devices include this same file, so that both have the same law of light.
+/* core/sheet_constants.h - constants of the loop over sheets. The functions of the sheet loop for processors
+ * and the kernels for devices include this same file, so that both have the same law of light.
  *
  * The text is valid C17, OpenCL C 1.2 and CUDA C++: it consists of comments and of macros alone. A macro's
  * comment says where the number is used, and why it has its value. */
@@ -28,8 +28,9 @@
 
 /* ---- classification ---- */
 
-/* Where two coordinates of a classifier's table are closer than this number of entries, the mean of the
- * values at both is used: a difference of integrals would lose digits, and this mean is as accurate. */
+/* If two coordinates of a classifier's table are closer than this number of entries, the mean between them is
+ * the mean of the values at both. A difference of integrals would then lose digits, and this mean is as
+ * accurate. */
 #define CLOSE_ENTRIES 4.0f
 
 /* The least bending of a way through the table for which the colour is computed as a mean over the way. The
@@ -63,9 +64,9 @@
  * the dark (shadow/attenuate.h, "Marks of surfaces in the dark"). */
 #define DARK_AT_START (1.0f / 256)
 
-/* OUTWARDS_POWER sets how soon a surface has ended for light that leaves it again (shadow/attenuate.h). Where
- * the depth h has fallen by a tenth, the fraction .19 of the absorbed light still lights the surface. Where h
- * has fallen by a third, the fraction .0015 of it does. */
+/* OUTWARDS_POWER sets how soon a surface has ended for light that leaves it again (shadow/attenuate.h). When
+ * the depth h has fallen by a tenth, the fraction .19 of the absorbed light still lights the surface. When h
+ * has fallen by a third, only the fraction .0015 does. */
 #define OUTWARDS_POWER 16
 
 /* The number of voxels of even matter over which the kept light k falls by the factor e. Matter that is even
@@ -78,9 +79,9 @@
 #define ROUNDING_OF_SPAN 1e-3f
 
 /* Light may come from the matter of one surface into another surface, which begins at the value `foot`. In a
- * blurred edge, values rise through the values of the first surface to the values of the second. There the
- * two are one surface, and the light that the first surface has absorbed lights the second one, too. The
- * optical depth of the first surface on the light's way is compared with the depth of a straight ramp of
+ * blurred edge, values rise through the values of the first surface to the values of the second. In such an
+ * edge the two are one surface, and the light that the first surface has absorbed lights the second one, too.
+ * The optical depth of the first surface on the light's way is compared with the depth of a straight ramp of
  * values. Up to SAME_RAMP times this depth, the two surfaces are such an edge. From OTHER_LAYER times this
  * depth on, the first surface is a layer of its own, and the light that it has absorbed does not light the
  * second one. */
@@ -104,8 +105,8 @@
 #define DEEPEST 80.0f
 
 /* Each near pixel has an optical depth, from the face to the slab. EVEN_LIGHT is a difference between these
- * depths. Where they differ by less, the buffer is read as if there were no face. Where they differ by at
- * least twice as much, the face counts fully. */
+ * depths. If they differ by less, the buffer is read as if there were no face. If they differ by at least
+ * twice as much, the face counts fully. */
 #define EVEN_LIGHT 0.1f
 
 /* ---- the cascade ---- */

@@ -1,4 +1,5 @@
-/* core/vector.h - small double-precision vectors and matrices, for set-up work. */
+/* core/vector.h - vectors and matrices of three dimensions in double precision, for work that is done once
+ * per frame. */
 #ifndef HL_CORE_VECTOR_H
 #define HL_CORE_VECTOR_H
 

@@ -1,4 +1,5 @@
-/* guess/analysis.c - the kind of data in a volume, and the values that divide objects from their background.
+/* guess/analysis.c - finds the kind of data in a volume, and the values that divide objects from their
+ * background.
  *
  * Nothing here depends on the data's scale and offset. The background is the commonest value on the grid's
  * faces. Two thresholds of the distance from the background find the objects. Voxels may belong to objects
@@ -22,8 +23,9 @@
 #define SMOOTH 0.18 /* a roughness that every scanner's data exceed */
 /* The least roughness of smoke on fine grids; 0.50 to 0.58 was measured on grids of 200 to 320 voxels. */
 #define FOG   0.4
-#define NOISY 1.2   /* a roughness that no simulated turbulence exceeds; white noise has 1.7 */
-#define TAIL  0.005 /* fraction of the voxels below `lower`, and fraction of the voxels above `upper` */
+#define NOISY 1.2 /* a roughness that no simulated turbulence exceeds; white noise has 1.7 */
+/* The fraction of the voxels below `lower`. It is also the fraction of the voxels above `upper`. */
+#define TAIL 0.005
 /* A noise that every scanner's data exceed, as a fraction of top; 8-bit values have half of it by
  * rounding. */
 #define CALM 0.003
@@ -152,7 +154,7 @@ static bool is_floating(const hl_volume *volume) {
   return volume->type == HL_VOXEL_F32 || volume->type == HL_VOXEL_F64;
 }
 
-/* Where a volume's values lie, relative to the sample's range. */
+/* The distribution of a volume's values, relative to the sample's range. */
 typedef struct spread {
   double low, high;  /* nearly all voxels have values from `low` to `high` */
   double zero;       /* the data value 0 */

@@ -1,5 +1,5 @@
-/* guess/analysis.h - the kind of data in a volume, and the values that divide objects from their background.
- */
+/* guess/analysis.h - finds the kind of data in a volume, and the values that divide objects from their
+ * background. */
 #ifndef HL_GUESS_ANALYSIS_H
 #define HL_GUESS_ANALYSIS_H
 
@@ -20,7 +20,8 @@ typedef enum hl_data_kind {
   HL_DATA_PARTICLES = 7 /* the logarithm of the density of particles, over decades */
 } hl_data_kind;
 
-#define HL_FEW_LABELS     255 /* most labels of a map that is recognised by its values alone */
+/* The greatest number of labels of a map that is recognised by its values alone. */
+#define HL_FEW_LABELS     255
 #define HL_MOST_MATERIALS 4
 
 /* "Objects" are the voxels that differ from the background. "Distances" are differences of values from the
@@ -43,13 +44,14 @@ typedef struct hl_data_analysis {
   double cliffs;      /* fraction of the steps between the background's exact value and other values that are
                        * cliffs: at least half as high as matter */
   double cut_off;   /* fraction of the grid's border that lies beyond solid: matter that the grid cuts off */
-  double sharpness; /* how sharp the surface of scanned objects is: the mean part of a step over three voxel
-                     * edges that lies in the middle one */
-  double grain;  /* how far noise moves the surface of scanned objects to and fro: standard deviation, voxel
-                  * edges */
-  double filled; /* fraction of the voxels beyond solid */
-  double middle; /* the commonest data value */
-  double lower, upper; /* how far values lie below and above the middle at most, apart from a few voxels */
+  double sharpness; /* the sharpness of the surface of scanned objects: the fraction of a step over three
+                     * voxel edges that lies in the middle edge, as a mean over all steps */
+  double grain;     /* the standard deviation, in voxel edges, by which noise moves the surface of scanned
+                     * objects */
+  double filled;    /* fraction of the voxels beyond solid */
+  double middle;    /* the commonest data value */
+  double lower, upper; /* the greatest distances of values below and above the middle, apart from a few
+                        * voxels */
   double labels[HL_FEW_LABELS]; /* ascending data values, without the background */
   size_t label_count;
   double valleys[HL_MOST_MATERIALS - 1]; /* distances that divide materials, rising; [material_count - 1] */
@@ -80,8 +82,8 @@ double hl_data_find_vessels(const hl_volume *volume, const hl_sample *sample, co
 bool hl_data_find_rim(const hl_volume *volume, const hl_sample *sample, double noise,
                       hl_data_analysis *analysis);
 
-/* Finds what the surface of scanned objects is like: sets cliffs, sharpness and grain. The distances of the
- * analysis are relative, as the sample's values are. Fails only for lack of memory. */
+/* Finds the properties of the surface of scanned objects: sets cliffs, sharpness and grain. The distances of
+ * the analysis are relative, as the sample's values are. Fails only for lack of memory. */
 hl_status hl_data_find_boundary(const hl_volume *volume, const hl_sample *sample, hl_data_analysis *analysis,
                                 hl_error *error);
 
@@ -100,11 +102,11 @@ static inline bool hl_is_hounsfield(const hl_volume *volume) {
 
 /* ---- label maps: volumes whose values are names of regions ---- */
 
-/* Where the volume is a label map, sets the kind to HL_DATA_LABELS and lists labels; otherwise changes
- * nothing. The values of a label map are whole numbers: the background and 2 to HL_FEW_LABELS labels. Most
- * labels lie in blocks, so that a voxel's neighbours mostly have its value. If the file says that its values
- * are labels, one label is enough, labels need not lie in blocks, and there may be more labels than the list
- * has room for. Fails for lack of memory. */
+/* If the volume is a label map, sets the kind to HL_DATA_LABELS and lists labels; otherwise changes nothing.
+ * The values of a label map are whole numbers: the background and 2 to HL_FEW_LABELS labels. Most labels lie
+ * in blocks, so that a voxel's neighbours mostly have its value. If the file says that its values are labels,
+ * one label is enough, labels need not lie in blocks, and there may be more labels than the list has room
+ * for. Fails for lack of memory. */
 hl_status hl_data_find_labels(const hl_volume *volume, hl_data_analysis *analysis, hl_error *error);
 
 /* Returns whether a volume's values are names of regions, because its file names segments or because the

@@ -1,5 +1,5 @@
-/* guess/channels.c - one scene of several bare volumes: files of one volume each, and channels of one file.
- */
+/* guess/channels.c - makes one scene of several bare volumes, which are files of one volume each, or channels
+ * of one file. */
 #include <math.h>
 #include <stdio.h>
 #include <string.h>

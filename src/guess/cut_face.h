@@ -1,4 +1,4 @@
-/* guess/cut_face.h - where a ray meets the faces that a volume's cuts and clip box leave. */
+/* guess/cut_face.h - finds where a ray meets the faces of a volume's cuts and of its clip box. */
 #ifndef HL_GUESS_CUT_FACE_H
 #define HL_GUESS_CUT_FACE_H
 

@@ -1,12 +1,12 @@
-/* guess/exposure.h - how bright a picture of one volume will be, before it is made. */
+/* guess/exposure.h - estimates how bright a picture of one volume will be, before the picture is made. */
 #ifndef HL_GUESS_EXPOSURE_H
 #define HL_GUESS_EXPOSURE_H
 
 #include <halflight/scene.h>
 
 typedef struct hl_exposure {
-  double factor; /* the factor for the strengths of all lights. With it, a hundredth of the picture's pixels
-                  * have codes of 240 or more, of 255, in their brightest channel. The factor lies between 0.5
+  double factor; /* the factor for the strengths of all lights. With this factor, a hundredth of the picture's
+                  * pixels have a code from 240 to 255 in their brightest channel. The factor lies between 0.5
                   * and 2; it is 1 if nothing is seen */
   /* A surface's thickness, in smallest voxel edges: the depth, from where the surface begins, at which it
    * hides matter behind it. A seventh of the visible surfaces are thinner than this. Infinite if nothing is

@@ -1,4 +1,4 @@
-/* guess/floor.c - a floor below everything that a scene shows. */
+/* guess/floor.c - makes a floor below everything that a scene shows. */
 #include <math.h>
 
 #include "core/door.h"

@@ -154,9 +154,9 @@ static hl_status expose(const hl_look *look, const hl_data_analysis *analysis, h
   return status;
 }
 
-/* Gives a volume cuts that remove what holds the object. The search always uses the look `base`, which suits
- * the volume, so that the cuts are the same whatever look is shown. planes: memory for the cuts; it must last
- * as long as the volume's description. */
+/* Gives a volume cuts that remove the holders of the object. The search always uses the look `base`, which
+ * suits the volume, so that the cuts are the same whatever look is shown. planes: memory for the cuts; it
+ * must last as long as the volume's description. */
 static hl_status leave_holders_out(hl_context *context, const hl_look *base, const hl_data_analysis *analysis,
                                    hl_cut planes[HL_HOLDER_PLANES], hl_scene_volume *volume,
                                    hl_error *error) {

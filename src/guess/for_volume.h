@@ -1,4 +1,4 @@
-/* guess/for_volume.h - the default camera and the default light. */
+/* guess/for_volume.h - chooses the default camera and the default light of a scene. */
 #ifndef HL_GUESS_FOR_VOLUME_H
 #define HL_GUESS_FOR_VOLUME_H
 

@@ -1,8 +1,8 @@
 /* guess/framing.c - places a camera so that everything seen fills the picture and is in its middle.
  *
- * Each side of the picture is a plane through the eye. From the reach of the visible voxels' outline towards
- * each side follows the nearest eye that has all visible voxels in the picture. With room for turning, the
- * eye stands farther away and turns about a fixed target. */
+ * Each side of the picture is a plane through the eye. The reach of the visible voxels' outline towards each
+ * side decides the position of the nearest eye that has all visible voxels in the picture. With room for
+ * turning, the eye stands farther away and turns about a fixed target. */
 #include <string.h>
 
 #include "core/door.h"

@@ -17,8 +17,8 @@
 #define SHELL        0.2  /* optical depth of the shell of a field, along a line that crosses the shell */
 /* The width of an object, in voxels, for which the opacities of solid matter were chosen. */
 #define FINE 96
-/* Where flesh lies between the distances solid and dense: in the CT of a head, from -50 to 170 Hounsfield
- * units. */
+/* The part of the way between the distances solid and dense that flesh takes: in the CT of a head, from -50
+ * to 170 Hounsfield units. */
 static const double flesh[] = {0.4, 0.65};
 
 /* The colours of a function at four distances from the background: faint, solid, dense and top. Linear RGB.
@@ -76,7 +76,8 @@ void hl_write_matter(hl_function_writer *w) {
   if (w->analysis->material_count > 1) color_materials(w);
 }
 
-/* Skin, with flesh and bone in it: the faces of cuts tell them apart. */
+/* The colours of skin, with flesh and bone inside; the faces of cuts show the difference between flesh and
+ * bone. */
 void hl_write_body(hl_function_writer *w) {
   static const palette skin = {
       {0.62, 0.36, 0.25}, {0.76, 0.50, 0.37}, {0.89, 0.80, 0.65}, {0.93, 0.91, 0.86}};
@@ -84,8 +85,8 @@ void hl_write_body(hl_function_writer *w) {
   write_solid(w, &skin, red);
 }
 
-/* Grey matter hardly differs from the surface in colour, and white matter is nearly white: the two differ on
- * the faces of cuts. */
+/* Grey matter has nearly the colour of the surface, and white matter is nearly white. So grey and white
+ * matter differ on the faces of cuts. */
 void hl_write_brain(hl_function_writer *w) {
   static const palette brain = {
       {0.60, 0.40, 0.35}, {0.69, 0.49, 0.42}, {0.72, 0.54, 0.47}, {0.97, 0.94, 0.90}};

@@ -33,7 +33,7 @@
 enum { DIRECTIONS = 1000 };
 enum { SAMPLE = 4096 }; /* most cells or voxels of a body that are examined */
 enum { FOR_EACH = 4 };  /* most planes that cut off one holder */
-/* Takes the place of a body's number in cells of holders and rims. */
+/* The number that cells of holders and rims have in place of a body's number. */
 static const uint32_t BESIDE = UINT32_MAX;
 
 /* The levels of mean optical depth, as fractions of the greatest cell's depth, beyond which cells belong to
@@ -41,7 +41,8 @@ static const uint32_t BESIDE = UINT32_MAX;
  * join a holder to the object. */
 static const double levels[] = {0.02, 0.1};
 
-/* Cells of a body: either the two end cells of each of its rows of cells, or all of its cells. */
+/* A list of cells of a body: either the two end cells of each of the body's rows of cells, or all of its
+ * cells. */
 typedef struct body_cells {
   vec3 *point; /* owned; [count]; centres of cells */
   size_t count;

@@ -1,4 +1,4 @@
-/* guess/holders.h - the holders of a scanned object: tables, head rests, rails, towels. */
+/* guess/holders.h - finds the holders of a scanned object: tables, head rests, rails, towels. */
 #ifndef HL_GUESS_HOLDERS_H
 #define HL_GUESS_HOLDERS_H
 

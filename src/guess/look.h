@@ -14,7 +14,7 @@ typedef struct hl_look {
   double left;      /* for hl_scene_exposure(): the light of the sky, and of lights with shadows, that reaches
                      * media in spite of shadows, as a fraction; 0: the lights' strengths are not scaled by an
                      * exposure */
-  bool on_black;    /* a bare volume gets a black background */
+  bool on_black;    /* whether a bare volume gets a black background */
   const char *next; /* the name of the style to try next for such data */
 } hl_look;
 

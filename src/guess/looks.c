@@ -340,9 +340,9 @@ static double projected_white(const hl_volume *volume) {
 }
 
 /* Returns whether the window of values that a file asks for (DICOM) ends where a projection can end. Windows
- * are meant for slices. A pixel of a projection has the greatest of some hundred values; where more than
- * about one value in 200 lies above the window, as bone does above a window of soft tissue, most of the
- * pixels would be white. */
+ * are meant for slices. A pixel of a projection has the greatest of some hundred values. If more than about
+ * one value in 200 lies above the window, as bone lies above a window of soft tissue, most of the pixels
+ * would be white. */
 static bool is_window_for_projections(const hl_volume *volume) {
   return isfinite(volume->window[1]) && share_above(volume, volume->window[1]) < 0.005;
 }

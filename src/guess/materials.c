@@ -1,4 +1,5 @@
-/* guess/materials.c - the materials of scanned objects: peaks of the histogram with valleys between them. */
+/* guess/materials.c - finds the materials of scanned objects: peaks of the histogram with valleys between
+ * them. */
 #include <stdbool.h>
 
 #include "guess/analysis.h"
@@ -11,7 +12,7 @@ static const double LEAST_SHARE = 0.03;
 
 enum {
   BINS = HL_HISTOGRAM_BINS,
-  REACH = 4 /* REACH: counts are smoothed over so many bins to each side */
+  REACH = 4 /* REACH: the number of bins to each side over which counts are smoothed */
 };
 
 /* Counts the objects' voxels in bins of rising distance. A tent smooths the counts, so that the gaps of

@@ -1,4 +1,4 @@
-/* guess/outline.c - the outermost visible voxels of a scene, and the range of visible values.
+/* guess/outline.c - finds the outermost visible voxels of a scene, and the range of visible values.
  *
  * Only the first and the last visible voxel of a row can be outermost, and among these only the corners of
  * each slice's convex hull. */

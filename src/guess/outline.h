@@ -1,4 +1,4 @@
-/* guess/outline.h - the outermost visible voxels of a scene, by which it is framed. */
+/* guess/outline.h - finds the outermost visible voxels of a scene, by which a camera frames the scene. */
 #ifndef HL_GUESS_OUTLINE_H
 #define HL_GUESS_OUTLINE_H
 

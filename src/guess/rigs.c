@@ -1,4 +1,5 @@
-/* guess/rigs.c - light rigs by name: sets of lights, placed around the object as a photographer would do it.
+/* guess/rigs.c - makes light rigs: named sets of lights that are placed around the object as a photographer
+ * would place them.
  *
  * In: a name, and a scene with its light. Out: new lights and a new sky, together about as strong as the
  * scene's light was. */
@@ -68,8 +69,8 @@ static const rig *rig_named(const char *name) {
   return NULL;
 }
 
-/* The intensity of which the rig's lights get fractions: that of the scene's strongest light. For a scene
- * without lights it is that of the light which is chosen for such scenes. */
+/* The intensity of which the rig's lights get fractions: the intensity of the scene's strongest light. For a
+ * scene without lights it is the intensity of the light that is chosen for such scenes. */
 static double key_intensity(const hl_scene_description *description) {
   hl_light key;
   double strongest = 0;

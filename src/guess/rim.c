@@ -1,4 +1,4 @@
-/* guess/rim.c - whether the thresholds of scanned objects lie within the values of their outer matter.
+/* guess/rim.c - finds whether the thresholds of scanned objects lie within the values of their outer matter.
  *
  * A surface between two materials has about the same area for any value between them. A surface at the value
  * of a material follows the material's noise, so that its area is much larger. So if the area has a maximum

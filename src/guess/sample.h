@@ -1,4 +1,4 @@
-/* guess/sample.h - a sorted sample of a volume's voxels, by which automatic choices are made.
+/* guess/sample.h - takes a sorted sample of a volume's voxels, from which automatic choices are made.
  *
  * Values are relative to the volume's range, where 0 is its least value and 1 its greatest. So the data's
  * units do not matter. */
@@ -40,9 +40,9 @@ double hl_threshold_otsu(const float *ascending, size_t count, double above);
  * no logarithm. */
 double hl_threshold_cross_entropy(const float *ascending, size_t count, double floor);
 
-/* How rough objects are: the sum of |second differences| divided by the sum of |first differences|, over the
- * voxels whose relative value differs from `background` by more than `distance`. Smooth simulations have less
- * than about 0.5, turbulence and noise more than about 0.7. */
+/* The roughness of objects: the sum of |second differences| divided by the sum of |first differences|, over
+ * the voxels whose relative value differs from `background` by more than `distance`. Smooth simulations have
+ * less than about 0.5, turbulence and noise more than about 0.7. */
 double hl_roughness(const hl_volume *volume, const hl_sample *sample, double background, double distance);
 
 /* The noise of objects, relative to the range: the standard deviation of white noise with the same median

@@ -32,7 +32,7 @@ double hl_smoothing_for(const hl_volume *volume, const char *file, const hl_data
       atomic_load(&volume->smoothing_chosen))
     return 0;
   const bool stairs = analysis->cliffs >= HL_CUT_OUT && hl_is_body(volume, file, analysis);
-  /* Values without any noise were made, not scanned: their edges are meant to be sharp. */
+  /* Values without any noise were computed, and not scanned. Their edges are meant to be sharp. */
   const bool terraces = analysis->sharpness >= TERRACED && analysis->grain > 0;
   return stairs || terraces || analysis->grain >= GRAINY ? SIGMA : 0;
 }

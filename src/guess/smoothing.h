@@ -1,4 +1,4 @@
-/* guess/smoothing.h - which volumes are smoothed by default. */
+/* guess/smoothing.h - chooses which volumes are smoothed by default. */
 #ifndef HL_GUESS_SMOOTHING_H
 #define HL_GUESS_SMOOTHING_H
 

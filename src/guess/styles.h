@@ -1,4 +1,5 @@
-/* guess/styles.h - styles: looks that are asked for by name, whatever the volume holds. */
+/* guess/styles.h - styles: looks that a user asks for by name, independently of the kind of data in the
+ * volume. */
 #ifndef HL_GUESS_STYLES_H
 #define HL_GUESS_STYLES_H
 

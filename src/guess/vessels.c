@@ -1,4 +1,4 @@
-/* guess/vessels.c - bright tubes within other matter, as angiography shows vessels.
+/* guess/vessels.c - finds bright tubes within other matter, as angiography shows vessels.
  *
  * A scan may have a few voxels that are far brighter than all others. If these form tubes, the scan was made
  * for the tubes, and not for the object around them. In Hounsfield units such voxels are bone, not vessels. A
@@ -82,7 +82,7 @@ static bool is_in_tube(const vessel_search *s, const size_t seed[3]) {
 }
 
 /* Counts the object's voxels, the bright voxels and the voxels in tubes, at the places of the sample. every:
- * one in so many bright voxels is examined. */
+ * one of this number of bright voxels is examined. */
 static void look(const vessel_search *s, size_t every, met *things, met *bright, met *tubes) {
   const size_t *n = s->volume->dimension, step = s->sample->step;
   *things = *bright = *tubes = (met){0};
@@ -130,7 +130,7 @@ double hl_data_find_vessels(const hl_volume *volume, const hl_sample *sample, co
     if (beyond < LEAST_SEEDS) return 0;
     bool few = false;
     if (are_vessels(&s, beyond, &few)) return s.level;
-    if (few) return 0; /* levels that are higher still would divide the bright matter itself, by its noise */
+    if (few) return 0; /* even higher levels would divide the bright matter itself, because of its noise */
     s.level = hl_threshold_otsu(distances, sample->count, s.level);
   }
   return 0;

@@ -18,7 +18,7 @@
 #define BEND 3 /* second differences measure the relief over this distance, in places of the lattice */
 /* Only the largest body counts if it has at least this fraction of all solid places. */
 #define BODY_AT_LEAST 0.4
-/* The side that is turned to the eye must have so many times the relief of the opposite side. */
+/* The side that is turned to the eye must have this number of times the relief of the opposite side. */
 #define CLEARLY 1.1
 /* The elevation, in degrees, of the view of bodies that the grid cuts off: about the height of their eyes, as
  * in a portrait. From higher up, a head's forehead would hide its face. */
@@ -137,8 +137,8 @@ static double touch(const shape *s, int axis, int end) {
   return s->area[axis][end ? s->size[axis] - 1 : 0] / face;
 }
 
-/* How blunt the objects are at one end: the mean area of the last slices, divided by the greatest area of a
- * slice. */
+/* The bluntness of the objects at one end: the mean area of the last slices, divided by the greatest area of
+ * a slice. */
 static double bluntness(const shape *s, int axis, int end) {
   double greatest = 1e-9, sum = 0;
   for (int n = s->first[axis]; n <= s->last[axis]; n++) greatest = fmax(greatest, s->area[axis][n]);
@@ -147,8 +147,8 @@ static double bluntness(const shape *s, int axis, int end) {
   return sum / slices / greatest;
 }
 
-/* How similar the objects are to their mirror image: the number of places that belong to both, divided by the
- * number of places that belong to at least one. */
+/* The similarity of the objects to their mirror image: the number of places that belong to both, divided by
+ * the number of places that belong to at least one. */
 static double symmetry(const shape *s, int axis) {
   double both = 0, either = 0;
   int n[3];
@@ -213,7 +213,7 @@ static int up_without_bottom(const shape *s) {
   return overturned ? -up : up;
 }
 
-/* The axis that points up, as +-(axis + 1). It is +3 (z) where nothing speaks for another axis. */
+/* The axis that points up, as +-(axis + 1). It is +3 (z) if nothing indicates another axis. */
 static int up_of(const shape *s, const hl_volume *volume) {
   double extent[3], most = 0;
   int bottom = 0;
@@ -229,7 +229,7 @@ static int up_of(const shape *s, const hl_volume *volume) {
         bottom = end ? a + 1 : -(a + 1);
       }
   if (bottom != 0) return -bottom;
-  for (int a = 0; a < 3; a++) /* or the object stands on a plate */
+  for (int a = 0; a < 3; a++) /* the object may also stand on a plate */
     for (int end = 0; end < 2; end++)
       if (bluntness(s, a, end) > fmax(most, 0.4) && bluntness(s, a, !end) < 0.1) {
         most = bluntness(s, a, end);

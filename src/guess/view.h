@@ -1,4 +1,4 @@
-/* guess/view.h - which way is up, and the side from which a scene is seen. */
+/* guess/view.h - finds which direction is up in a scene, and the side from which the scene is seen. */
 #ifndef HL_GUESS_VIEW_H
 #define HL_GUESS_VIEW_H
 
@@ -35,11 +35,11 @@ typedef struct hl_upright {
 
 /* Finds which way is up in a volume whose file does not tell the anatomy. If the file rotates the grid in the
  * world, z is up. In smoke, which comes from computer graphics, y is up. Scanned objects have a bottom, on
- * which they stand or where a face of the grid cuts them off; up is the opposite way. Without a bottom, -y is
- * up for objects that are symmetric only along z, as heads and vessels are from left to right; otherwise z is
- * up. These two are reversed if the upper side of a symmetric object has more relief than the lower side. The
- * azimuth belongs to the three-quarter view whose sides have the most relief, so that heads show their faces.
- * Fails for lack of memory and when cancelled. */
+ * which they stand or where a face of the grid cuts them off; up is the opposite direction. Without a bottom,
+ * -y is up for objects that are symmetric only along z, as heads and vessels are from left to right;
+ * otherwise z is up. These two are reversed if the upper side of a symmetric object has more relief than the
+ * lower side. The azimuth belongs to the three-quarter view whose sides have the most relief, so that heads
+ * show their faces. Fails for lack of memory and when cancelled. */
 
 hl_status hl_scene_upright(const hl_scene_volume *volume, const hl_data_analysis *analysis,
                            hl_upright *upright, hl_error *error);

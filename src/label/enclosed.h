@@ -1,4 +1,4 @@
-/* label/enclosed.h - the level at which a smooth field encloses a given volume. */
+/* label/enclosed.h - finds the level at which a smooth field encloses a given volume. */
 #ifndef HL_LABEL_ENCLOSED_H
 #define HL_LABEL_ENCLOSED_H
 

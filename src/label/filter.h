@@ -1,4 +1,4 @@
-/* label/filter.h - a field of floats filtered along its three axes, in place. */
+/* label/filter.h - filters a field of floats along its three axes, in place. */
 #ifndef HL_LABEL_FILTER_H
 #define HL_LABEL_FILTER_H
 

@@ -14,7 +14,7 @@ static const label_filter BLUR = {2, {0.5f, 0.25f, 0}};
 
 /* The weight of an imaginary face that is added, at every voxel, to the sums over the faces of the label's
  * border. On this imaginary face the field has the values that it should have, so that the face asks for no
- * correction. It decides where a voxel lies far from any border. */
+ * correction. The imaginary face decides the result for a voxel that lies far from any border. */
 static const float FAINT = 1e-3f;
 
 /* The least fall of the field across the border's faces. A smaller fall counts as this one, so that the field

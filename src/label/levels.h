@@ -1,5 +1,5 @@
-/* label/levels.h - moves a smooth field's level so that the field is 1/2 at the label's border, however thin
- * the label is. */
+/* label/levels.h - changes a smooth field so that it is 1/2 at the label's border, even if the label is
+ * thin. */
 #ifndef HL_LABEL_LEVELS_H
 #define HL_LABEL_LEVELS_H
 
@@ -23,11 +23,11 @@ void hl_label_levels_size(const size_t field[3], size_t size[3]);
 /* The mean slope of a field at the label's border after hl_label_level(), per voxel. */
 #define HL_LABEL_SLOPE 0.25f
 
-/* Moves a field's level. Smoothing lowers the field where the label is thin, so that the field of a plate, a
- * line or a voxel does not reach 1/2 anywhere. So at each place the field is changed linearly. The mean of
- * its values on the nearby faces between voxels inside and outside becomes 1/2, and the field's mean fall
- * across these faces becomes HL_LABEL_SLOPE. Labels that are one or two voxels thin grow by a fraction of a
- * voxel, so that they are not lost between sheets. inside: [size z][y][x], 1 or 0. */
+/* Moves a field's level. Smoothing lowers the field in thin labels, so that the field of a plate, a line or a
+ * voxel does not reach 1/2 anywhere. So at each place the field is changed linearly. The mean of its values
+ * on the nearby faces between voxels inside and outside becomes 1/2, and the field's mean fall across these
+ * faces becomes HL_LABEL_SLOPE. Labels that are one or two voxels thin grow by a fraction of a voxel, so that
+ * they are not lost between sheets. inside: [size z][y][x], 1 or 0. */
 void hl_label_level(hl_pool *pool, const unsigned char *inside, const label_field *field,
                     const label_levels *levels);
 

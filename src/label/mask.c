@@ -15,7 +15,7 @@
  * to 1 while the sum of their occupancies rises from SHARE_FROM to SHARE_TO. The other matter belongs to the
  * rest. The common share is divided among the labels in proportion to the squares of their occupancies.
  * Derived: between two labels with the occupancies a and 1 - a, the first label's fraction a^2 / (a^2 + (1 -
- * a)^2) rises from 0 to 1 with the slope 2 in the middle, as the common share does. Where three labels meet,
+ * a)^2) rises from 0 to 1 with the slope 2 in the middle, as the common share does. If three labels meet,
  * their fractions still add up to 1. */
 static const float SHARE_FROM = 0.25f, SHARE_TO = 0.75f;
 /* In the weights of colours, the occupancy of all labels times this factor is added to the labels' common
@@ -38,9 +38,9 @@ typedef struct mask_job {
 } mask_job;
 
 /* Sums over all labels, one for each voxel of a slice, each [j][i]: of the occupancies (SUM_OCCUPANCY); of
- * their squares (SUM_SQUARES); of the squares times the label's opacity (SUM_FACTOR); of the latter times the
- * label's tint (SUM_TINT); and of the latter times each channel of the label's colour. Space for a line of
- * occupancy follows (SUM_LINE). */
+ * their squares (SUM_SQUARES); of the squares times the label's opacity (SUM_FACTOR); of the squares times
+ * opacity and tint (SUM_TINT); and of the squares times opacity, tint and each channel of the label's colour.
+ * Space for a line of occupancy follows (SUM_LINE). */
 enum { SUM_OCCUPANCY, SUM_SQUARES, SUM_FACTOR, SUM_TINT, SUM_RED, SUM_GREEN, SUM_BLUE, SUM_LINE, SUMS };
 
 static void add_voxel(float *const sums[SUMS], size_t at, const hl_label *label, float occupancy) {

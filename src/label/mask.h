@@ -23,8 +23,8 @@
 enum {
   HL_MASK_BRICK_SHIFT = 2,
   HL_MASK_BRICK = 1 << HL_MASK_BRICK_SHIFT,
-  HL_MASK_EVEN = 1 << 16, /* all points of the brick have the factor of its first word and no slope */
-  /* all points of the brick have the colour of its second word, which is 0 where no label tints */
+  HL_MASK_EVEN = 1 << 16, /* flag: all points of the brick have the factor of its first word and no slope */
+  /* flag: all points of the brick have the colour of its second word, which is 0 if no label tints */
   HL_MASK_EVEN_COLOR = 1 << 17
 };
 

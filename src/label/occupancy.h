@@ -1,8 +1,9 @@
-/* label/occupancy.h - labels of a label map as a smooth field with the labels' own surface.
+/* label/occupancy.h - makes a smooth field, the occupancy, of labels of a label map. Its surface is the
+ * labels' own surface.
  *
- * The voxels of a label map are numbers of things. The occupancy of a label, or of several labels together,
- * is a field that is 1 within them and 0 outside. It is reconstructed by the B-spline, and passes 1/2 at a
- * smooth surface without the stairs of the voxels. */
+ * The voxels of a label map are numbers that name regions. The occupancy of a label, or of several labels
+ * together, is a field that is 1 within them and 0 outside. It is reconstructed by the B-spline, and passes
+ * 1/2 at a smooth surface without the stairs of the voxels. */
 #ifndef HL_LABEL_OCCUPANCY_H
 #define HL_LABEL_OCCUPANCY_H
 

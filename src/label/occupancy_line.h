@@ -1,4 +1,4 @@
-/* label/occupancy_line.h - the occupancy of a label (occupancy.h) at the voxels of the label map. */
+/* label/occupancy_line.h - computes the occupancy of a label (occupancy.h) at the voxels of the label map. */
 #ifndef HL_LABEL_OCCUPANCY_LINE_H
 #define HL_LABEL_OCCUPANCY_LINE_H
 

@@ -1,4 +1,4 @@
-/* label/row_functions.h - the functions on rows and voxels of a field that take most of the time when labels
+/* label/row_functions.h - functions on rows and voxels of a field, which take most of the time when labels
  * are smoothed. They are compiled once for each instruction set (row_sets.c), and give the same bytes with
  * each. */
 #ifndef HL_LABEL_ROW_FUNCTIONS_H

@@ -1,4 +1,4 @@
-/* label/solids.h - labels that are solid together, as one volume.
+/* label/solids.h - makes one volume of several labels that are solid together.
  *
  * If two labels that touch were drawn by their own fields, which are rounded, there would be a groove between
  * them. Labels that are solid together have one field. So surface, normals and shadows are those of one body,

@@ -1,10 +1,10 @@
-/* mesh/edges.c - normals at the creases of meshes that bring no normals.
+/* mesh/edges.c - finds normals at the creases of meshes that have no normals of their own.
  *
  * In: a mesh's triangles. Out: a normal for each corner at a crease. A vertex's normal is the mean of its
  * triangles' normals, weighted by area. If the normal of one of its triangles differs much from this mean,
- * the vertex is at a crease. The normal of a corner at a crease is the mean over fewer triangles: those at
- * the vertex whose normals differ little from that of the corner's own triangle. Without creases a long box
- * would look rounded, because its short faces contribute little to the means. */
+ * the vertex is at a crease. The normal of a corner at a crease is the mean over fewer triangles: the
+ * triangles at the vertex whose normals differ little from the normal of the corner's own triangle. Without
+ * creases a long box would look rounded, because its short faces contribute little to the means. */
 #include "core/memory.h"
 #include "core/vector.h"
 #include "mesh/mesh.h"
@@ -98,7 +98,7 @@ static void list_corners(edge_search *search, uint32_t (*edges)[3]) {
 }
 
 /* Finds the normals of the corners of one vertex at a crease. A corner's normal is the mean over the
- * triangles whose normals differ little from that of the corner's own triangle. */
+ * triangles whose normals differ little from the normal of the corner's own triangle. */
 static void find_normals_of(const edge_search *search, size_t vertex, float (*normals)[3]) {
   vec3 cross[MOST_TRIANGLES], unit[MOST_TRIANGLES];
   const size_t *corners = search->corners + search->first[vertex];

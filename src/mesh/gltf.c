@@ -1,5 +1,6 @@
-/* mesh/gltf.c - glTF 2.0 files, as text (.gltf) and binary (.glb): the triangles of the scene, with normals,
- * colours of vertices, and the base colours of materials. Textures, skins and animations are ignored.
+/* mesh/gltf.c - reads glTF 2.0 files, as text (.gltf) and binary (.glb): the triangles of the scene, with
+ * normals, colours of vertices, and the base colours of materials. Textures, skins and animations are
+ * ignored.
  *
  * The format's specification is Khronos Group, glTF 2.0 (ISO/IEC 12113:2022). */
 #include "mesh/gltf.h"

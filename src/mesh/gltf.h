@@ -1,4 +1,5 @@
-/* mesh/gltf.h - shared by the files of the glTF reader: buffers, and accessors into them. */
+/* mesh/gltf.h - the structs and functions that the files of the glTF reader share: buffers, and accessors,
+ * which find numbers in buffers. */
 #ifndef HL_MESH_GLTF_H
 #define HL_MESH_GLTF_H
 

@@ -1,4 +1,4 @@
-/* mesh/insides.c - the parts of a mesh that are closed, and which side of them is the inside.
+/* mesh/insides.c - finds the parts of a mesh that are closed, and the side of each part that is its inside.
  *
  * In: a mesh's triangles. Out: for each triangle, the side on which the inside of its part lies. A part is a
  * set of triangles that are connected by shared vertices. Parts are examined one by one, because a mesh may

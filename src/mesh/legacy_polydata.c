@@ -1,5 +1,5 @@
-/* mesh/legacy_polydata.c - legacy .vtk files with POLYDATA, ASCII or BINARY (big-endian): cells as lists of
- * "count, points" (up to version 4.2), or as OFFSETS and CONNECTIVITY (5.1). */
+/* mesh/legacy_polydata.c - reads legacy .vtk files with POLYDATA, ASCII or BINARY (big-endian): cells as
+ * lists of "count, points" (up to version 4.2), or as OFFSETS and CONNECTIVITY (5.1). */
 #include <string.h>
 
 #include "core/memory.h"
@@ -8,8 +8,8 @@
 #include "volume/io/numbers.h"
 
 typedef struct legacy_file {
-  hl_legacy_vtk file; /* must be the first member, because callbacks get its address and find the other
-                       * members by it */
+  hl_legacy_vtk file; /* this member must be the first one, because callbacks get its address and find the
+                       * other members from it */
   polydata data;
   bool is_polydata;
 } legacy_file;

@@ -1,8 +1,8 @@
-/* mesh/obj.c - Wavefront OBJ files: vertices, their normals and colours, faces, and the colours of their
- * materials.
+/* mesh/obj.c - reads Wavefront OBJ files: vertices, their normals and colours, faces, and the colours of
+ * their materials.
  *
  * Groups, texture coordinates and curves are ignored. A vertex has one normal; if faces give it several, the
- * last one counts. Colours of vertices displace colours of materials. */
+ * last one counts. If vertices have colours, the colours of materials are not used. */
 #define _GNU_SOURCE /* for memrchr() */
 #include <math.h>
 #include <string.h>
@@ -136,8 +136,8 @@ static hl_status read_normal(obj_reader *reader) {
 }
 
 /* The index of a vertex, normal or texture coordinate that a face's corner names. The text counts from 1, or
- * backwards from -1, which is the last of the `count` ones so far. Returns -1 if the index is out of
- * range. */
+ * backwards from -1, which stands for the last of the `count` vertices, normals or coordinates so far.
+ * Returns -1 if the index is out of range. */
 static int64_t index_of(const char *text, size_t length, size_t count) {
   double number;
   if (!hl_text_number(text, length, &number) || fabs(number) > 1e15 || number != floor(number)) return -1;

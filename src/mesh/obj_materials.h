@@ -1,4 +1,4 @@
-/* mesh/obj_materials.h - the materials of Wavefront OBJ files: names and colours, from .mtl files. */
+/* mesh/obj_materials.h - reads the materials of Wavefront OBJ files, names and colours, from .mtl files. */
 #ifndef HL_MESH_OBJ_MATERIALS_H
 #define HL_MESH_OBJ_MATERIALS_H
 

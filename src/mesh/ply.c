@@ -1,4 +1,4 @@
-/* mesh/ply.c - PLY files (Turk 1994), ASCII and binary of either byte order: vertices with normals and
+/* mesh/ply.c - reads PLY files (Turk 1994), ASCII and binary of either byte order: vertices with normals and
  * colours, and faces with colours. Other elements and properties are ignored. */
 #include <math.h>
 #include <string.h>
@@ -34,7 +34,7 @@ static const struct {
              {"float|float32", PLY_F32, HL_VOXEL_F32, 4},
              {"double|float64", PLY_F64, HL_VOXEL_F64, 8}};
 
-/* What a property of a vertex or a face becomes in the mesh. */
+/* The number of the mesh that a property of a vertex or a face becomes. */
 typedef enum ply_role {
   ROLE_NONE = -1,
   ROLE_X,
@@ -65,7 +65,7 @@ typedef struct ply_property {
 } ply_property;
 
 typedef struct ply_element {
-  /* what the items of the element are: vertices, faces or strips of triangles. Strips are faces whose corners
+  /* the kind of the element's items: vertices, faces or strips of triangles. Strips are faces whose corners
    * make strips of triangles, with -1 between strips */
   bool vertices, faces, strips;
   bool face_colors; /* whether faces have colours */

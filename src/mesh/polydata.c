@@ -143,7 +143,7 @@ typedef struct conversion {
   bool of_points;
   size_t first_cell[CELL_KINDS]; /* for each kind of cells, its first cell's index among the cells of all
                                   * kinds */
-  double radius;                 /* the radius of spheres and tubes where the file gives no radius */
+  double radius;                 /* the radius of spheres and tubes if the file gives no radius */
   hl_error *error;
 } conversion;
 
@@ -291,7 +291,7 @@ static hl_status convert_surface(const conversion *c) {
   return status == HL_OK ? convert_faces(c, CELLS_STRIPS) : status;
 }
 
-/* The radius of spheres and tubes where the file gives none; world units. */
+/* The radius of spheres and tubes for files that give none; world units. */
 static double usual_radius(const polydata *data) {
   double square = 0;
   for (size_t axis = 0; axis < 3; axis++) {

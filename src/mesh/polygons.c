@@ -1,4 +1,4 @@
-/* mesh/polygons.c - triangles that cover exactly a polygon of more than three corners.
+/* mesh/polygons.c - makes triangles that cover exactly a polygon of more than three corners.
  *
  * Readers add a polygon as a fan of triangles around its first corner, and note which triangles these are. If
  * the polygon is not convex, the fan may reach beyond it. Once all vertices are known, such a fan is replaced

@@ -1,4 +1,4 @@
-/* mesh/stl.c - STL files, binary and ASCII: triangles without shared vertices.
+/* mesh/stl.c - reads STL files, binary and ASCII. They have triangles without shared vertices.
  *
  * Corners at equal positions become one vertex, so that smooth normals can be found. */
 #include <stdlib.h>

@@ -1,5 +1,6 @@
-/* mesh/unstructured.c - see unstructured.h. The types of cells and the order of their points: VTK's file
- * formats, "Linear cell types", and its list of cell types. */
+/* mesh/unstructured.c - converts the cells of unstructured grids (unstructured.h). Sources of the types of
+ * cells and of the order of their points: VTK's file formats, "Linear cell types", and its list of cell
+ * types. */
 #include "mesh/unstructured.h"
 
 #include <math.h>

@@ -1,5 +1,5 @@
-/* mesh/vtp.c - VTK XML PolyData (.vtp) and the surfaces of unstructured grids (.vtu): ascii, base64 and
- * appended arrays, plain or in compressed blocks.
+/* mesh/vtp.c - reads VTK's XML files of PolyData (.vtp) and the surfaces of unstructured grids (.vtu): ascii,
+ * base64 and appended arrays, plain or in compressed blocks.
  *
  * A first pass over the tags lists the pieces and their arrays; a second pass reads the needed arrays piece
  * by piece. Cells are read before the arrays whose length depends on them. The pieces are then joined. */

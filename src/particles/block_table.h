@@ -1,4 +1,4 @@
-/* particles/block_table.h - numbers for the blocks of a lattice that are needed.
+/* particles/block_table.h - gives numbers to the blocks of a lattice that are needed.
  *
  * A block is known by its coordinates. The table numbers blocks in the order in which they are added, and
  * finds the number of a block by a hash of its coordinates. */

@@ -8,9 +8,9 @@
 #include "bricks/subdivide.h"
 #include "particles/particles.h"
 
-#define HL_PARTICLE_NARROWING 1.11 /* a little less than 10/9: see splat.c */
-/* The least h', in spacings, which kernels get that the level does not resolve. Some point is then always
- * nearer to the particle than 2 h'. */
+#define HL_PARTICLE_NARROWING 1.11 /* the factor of s^2 in splat.c, a little less than 10/9 */
+/* The least length h' of a kernel, in spacings. Kernels that the level does not resolve get this length. Some
+ * point is then always nearer to the particle than 2 h'. */
 #define HL_PARTICLE_LEAST_LENGTH 0.7
 /* The greatest smoothing length of kernels on a level, in units of the level's least spacing. Wider kernels
  * belong to the next coarser level. On the coarsest level, where there is none, they are narrowed to this
@@ -92,9 +92,9 @@ static inline void hl_particle_range(const hl_particle_level *grid, int axis, do
 /* A run of neighbouring points along an axis that lie both in a box and in one block. */
 typedef struct hl_particle_run {
   int32_t block;
-  size_t within; /* the first point's place in the block */
+  size_t within; /* the index of the first point in the block */
   size_t count;
-  size_t from; /* the first point's place in the box */
+  size_t from; /* the index of the first point in the box */
 } hl_particle_run;
 
 /* Calls `visit` for each piece of a box of points of a level, in a fixed order. A box may reach beyond the

@@ -1,14 +1,14 @@
-/* particles/neighbours.c - smoothing lengths from the distances of neighbours.
+/* particles/neighbours.c - finds smoothing lengths from the distances between neighbours.
  *
  * In: particles in Morton order. Out: half the exact distance from each particle to its k-th neighbour. The
  * search uses a tree. Runs of sixteen particles are its leaves, and eight nodes of a layer are the children
  * of a node of the next layer. A node knows the box around its particles. A search visits near nodes first,
  * and leaves out nodes that are farther away than the k-th nearest particle found so far.
  *
- * Only for one particle of each leaf, neighbours are searched in this way. The distance to its k-th
- * neighbour, made a little longer, is a guess for the other particles of the leaf. All particles that are
- * nearer to the leaf's box than the guess are gathered once, and are then compared with each other particle
- * of the leaf. A particle that has fewer than k neighbours within the guess gets a search of its own. */
+ * Only one particle of each leaf gets such a search. The distance to its k-th neighbour, made a little
+ * longer, is a guess for the other particles of the leaf. All particles that are nearer to the leaf's box
+ * than the guess are gathered once, and are then compared with each other particle of the leaf. A particle
+ * that has fewer than k neighbours within the guess gets a search of its own. */
 #include "particles/particles.h"
 
 #include <math.h>
@@ -43,8 +43,9 @@ typedef struct tree {
 typedef struct search {
   const tree *tree;
   const uint32_t *place;
-  float bound;             /* squared distance; only nearer particles count as neighbours */
-  float found[FOUND_MOST]; /* squared distances found so far, that of the particle itself among them */
+  float bound;             /* a squared distance; only nearer particles count as neighbours */
+  float found[FOUND_MOST]; /* squared distances that were found so far, including the distance 0 of the
+                            * particle itself */
   size_t count;
 } search;
 
@@ -274,8 +275,8 @@ static size_t middle_of(const tree *t, size_t leaf, size_t begin, size_t end) {
  * of the leaf. near: this distance for the middle of the leaf before, which is about the same. bound: an
  * upper bound of the distance for this particle. Returns the distance for this particle. */
 static float search_leaf(search *s, crowd *c, size_t leaf, size_t middle, float near, float bound) {
-  const float more = 1.12f; /* ample: where particles are evenly spread, the distance to the 48th neighbour
-                             * varies by only 5 % */
+  const float more = 1.12f; /* this factor is ample: if particles are evenly spread, the distance to the 48th
+                             * neighbour varies by only 5 % */
   const tree *t = s->tree;
   size_t begin = leaf * LEAF, end = begin + LEAF < t->set->count ? begin + LEAF : t->set->count;
   float at_middle = search_one(s, middle, fminf(more * near, bound));

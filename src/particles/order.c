@@ -15,7 +15,7 @@ enum {
   KEY_BITS = 21, /* bits of a key for each axis */
   BUCKET_BITS = 6,
   BUCKETS = 1 << (3 * BUCKET_BITS),
-  FEW = 24 /* up to this number of particles, insertion sort is used */
+  FEW = 24 /* at most this number of particles are sorted by insertion */
 };
 
 typedef struct keyed {

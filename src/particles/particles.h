@@ -1,5 +1,5 @@
-/* particles/particles.h - particles as a field: the density of a quantity that particles carry (mass, say),
- * as B-spline coefficients on a lattice.
+/* particles/particles.h - converts particles to a field: the density of a quantity that particles carry, such
+ * as mass, as B-spline coefficients on a lattice.
  *
  * A particle is spread by the cubic spline kernel of smoothed particle hydrodynamics (kernel.h), which
  * reaches to twice the particle's smoothing length h. The lattice has levels: level l has the spacing 2^l
@@ -14,9 +14,9 @@
  * begins two points before the first kernel of this level, so no kernel is spread on those points whose
  * coefficients the bricks' builder subdivides.
  *
- * In:  places, the quantity that each particle carries, and smoothing lengths or none
- * (volume/formats/particles/particles.c). Out: coefficients on the points of level 0, or bricks. The bytes
- * are the same with any number of threads. */
+ * In: places, the quantity that each particle carries, and smoothing lengths or none
+ * (volume/formats/particles/particles.c). Out: coefficients on the points of level 0, or bricks. The result
+ * has the same bytes with any number of threads. */
 #ifndef HL_PARTICLES_PARTICLES_H
 #define HL_PARTICLES_PARTICLES_H
 
@@ -35,8 +35,8 @@ typedef struct hl_particle_input {
   const void *positions; /* [count][3]; world; doubles or floats */
   bool is_double;
   const float *lengths;            /* [count]; smoothing lengths, world units; null if they are to be found */
-  double period_low[3], period[3]; /* world: the begin and the length of the period along each axis; a length
-                                    * of 0 means that the axis is not periodic */
+  double period_low[3], period[3]; /* world: the beginning and the length of the period along each axis; a
+                                    * length of 0 means that the axis is not periodic */
 } hl_particle_input;
 
 /* Particles sorted along a Morton curve, so that neighbours in the arrays are mostly neighbours in space. */
@@ -79,10 +79,10 @@ hl_status hl_particles_find_lengths(hl_context *context, hl_pool *pool, const ch
 
 /* Limits of a lattice. */
 typedef struct hl_particle_limits {
-  double spacing; /* world units; the wanted spacing of the finest level. 0: half the smoothing length that
-                   * one particle in fifty falls short of */
+  double spacing; /* world units; the wanted spacing of the finest level. 0: half of a smoothing length,
+                   * chosen so that one particle in fifty has a shorter one */
   size_t points;  /* the most points of level 0 */
-  size_t side;    /* the most cells of level 0 along an axis; 0: no limit */
+  size_t side;    /* the greatest number of cells of level 0 along an axis; 0: no limit */
 } hl_particle_limits;
 
 /* Chooses a lattice around the particles and their kernels. A wanted spacing is kept; along a periodic axis
@@ -108,8 +108,8 @@ typedef struct hl_particle_plan {
   size_t leaf_count;
 } hl_particle_plan;
 
-/* Chooses each particle's level, and finds the blocks that are needed. in_bricks: whether the field is to
- * become bricks. *plan must be released also after a failure. */
+/* Chooses each particle's level, and finds the blocks that are needed. in_bricks: whether bricks will be made
+ * of the field. *plan must be released also after a failure. */
 hl_status hl_particles_plan(hl_context *context, const hl_particle_set *set,
                             const hl_particle_lattice *lattice, bool in_bricks, const char *subject,
                             hl_particle_plan *plan, hl_error *error);

@@ -1,4 +1,4 @@
-/* particles/plan.c - which blocks of points particles need, and which bricks their field becomes.
+/* particles/plan.c - finds the blocks of points that particles need, and the bricks of their field.
  *
  * In: particles and a lattice. Out: an hl_particle_plan.
  *
@@ -57,7 +57,8 @@ static marks_of_axis marks_along(const hl_particle_lattice *lattice, const hl_pa
   for (int image = -1; image <= 1; image++) {
     int low = range[0] - 2 + image * n, high = range[1] + 1 + image * n;
     if (image != 0 && !grid->periodic[axis]) continue;
-    if (!grid->periodic[axis] && range[1] == n - 1) high = end - 1; /* the values at the face go on */
+    /* Beyond the face, the values at the face are repeated. */
+    if (!grid->periodic[axis] && range[1] == n - 1) high = end - 1;
     if (high < 0 || low >= end) continue;
     marks.low[marks.count] = (low < 0 ? 0 : low) >> HL_PARTICLE_BLOCK_SHIFT;
     marks.high[marks.count++] = (high < end ? high : end - 1) >> HL_PARTICLE_BLOCK_SHIFT;

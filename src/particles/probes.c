@@ -67,8 +67,8 @@ static int32_t cell_at(const probe_cells *cells, int axis, double coordinate) {
   return (int32_t)floor(coordinate / side);
 }
 
-/* A cell along an axis, of the numbers 0 to cells - 1: along periodic axes cells beyond one end are those at
- * the other end. */
+/* A cell along an axis, of the numbers 0 to cells - 1: along periodic axes, a cell beyond one end is the cell
+ * at the other end. */
 static int32_t wrapped(const probe_cells *cells, int axis, int32_t cell) {
   const int32_t count = (int32_t)cells->cells[axis];
   if (cells->grid.periodic[axis]) return (cell % count + count) % count;

@@ -1,8 +1,8 @@
-/* particles/probes.h - the exact sums of the particles' kernels at a few places, against which a field that
- * was made of the particles is measured.
+/* particles/probes.h - computes the exact sums of the particles' kernels at a few places. A field that was
+ * made of the particles is compared with these sums.
  *
- * In: particles and the plan of their field. Out: places, and sums there. The places are those of particles,
- * taken evenly from the set's order: where there are many particles, there are many places. */
+ * In: particles and the plan of their field. Out: places, and sums there. The places are the positions of
+ * some particles, taken evenly from the set's order. So regions with many particles have many places. */
 #ifndef HL_PARTICLES_PROBES_H
 #define HL_PARTICLES_PROBES_H
 

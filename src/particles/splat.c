@@ -22,7 +22,7 @@
 enum {
   ROW = HL_PARTICLE_ROW,
   LEAST_TILE = 16,
-  BOX = 2 * LEAST_TILE + ROW /* the most points of a tile's box along an axis */
+  BOX = 2 * LEAST_TILE + ROW /* the greatest number of points of a tile's box along an axis */
 };
 
 typedef struct splatting {
@@ -34,7 +34,8 @@ typedef struct splatting {
   hl_pool *pool;
   size_t tiles[3];         /* number of tiles along each axis: 1 or an even number */
   hl_block_table occupied; /* tiles that have particles */
-  uint32_t *begin;         /* owned; [occupied tiles + 1]; where a tile's particles begin in `listed` */
+  uint32_t *begin;         /* owned; [occupied tiles + 1]; for each tile, the index in `listed` of its first
+                            * particle */
   uint32_t *listed;        /* owned; indices of particles, tile by tile, in the set's order within a tile */
   uint32_t *of_color;      /* owned; [occupied tiles]; the tiles of the colour that is being filled */
   float *boxes;            /* owned; [threads][BOX^3] */
