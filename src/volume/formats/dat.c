@@ -1,4 +1,4 @@
-/* volume/formats/dat.c - .dat files, which describe bare voxels in another file.
+/* volume/formats/dat.c - reads .dat files, which describe bare voxels in another file.
  *
  * The file has the lines "ObjectFileName: f.raw", "Resolution: 64 64 64", "SliceThickness: 1 1 1" and
  * "Format: UCHAR", in any order. */

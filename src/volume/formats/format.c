@@ -25,7 +25,7 @@ hl_status hl_arrays_add(hl_load_request *request, const char *name, size_t compo
   return HL_OK;
 }
 
-/* Writes a list of arrays: "density; velocity (3 components); ...". */
+/* Writes a list of arrays as a text: "density; velocity (3 components); ...". */
 static void list_arrays(const hl_load_request *request, char *text, size_t size) {
   enum { NAMED = 12 };
   size_t used = 0;
@@ -93,7 +93,8 @@ hl_status hl_arrays_choose(hl_load_request *request, const char *path, int activ
   return HL_OK;
 }
 
-/* Chooses one of `count` times, channels or levels: the wanted one, or the first if none is wanted. */
+/* Chooses one of `count` times, channels or levels. The choice is the wanted one, or the first one if none is
+ * wanted. */
 static hl_status choose_step(const char *path, const char *kind, int wanted, size_t count, int *chosen,
                              hl_error *error) {
   if (wanted >= 0 && (size_t)wanted >= count && count <= 1)
@@ -145,7 +146,7 @@ void hl_channel_name(hl_channel *channel, const char *name) {
 /* ---- levels ---- */
 
 /* The greatest number of voxels of a level that is chosen by default. More voxels would take minutes, and
- * show nothing more in a picture a thousand pixels across. */
+ * would not change a picture that is a thousand pixels wide. */
 static const uint64_t VOXELS_OF_A_PICTURE = (uint64_t)1 << 30;
 
 /* Returns whether a level is fine enough for a picture: its longest axis has at least as many voxels as the
@@ -173,8 +174,8 @@ static uint64_t level_bytes(const hl_level_size *level) {
              : bytes;
 }
 
-/* The coarsest level that a picture of this size cannot tell from `level`; `level` itself where the size is
- * 0. */
+/* The coarsest level at which a picture of this size looks as at `level`. The result is `level` itself if the
+ * size is 0. */
 static size_t coarsest_for(int pixels, const hl_level_size *levels, size_t count, size_t level) {
   while (level + 1 < count && pixels > 0 && fills_picture(&levels[level + 1], pixels)) level++;
   return level;

@@ -3,7 +3,7 @@
  *
  * The reader of a format is one file NAME.c, which defines `const hl_format hl_format_NAME`. formats.h is the
  * registry of these NAMEs. A reader lists the file's arrays in its request, asks for a choice, and reads the
- * chosen array. Where the caller did not name an array or component, a warning says which one is read. */
+ * chosen array. If the caller did not name an array or component, a warning says which one is read. */
 #ifndef HL_VOLUME_FORMAT_H
 #define HL_VOLUME_FORMAT_H
 
@@ -12,24 +12,24 @@
 
 enum { HL_ARRAYS_MOST = 256 }; /* greatest number of arrays that are listed for one file */
 
-/* What the caller wishes, and what the reader finds in the file. */
+/* One request to load a volume. It holds the choices of the caller, and the facts that the reader finds in
+ * the file. */
 typedef struct hl_load_request {
   hl_context *context;
   const char *array;        /* null if the reader may choose */
   int component;            /* HL_COMPONENT_DEFAULT, HL_COMPONENT_MAGNITUDE, or an index */
-  double spacing[3];        /* world units; all 0 for the file's own */
+  double spacing[3];        /* world units; all 0 if the file's own spacing is used */
   int time, channel, level; /* HL_INDEX_DEFAULT, or an index */
   int pixels;               /* pixels of the picture's longer side; 0 if unknown */
   int preview_pixels;       /* pixels of the longer side of a first picture; 0 if there is none */
-  double window[2];         /* set by readers: the data values between which greys are to be shown; equal if
-                             * not told */
-  hl_channel *channels;     /* owned; [selection.channels]; set by readers, where the file describes
-                             * channels */
+  double window[2];         /* set by readers: the data values that are shown black and white; both equal if
+                             * the file does not state them */
+  hl_channel *channels;     /* owned; [selection.channels]; set by readers if the file describes channels */
   const char *unit;         /* set by readers: the unit of lengths, static; null if the file does not state
                              * it */
   hl_absence absence;       /* set by readers of stores on servers */
   bool is_anatomical;       /* set by readers of medical formats: whether the file states its anatomical space
-                             * on purpose */
+                             * explicitly */
   bool says_labels;         /* set by readers: whether the file says that its values are labels */
   bool says_fog;          /* set by readers: whether the file says that its values are the density of a fog */
   const char *series;     /* DICOM: the number, UID or description of the wanted series; null if the
@@ -41,11 +41,11 @@ typedef struct hl_load_request {
   hl_series_entry *series_list; /* owned; [series_count]; DICOM series */
   size_t series_count, chosen_series;
   bool more;              /* whether the file has more than HL_ARRAYS_MOST arrays */
-  hl_selection selection; /* the numbers of times, channels and levels in the file, 1 until the reader sets
-                           * them; and those that are read */
+  hl_selection selection; /* the numbers of times, channels and levels in the file, which are 1 until the
+                           * reader sets them; also the time, channel and level that are read */
   char array_told[1000], component_told[400],
-      selection_told[600]; /* warnings that name what was chosen by default: the array, the component, and the
-                            * time and channel; "" if there are none */
+      selection_told[600]; /* warnings that name the array, the component, and the time and channel that were
+                            * chosen by default; "" if there are none */
 } hl_load_request;
 
 /* Adds an array to the list. name: "" if arrays have no names in the format; type: 0 if an array of its type
@@ -53,17 +53,17 @@ typedef struct hl_load_request {
 hl_status hl_arrays_add(hl_load_request *request, const char *name, size_t components, hl_voxel_type type,
                         bool of_cells, hl_error *error);
 
-/* Sets request->chosen to the array that the caller wants by its name. Without a name, it is the array
- * `active` (-1 if there is none), else the first array of one component at points, else the first one at
- * cells, else the first array. The list must not be empty. */
+/* Sets request->chosen to the array that the caller has named. If the caller has named none, the choice is
+ * the array `active` (-1 if there is none), else the first array of one component at points, else the first
+ * one at cells, else the first array. The list must not be empty. */
 hl_status hl_arrays_choose(hl_load_request *request, const char *path, int active, hl_error *error);
 
 /* Chooses the component to read, and stores it in the payload, whose `components` and `block` must be set.
  * The choice is the wanted component, else the only one, else the magnitude of vectors of two or three
- * components, else the first component. is_series: whether components are time steps and channels, where the
- * time steps of a channel follow each other. The numbers of times and channels are those of
- * request->selection, or else all components are times. By default the first time step of the first channel
- * is read. Refuses a time, a channel or a level that request->selection does not have. */
+ * components, else the first component. is_series: whether components are time steps and channels. The time
+ * steps of a channel follow each other. The numbers of times and channels are those of request->selection, or
+ * else all components are times. By default the first time step of the first channel is read. Refuses a time,
+ * a channel or a level that request->selection does not have. */
 hl_status hl_component_choose(hl_load_request *request, const char *path, bool is_series, hl_payload *payload,
                               hl_error *error);
 
@@ -87,11 +87,12 @@ typedef struct hl_level_size {
 /* Sets request->selection's level among `count` levels, of which the finest is first. The choice is the
  * wanted level, else the finest that leaves half of the memory limit free and has at most 2^30 voxels. A
  * coarser level is chosen if it is as fine as the request's pixels can show. The choice becomes the
- * selection's aim; its level is a coarser one if the request's preview_pixels show no more. */
+ * selection's aim. The selection's level is a coarser one, if a first picture of preview_pixels pixels cannot
+ * show more. */
 hl_status hl_level_choose(hl_load_request *request, const char *path, const hl_level_size *levels,
                           size_t count, hl_error *error);
 
-/* For formats with one array without a name: lists the array and chooses the component. */
+/* Lists the array of a file that has a single array without a name, and chooses the component. */
 hl_status hl_component_only(hl_load_request *request, const char *path, bool is_series, hl_payload *payload,
                             hl_error *error);
 
@@ -102,24 +103,24 @@ typedef struct hl_format {
   const char *name;                       /* the format's name in error lines */
   const char *endings[HL_FORMAT_ENDINGS]; /* extensions of the names of files that must start with
                                            * `beginning`; null follows the last one */
-  const char *title;                      /* the name in lists of formats; if null, `name` is used there */
-  const char *more_endings;     /* other extensions of such files, separated by blanks; used only in lists of
-                                 * formats */
+  const char *title;                      /* the name in lists of formats; if null, lists show `name` */
+  const char *more_endings;     /* other extensions of files of this format, separated by blanks; used only in
+                                 * lists of formats */
   const char *(*missing)(void); /* returns the name of the library that the format needs, if this build lacks
                                  * it; else null */
   const char *beginning;        /* the bytes with which a file of this format must begin, as error lines
                                  * describe them */
 
-  /* Whether a file whose first bytes are these has the format. length: HL_FORMAT_SNIFFED_BYTES, or less if
-   * the file is shorter. */
+  /* Returns whether a file that begins with these bytes has the format. length: HL_FORMAT_SNIFFED_BYTES, or
+   * less if the file is shorter. */
   bool (*has_content)(const unsigned char *bytes, size_t length);
 
-  /* Whether the file's name alone proves the format, whatever its bytes are. All formats are asked this
-   * before any has_content() is called. */
+  /* Returns whether the file's name alone proves the format, independently of the file's bytes. All formats
+   * are asked this before any has_content() is called. */
   bool (*fits)(const hl_stream *stream);
 
-  /* Whether the file's name suggests the format. Formats are asked this only if has_content() of all formats
-   * is false. May replace *stream by the file that holds the header. */
+  /* Sets *claimed to whether the file's name suggests the format. Formats are asked this only if
+   * has_content() of all formats is false. May replace *stream by the file that holds the header. */
   hl_status (*claim_name)(hl_stream **stream, bool *claimed, hl_error *error);
 
   /* Reads *stream from its current position. May replace *stream or push decoders on it. The caller closes
@@ -131,8 +132,8 @@ typedef struct hl_format {
   hl_status (*load_bundle)(hl_bundle *bundle, hl_load_request *request, bool *claimed, hl_volume **volume,
                            hl_error *error);
 
-  /* Whether load_bundle opens files by their names, without a list of all files. Only such formats can be
-   * read from servers. */
+  /* This flag says whether load_bundle opens files by their names, without a list of all files. Only such
+   * formats can be read from servers. */
   bool finds_by_name;
 } hl_format;
 

@@ -1,5 +1,5 @@
-/* volume/formats/format_list.c - what this build of the library reads and writes: the formats of volumes, and
- * how bytes and pictures in their files may be packed. */
+/* volume/formats/format_list.c - lists the formats of volumes that this build of the library reads and
+ * writes, and the packings of bytes and pictures in their files. */
 #include <string.h>
 
 #include "core/endings.h"
@@ -80,8 +80,8 @@ hl_status hl_volume_get_format(size_t index, hl_file_format *format) {
 
 typedef struct packing {
   const char *name, *missing;
-  const char *read_endings, *written_endings; /* null if whole files cannot be packed in this way, or if such
-                                               * files are not written */
+  const char *read_endings, *written_endings; /* endings of the names of files that are packed as a whole;
+                                               * null if such files are not read, or not written */
 } packing;
 
 static const packing packings[] = {

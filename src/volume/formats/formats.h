@@ -1,4 +1,5 @@
-/* volume/formats/formats.h - the registry of formats, in the order in which hl_volume_load asks them.
+/* volume/formats/formats.h - registers the readers of formats, in the order in which hl_volume_load asks
+ * them.
  *
  * Each NAME stands for a reader, a file NAME.c that defines hl_format_NAME (see format.h). meson.build reads
  * the names from this file. */

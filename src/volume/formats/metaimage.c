@@ -1,4 +1,5 @@
-/* volume/formats/metaimage.c - MetaImage: .mha (voxels in the same file) and .mhd (voxels in another file).
+/* volume/formats/metaimage.c - reads MetaImage files: .mha (voxels in the same file) and .mhd (voxels in
+ * another file).
  *
  * The header consists of lines "Key = value", of which ElementDataFile is the last. World: physical = Offset
  * + sum over axes of index * spacing * row of TransformMatrix, as ITK reads the matrix. */
@@ -194,7 +195,7 @@ static void make_grid(const meta_header *header, hl_volume_description *grid) {
     }
   }
   grid->type = header->type;
-  /* positions are always in ITK's world (x to the left, y to the back), whatever directions the axes have */
+  /* positions are always in ITK's world (x to the left, y to the back), for all directions of the axes */
   grid->space = header->grid.is_anatomical ? HL_SPACE_LPS : HL_SPACE_UNKNOWN;
   grid->value_scale = header->slope;
   grid->value_offset = header->intercept;

@@ -1,4 +1,4 @@
-/* volume/formats/mgh.c - FreeSurfer's volumes: .mgh, and .mgz, which is packed by gzip.
+/* volume/formats/mgh.c - reads FreeSurfer's volumes: .mgh, and .mgz, which is packed by gzip.
  *
  * All numbers are big-endian: the version 1, three sizes and the number of frames, the type, and a flag. If
  * the flag is set, voxel sizes, the directions of the axes and the middle of the volume follow (RAS,
@@ -43,7 +43,7 @@ static bool has_content(const unsigned char *bytes, size_t length) {
 /* Sets the volume's axes and origin. The file states the position of the middle, which has the index size /
  * 2, even if the size is odd. */
 static void place(const unsigned char *header, hl_volume_description *grid) {
-  /* Axes i, j, k and position of the middle, if the file states none. */
+  /* The axes i, j, k and the position of the middle that are used if the file states none. */
   static const double usual[12] = {-1, 0, 0, 0, 0, -1, 0, 1, 0, 0, 0, 0};
   bool good = header[IS_GOOD + 1] == 1;
   const unsigned char *at = header + PLACE;

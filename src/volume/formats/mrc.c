@@ -1,10 +1,10 @@
-/* volume/formats/mrc.c - MRC and CCP4 maps of electron microscopy and crystallography: .mrc, .map, .ccp4,
- * .rec, .st.
+/* volume/formats/mrc.c - reads MRC and CCP4 maps of electron microscopy and crystallography: .mrc, .map,
+ * .ccp4, .rec, .st.
  *
  * Source of the fields: the MRC2014 format (Cheng et al., Journal of Structural Biology 192, 2015, and the
- * CCP-EM project's page of it). The header has 1024 bytes of 4-byte words. Its byte order is the one in which
- * the numbers are possible. World coordinates are the cell's X, Y, Z in Angstroms. MAPC, MAPR and MAPS say
- * along which of these axes the file's columns, rows and sections run. */
+ * CCP-EM project's page of it). The header has 1024 bytes of 4-byte words. The byte order is found by trying
+ * both: in the right one, the numbers are possible. World coordinates are the cell's X, Y, Z in Angstroms.
+ * MAPC, MAPR and MAPS say along which of these axes the file's columns, rows and sections run. */
 #include <math.h>
 #include <string.h>
 

@@ -1,5 +1,5 @@
-/* volume/formats/nifti.c - NIfTI-1 and NIfTI-2: .nii, and pairs of .hdr and .img; ANALYZE 7.5 and SPM99,
- * whose headers are like NIfTI-1's.
+/* volume/formats/nifti.c - reads NIfTI-1 and NIfTI-2: .nii, and pairs of .hdr and .img; ANALYZE 7.5 and
+ * SPM99, whose headers are like NIfTI-1's.
  *
  * ANALYZE headers state no orientation. As in nibabel, the orientation is taken from SPM's file NAME.mat
  * beside the header. Without this file, x runs to the left, and the world's origin is a voxel: the one that
@@ -71,8 +71,8 @@ static int64_t load_dimension(const nifti_header *header, int index) {
   return (int64_t)load_bits(header, header->layout->dim + 8 * (size_t)index, 8);
 }
 
-/* Finds the layout and the byte order of a header from its first four bytes, which state its length. Null if
- * they are no header's. */
+/* Finds the layout and the byte order of a header from its first four bytes, which state its length. Returns
+ * null if the bytes do not begin a header. */
 static const nifti_layout *identify(const unsigned char *bytes, bool *big_endian) {
   uint32_t little = (uint32_t)bytes[0] | (uint32_t)bytes[1] << 8 | (uint32_t)bytes[2] << 16 |
                     (uint32_t)bytes[3] << 24;
@@ -213,9 +213,9 @@ static void place_by_sform(const nifti_header *header, hl_volume_description *gr
   }
 }
 
-/* The least a * a that is not taken for 0. In a half turn a is 0, and a smaller a * a is only the rounding
- * error of the three floats b, c, d. The function nifti_quatern_to_mat44() of the reference implementation,
- * nifti1_io.c, does the same. */
+/* The limit of a * a below which a counts as 0. A half turn has a = 0, and an a * a below the limit is only
+ * the rounding error of the three floats b, c, d. The function nifti_quatern_to_mat44() of the reference
+ * implementation, nifti1_io.c, does the same. */
 static const double HALF_TURN = 1e-7;
 
 /* Sets axes and origin by the format's method 2, in which the header states a rotation, voxel sizes and an

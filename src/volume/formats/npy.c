@@ -1,4 +1,4 @@
-/* volume/formats/npy.c - NumPy arrays, .npy format 1.0 to 3.0: axes [z][y][x], in C or Fortran order.
+/* volume/formats/npy.c - reads NumPy arrays, .npy format 1.0 to 3.0: axes [z][y][x], in C or Fortran order.
  *
  * The header consists of a mark, two bytes of version, the length of a text, and the text, which is a
  * dictionary of descr, fortran_order and shape. Two axes are [y][x]. Of four axes, the last one holds the
@@ -20,7 +20,7 @@ typedef struct npy_header {
   const char *path;
   const char *at; /* position in the text, which ends with a zero byte */
   hl_voxel_type type;
-  size_t numbers; /* numbers of a value; 2 for complex values */
+  size_t numbers; /* the number of numbers in a value: 2 for complex values, else 1 */
   bool big_endian, fortran, has_type, has_order, has_shape;
   int axes;
   size_t shape[MOST_AXES];

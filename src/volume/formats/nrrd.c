@@ -1,5 +1,5 @@
-/* volume/formats/nrrd.c - NRRD, versions 1 to 5, attached and detached: chooses the grid's axes, and reads
- * the voxels. */
+/* volume/formats/nrrd.c - reads NRRD files, versions 1 to 5, attached and detached: chooses the grid's axes,
+ * and reads the voxels. */
 #include <math.h>
 #include <stdio.h>
 #include <string.h>
@@ -14,7 +14,7 @@
 
 /* ---- which axes belong to the grid, which hold components, and where the grid lies ---- */
 
-/* Returns whether an axis is of components instead of voxels. */
+/* Returns whether the samples along an axis are components instead of voxels. */
 static bool is_component_axis(const nrrd_header *header, const nrrd_axis *axis) {
   if (header->space.has_directions) return !axis->has_direction;
   int space = 0;
@@ -24,9 +24,9 @@ static bool is_component_axis(const nrrd_header *header, const nrrd_axis *axis) 
   return axis->kind[0] != 0 && !hl_text_is_one_of(axis->kind, "domain|space|none|???");
 }
 
-/* Returns whether the first axis is assumed to be of components although the file does not say so. This is
- * the case if the axis has at most four samples, the file states neither directions nor kinds of axes, and at
- * least four axes have several samples. */
+/* Returns whether the samples along the first axis are assumed to be components, although the file does not
+ * say so. This is the case if the axis has at most four samples, the file states neither directions nor kinds
+ * of axes, and at least four axes have several samples. */
 static bool is_first_of_components(const nrrd_header *header) {
   bool unsaid = header->axis[0].size <= 4 && !header->space.has_directions;
   int thick = 0;
@@ -61,8 +61,9 @@ static int choose_axes(const nrrd_header *header, int chosen[NRRD_MOST_AXES]) {
  * neighbours. Axes of the grid may come before and after them. */
 static hl_status find_components(const nrrd_header *header, const int chosen[NRRD_MOST_AXES], int count,
                                  bool *is_series, hl_payload *payload, hl_error *error) {
-  size_t before = 1, since = 1; /* products of the sizes of grid axes: of those before the axes of components,
-                                 * and of those after */
+  size_t before = 1, since = 1; /* before: the product of the sizes of the grid's axes before the axes of
+                                 * components; since: the product of the sizes of the grid's axes after
+                                 * them */
   int grid_axis = 0;
   *is_series = false;
   for (int n = 0; n < header->dimension; n++) {

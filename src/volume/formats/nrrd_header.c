@@ -1,4 +1,4 @@
-/* volume/formats/nrrd_header.c - the header of an NRRD file.
+/* volume/formats/nrrd_header.c - reads the header of an NRRD file.
  *
  * The header consists of lines "field: value" (in any case) up to an empty line. Pairs "key:=value" and
  * fields that Halflight does not need are skipped. Source: the format's definition by Teem, "Definition of
@@ -164,8 +164,9 @@ static bool scan_vector(const char **cursor, double vector[3], bool *beyond) {
   return count >= 1;
 }
 
-/* Returns whether a vector is no direction in space. This is the case if it has no numbers, as some programs
- * write in place of "none", or if it runs only along a fourth axis, such as time. */
+/* Returns whether a vector is no direction in space. This is the case if the vector's numbers are NaN, which
+ * some programs write in place of "none". It is also the case if the vector runs only along a fourth axis,
+ * such as time. */
 static bool is_no_direction(const double v[3], bool beyond) {
   return (isnan(v[0]) && isnan(v[1]) && isnan(v[2])) || (beyond && v[0] == 0 && v[1] == 0 && v[2] == 0);
 }

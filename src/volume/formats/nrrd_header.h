@@ -1,4 +1,4 @@
-/* volume/formats/nrrd_header.h - the content of an NRRD file's header. */
+/* volume/formats/nrrd_header.h - reads the header of an NRRD file. */
 #ifndef HL_VOLUME_NRRD_HEADER_H
 #define HL_VOLUME_NRRD_HEADER_H
 
@@ -13,8 +13,8 @@ typedef enum nrrd_encoding { NRRD_RAW, NRRD_GZIP, NRRD_BZIP2, NRRD_TEXT, NRRD_HE
 typedef struct nrrd_axis {
   size_t size;
   double spacing, minimum, maximum; /* NaN if not stated */
-  bool is_node;                     /* whether samples lie at cell corners; otherwise at cell centres, as Teem
-                                     * assumes */
+  bool is_node;                     /* whether samples lie at cell corners; otherwise they lie at cell
+                                     * centres, as Teem assumes */
   bool has_direction;
   double direction[3];
   char kind[NRRD_KIND_BYTES];

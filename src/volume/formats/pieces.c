@@ -1,4 +1,4 @@
-/* volume/formats/pieces.c - see pieces.h. */
+/* volume/formats/pieces.c - makes a volume of the pieces in which a file holds it, as pieces.h describes. */
 #include "volume/formats/pieces.h"
 
 #include <string.h>

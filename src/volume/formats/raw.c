@@ -1,8 +1,8 @@
-/* volume/formats/raw.c - files of bare voxels, whose size and type the file's name states. For slices of bare
- * voxels see slice_raw.c.
+/* volume/formats/raw.c - reads files of bare voxels, whose size and type the file's name states. slice_raw.c
+ * reads slices of bare voxels.
  *
  * A name is anything_256x256x128_uint8.raw, with _be (or _le) after the type for the byte order, and .gz for
- * gzip. For bare voxels that another file describes see dat.c. */
+ * gzip. dat.c reads bare voxels that another file describes. */
 #include "volume/formats/raw.h"
 
 #include <string.h>

@@ -8,15 +8,17 @@
  * name states none. */
 bool hl_raw_name(const char *path, hl_payload *payload);
 
-/* What the name of a slice, or of its folder, states about its voxels, such as "512x512_uint16". */
+/* The size and type of a slice's voxels, as the name of the slice or of its folder states them:
+ * "512x512_uint16". */
 typedef struct hl_raw_slice {
   size_t width, height;
   hl_voxel_type type;
   bool big_endian;
-  size_t begin, end; /* its place in the name */
+  size_t begin, end; /* the position of this text in the name */
 } hl_raw_slice;
 
-/* Finds what a name of `length` characters states. Returns false if it states nothing. */
+/* Finds the size and type that a name of `length` characters states. Returns false if the name states
+ * none. */
 bool hl_raw_slice_name(const char *name, size_t length, hl_raw_slice *slice);
 
 #endif

@@ -1,4 +1,4 @@
-/* volume/formats/slc.c - VolVis' volumes (.slc), as VTK's example data have them.
+/* volume/formats/slc.c - reads VolVis' volumes (.slc), as VTK's example data have them.
  *
  * The header is text: the mark 11111, three sizes and the bits of a voxel, three spacings, and four numbers
  * that name the unit of length, the origin of the data, what was done to them, and how voxels are packed. The
@@ -59,7 +59,7 @@ static hl_status read_sizes(hl_stream *stream, size_t *values, int count, hl_err
   return HL_OK;
 }
 
-/* Reads the X after which bytes follow that are no text. */
+/* Reads the X that ends the text before binary data. */
 static hl_status read_mark(hl_stream *stream, hl_error *error) {
   char word[WORD_BYTES];
   hl_status status = read_word(stream, word, error);
@@ -99,14 +99,15 @@ static hl_status read_header(hl_stream *stream, slc_header *header, hl_error *er
 
 /* ---- packed slices ---- */
 
-/* A stream that unpacks slices. A packed byte holds a count of 1 to 127 in its lower bits. If its highest bit
- * is set, as many bytes follow; else one byte follows that is repeated. A count of 0 ends the slice. */
+/* A stream that unpacks slices. The packed data are runs. The first byte of a run holds a count of 1 to 127
+ * in its lower seven bits. If its highest bit is set, `count` bytes follow. If not, one byte follows, which
+ * is repeated `count` times. A count of 0 ends the slice. */
 typedef struct run_stream {
   hl_stream base;
-  size_t slice_bytes, slices; /* bytes of an unpacked slice; slices that have not begun */
-  size_t left;                /* unpacked bytes that the slice still lacks */
-  size_t packed;              /* packed bytes of the slice that have not been read */
-  size_t run;                 /* bytes of the run that have not been given */
+  size_t slice_bytes, slices; /* number of bytes of an unpacked slice; number of slices that have not begun */
+  size_t left;                /* number of unpacked bytes of the current slice that belong to later runs */
+  size_t packed;              /* number of packed bytes of the slice that have not been read */
+  size_t run;                 /* number of bytes of the current run that have not been given to the reader */
   bool repeats;
   unsigned char value; /* the byte that is repeated */
 } run_stream;
@@ -167,7 +168,8 @@ static hl_status pull(hl_stream *stream, unsigned char *bytes, size_t capacity, 
   return status;
 }
 
-/* Two packed bytes give at most 127 bytes. */
+/* An upper bound of the number of bytes that the stream can still give. A run takes at least two packed
+ * bytes, and gives at most 127 bytes. */
 static uint64_t most_bytes(const hl_stream *stream) {
   const uint64_t bytes = hl_stream_at_most(stream->below);
   return bytes > UINT64_MAX / RUN_MOST ? UINT64_MAX : RUN_MOST * bytes;

@@ -1,4 +1,4 @@
-/* volume/formats/spm_mat.c - see spm_mat.h.
+/* volume/formats/spm_mat.c - reads the file in which SPM keeps the place of an ANALYZE volume.
  *
  * The file is a MAT-file of version 4: variables one after the other, each with five integers, its name and
  * its numbers, column by column. The variable "mat" is the matrix from voxel indices, which SPM counts from
@@ -18,7 +18,7 @@
 
 enum { MOST_BYTES = 1 << 16, HEAD_BYTES = 20, NUMBERS = 16, PATH_BYTES = 4096 };
 
-/* What remains to be read of the file. */
+/* The part of the file that has not been read yet. */
 typedef struct mat_file {
   const unsigned char *at;
   size_t left;

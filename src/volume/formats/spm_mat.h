@@ -7,8 +7,8 @@
 #include "volume/volume.h"
 
 /* Reads the .mat file beside a volume's header, and sets the axes and the origin of the volume's grid (x to
- * the right, y to the front, z up). Where there is no such file, it returns false and leaves the grid as it
- * is. It does the same, with a warning, where the file cannot be read. */
+ * the right, y to the front, z up). If there is no such file, the function returns false and does not change
+ * the grid. If the file cannot be read, the function does the same, and warns. */
 bool hl_spm_mat_place(hl_context *context, const char *header_path, hl_volume_description *grid);
 
 #endif

@@ -1,4 +1,4 @@
-/* volume/formats/vgi.c - .vgi headers of VGStudio, which describe bare voxels in another file.
+/* volume/formats/vgi.c - reads .vgi headers of VGStudio, which describe bare voxels in another file.
  *
  * The text has parts "{volume1}", sections "[file1]" in them and lines "Key = value". The first part
  * "{volumeN}" says in [representation] and [file1] which voxels there are, and in which file. [geometry] of
@@ -22,7 +22,8 @@ typedef struct vgi_header {
   const hl_stream *stream;
   int line;
   char part[WORD_BYTES], section[WORD_BYTES], volume[WORD_BYTES]; /* volume: the part that is read */
-  voxel_section grid, file; /* of [representation] and of [file1]; what the file says goes before */
+  voxel_section grid, file; /* the sections [representation] and [file1]; a value that [file1] states has
+                             * priority */
   size_t skip;
   double spacing[3];
   bool has_spacing;
@@ -177,7 +178,8 @@ static hl_status make_grid(const vgi_header *header, hl_volume_description *grid
   return find_type(header, &grid->type, error);
 }
 
-/* Refuses a header without a resolution, as one that was cut off has none, unless the caller gives one. */
+/* Refuses a header without a resolution, unless the caller gives the spacing. A header that was cut off has
+ * no resolution. */
 static hl_status check_spacing(const vgi_header *header, const double wanted[3], hl_error *error) {
   if (header->has_spacing || wanted[0] != 0 || wanted[1] != 0 || wanted[2] != 0) return HL_OK;
   return hl_fail(error, HL_ERROR_INPUT,

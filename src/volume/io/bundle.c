@@ -1,4 +1,5 @@
-/* volume/io/bundle.c - the files of a folder. For files of archives see bundle_zip.c. */
+/* volume/io/bundle.c - lists and opens the files of a folder. bundle_zip.c does so for the files of an
+ * archive. */
 #define _GNU_SOURCE
 #include "volume/io/bundle.h"
 
@@ -70,7 +71,7 @@ typedef struct folder_walk {
   hl_bundle *bundle;
   char name[PATH_MAX]; /* the current entry, relative to the folder */
   dev_t device;        /* the folder's file system; folders on other file systems are not searched */
-  size_t files, depth; /* number of entries of all kinds so far */
+  size_t files, depth; /* number of entries of all kinds that were met so far */
 } folder_walk;
 
 /* Returns whether a name below the folder is a regular file, which is reached without a link that leads out
@@ -118,7 +119,7 @@ static hl_status walk_entries(folder_walk *walk, DIR *folder, hl_error *error) {
   return status;
 }
 
-/* Walks through a folder. Folders that cannot be opened or lie too deep are ignored. */
+/* Walks through a folder. Folders that cannot be opened, or that lie too deep, are ignored. */
 static hl_status walk_folder(folder_walk *walk, hl_error *error) {
   hl_bundle *bundle = walk->bundle;
   if (walk->depth == HL_BUNDLE_DEPTH_MOST) return HL_OK;

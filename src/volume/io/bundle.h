@@ -1,4 +1,4 @@
-/* volume/io/bundle.h - many files as one input: a folder, a zip archive, or a store on a server.
+/* volume/io/bundle.h - makes one input of many files: a folder, a zip archive, or a store on a server.
  *
  * A folder's files are the files in it and in the folders below it, down to a greatest depth and up to a
  * greatest number. Symbolic links to folders, and links to files outside, are not followed. */
@@ -9,7 +9,7 @@
 
 typedef struct hl_bundle_entry {
   char *name;          /* owned; relative to the folder, with '/' */
-  uint64_t size;       /* in archives: length of the unpacked file, as the archive states it */
+  uint64_t size;       /* in archives: the length of the unpacked file, as the archive states it */
   uint64_t packed, at; /* in archives: length of the packed file; position of the entry's own header */
   int method;          /* in archives: 0 for stored, 8 for deflated; other methods cannot be read */
 } hl_bundle_entry;
@@ -32,7 +32,7 @@ struct hl_bundle {
                              * hl_bundle_list() */
   size_t count, capacity;
   hl_brought *brought; /* owned; the fetched files of a store on a server; else null */
-  size_t links_passed; /* number of links that are not followed, as they lead out of the folder or to
+  size_t links_passed; /* number of links that are not followed, because they lead out of the folder or to
                         * folders */
   /* Opens an entry of an archive; see hl_bundle_entry_open(). */
   hl_status (*open_entry)(const hl_bundle *bundle, const hl_bundle_entry *entry, bool quiet,
@@ -47,10 +47,11 @@ hl_status hl_bundle_open_folder(hl_context *context, const char *path, hl_bundle
 hl_status hl_bundle_of_file(hl_context *context, const char *path, hl_bundle *bundle, hl_error *error);
 void hl_bundle_close(hl_bundle *bundle);
 
-/* Finds the files of a folder. Call it once. For archives it is not needed, as their files are known. */
+/* Finds the files of a folder. Call it once. An archive does not need this call, because its files are known
+ * already. */
 hl_status hl_bundle_list(hl_bundle *bundle, hl_error *error);
 
-/* Adds a copy of an entry and of its name. After the last one, call hl_bundle_sort(). */
+/* Adds a copy of an entry and of its name. After the last entry, the caller must call hl_bundle_sort(). */
 hl_status hl_bundle_add(hl_bundle *bundle, hl_bundle_entry entry, hl_error *error);
 void hl_bundle_sort(hl_bundle *bundle);
 
@@ -66,15 +67,16 @@ static inline bool hl_bundle_is_on_server(const hl_bundle *bundle) { return bund
  * not need the server. */
 bool hl_bundle_has_brought(const hl_bundle *bundle, const char *name);
 /* Fetches files of a server in one request. Files that were fetched before are left out. most: the greatest
- * length of a file in bytes. Only the caller's thread may call it. */
+ * length of a file in bytes. Only the caller's thread may call this function. */
 hl_status hl_bundle_bring(const hl_bundle *bundle, const char *const *names, size_t count, uint64_t most,
                           hl_error *error);
 /* Fetches parts of files in one request: of file names[n] the bytes of ranges[n]. A source of such a file
  * (hl_bundle_find()) knows all parts that were fetched. A server may send whole files instead, of at most
- * `most` bytes. Fails if a file has changed between two parts. Only the caller's thread may call it. */
+ * `most` bytes. Fails if a file has changed between two parts. Only the caller's thread may call this
+ * function. */
 hl_status hl_bundle_bring_parts(const hl_bundle *bundle, const char *const *names,
                                 const hl_fetch_range *ranges, size_t count, uint64_t most, hl_error *error);
-/* Returns whether the server has this file, of which only parts were fetched. */
+/* Returns whether the server has this file, and only parts of the file were fetched. */
 bool hl_bundle_has_parts(const hl_bundle *bundle, const char *name);
 /* The first function gives the number of files that were fetched so far. The second forgets the files that
  * were fetched after the first `count`; no source of such a file may be open. */

@@ -1,7 +1,9 @@
-/* volume/io/bundle_server.c - the files of a store on a server, which the context's `fetch` callback fetches.
+/* volume/io/bundle_server.c - opens the files of a store on a server. The context's `fetch` callback fetches
+ * them.
  *
- * Files are brought many at a time, on the caller's thread, and stay open until they are forgotten, so that
- * any thread can read them. A file of which parts are brought has an entry for each part. */
+ * Many files are fetched at a time, on the caller's thread. They stay open until hl_bundle_forget() is
+ * called, so that any thread can read them. A file of which only parts are fetched has an entry for each
+ * part. */
 #include <string.h>
 #include <unistd.h>
 
@@ -86,7 +88,8 @@ static hl_status check_state(const hl_bundle *bundle, const char *name, const hl
                  bundle->path, name);
 }
 
-/* Takes over files that were fetched. Files for which there is no memory are closed. */
+/* Adds files that were fetched to the list of known files, which then owns them. Files for which there is no
+ * memory are closed. */
 static hl_status take(const hl_bundle *bundle, const char *const *names, size_t count,
                       const hl_fetched_file *files, hl_error *error) {
   hl_brought *brought = bundle->brought;
@@ -146,7 +149,7 @@ bool hl_bundle_has_parts(const hl_bundle *bundle, const char *name) {
   return known != NULL && known->file.descriptor >= 0 && !is_whole(&known->file);
 }
 
-/* Opens a file by the parts that were fetched. */
+/* Opens a file of which some parts were fetched. */
 static hl_status open_parts(const hl_bundle *bundle, const char *name, uint64_t whole, hl_source **source,
                             hl_error *error) {
   const hl_brought *brought = bundle->brought;

@@ -1,4 +1,4 @@
-/* volume/io/bundle_zip.c - the files of a zip archive, zip64 included.
+/* volume/io/bundle_zip.c - lists and opens the files of a zip archive, zip64 included.
  *
  * Source: PKWARE's APPNOTE.TXT 6.3.10, sections 4.3.7 (local header), 4.3.12 (central directory), 4.3.14 to
  * 4.3.16 (its end) and 4.5.3 (zip64). Nothing is unpacked to disk, so that names in the archive cannot do
@@ -80,8 +80,8 @@ static hl_status find_directory(const hl_bundle *bundle, hl_source *source, uint
   return HL_OK;
 }
 
-/* Takes an entry's size, packed size and position from the extra field of zip64. It contains only those of
- * these three numbers that did not fit into 32 bits, in this order. */
+/* Takes an entry's size, packed size and position from the extra field of zip64. Of these three numbers, the
+ * field contains only the ones that did not fit into 32 bits, in this order. */
 static void take_extra(const unsigned char *extra, size_t length, hl_bundle_entry *entry) {
   for (size_t n = 0; n + 4 <= length;) {
     size_t bytes = u16(extra + n + 2);

@@ -1,4 +1,4 @@
-/* volume/io/bundle_zip.h - the files of a zip archive as a bundle. */
+/* volume/io/bundle_zip.h - makes a bundle of the files of a zip archive. */
 #ifndef HL_VOLUME_BUNDLE_ZIP_H
 #define HL_VOLUME_BUNDLE_ZIP_H
 

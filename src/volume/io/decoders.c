@@ -1,7 +1,7 @@
-/* volume/io/decoders.c - streams that decode the bytes of the stream below them.
+/* volume/io/decoders.c - makes streams that decode the bytes of the stream below them.
  *
- * In: coded bytes from the stream below. Out: plain bytes, never more than the reader requests. Memory is
- * bounded: zlib's window, one small header, one group of digits. */
+ * In: coded bytes from the stream below. Out: plain bytes, never more than the reader requests. The memory of
+ * a decoder is bounded: zlib's window, one packed block, one small header, or one group of digits. */
 #include "volume/io/decoders.h"
 
 #include <limits.h>
@@ -16,8 +16,8 @@
 enum {
   DEFLATE_GREATEST_RATIO = 1032, /* the greatest number of bytes that one deflated byte gives: a length and a
                                   * distance, with a code of one bit each, give 258 bytes (RFC 1951) */
-  PENDING_BYTES = 65536,         /* more bytes than zlib ever holds back, as its window and its bit buffer are
-                                  * smaller */
+  PENDING_BYTES = 65536,         /* a number of bytes that is greater than zlib can hold back, because its
+                                  * window and its bit buffer are smaller */
   /* zlib.h: 15 is the largest window; with 32 added, zlib finds out whether the data are gzip or zlib. */
   AUTOMATIC_WINDOW = 15 + 32
 };
@@ -134,7 +134,7 @@ hl_status hl_stream_push_inflate(hl_stream **stream, hl_error *error) {
   made->base.pull = inflate_pull;
   made->base.at_most = inflate_at_most;
   made->base.close = inflate_close;
-  *stream = &made->base; /* from now on the caller must close *stream, even if zlib cannot be started */
+  *stream = &made->base; /* from here on the caller must close *stream, even if zlib cannot be started */
   return start_zlib(&made->zlib, &made->base, &made->started, error);
 }
 
@@ -328,7 +328,7 @@ typedef struct coded_stream {
   unsigned char digit[256]; /* value of each character */
   unsigned group_digits;    /* digits in a full group: 4 or 2 */
   unsigned digit_bits;      /* bits in a digit: 6 or 4 */
-  uint32_t bits;            /* value of the group's digits so far */
+  uint32_t bits;            /* the value of the digits of the current group that were read so far */
   unsigned held, padding;   /* numbers of digits and of padding characters of the current group so far */
   unsigned char left[3];    /* decoded bytes of the last group that did not fit into the reader's memory */
   unsigned left_count;

@@ -1,4 +1,4 @@
-/* volume/io/decoders.h - streams that decode the bytes of the stream below them.
+/* volume/io/decoders.h - makes streams that decode the bytes of the stream below them.
  *
  * Pushing a decoder puts it on top of *stream: *stream becomes the decoder, which owns the old stream. The
  * caller must close *stream afterwards, even if the push has failed. */

@@ -1,4 +1,4 @@
-/* volume/io/destination.c - see destination.h. */
+/* volume/io/destination.c - stores the voxels that a reader gives, as destination.h describes. */
 #include "volume/io/destination.h"
 
 #include <string.h>
@@ -34,7 +34,7 @@ static void warn_of_pictures(hl_context *context, const hl_volume_description *g
 }
 
 /* Finds the numbers of this rank's first voxel and of the voxel after its last one. A rank's voxels are
- * consecutive, as they are whole slices. */
+ * consecutive, because they form whole slices. */
 static void own_range(const hl_own_voxels *own, size_t *begin, size_t *end) {
   size_t slice = own->box.count[0] * own->box.count[1];
   *begin = own->box.begin[2] * slice;
@@ -69,10 +69,10 @@ hl_status hl_destination_open(hl_context *context, const hl_volume_description *
 
 /* ---- sparse pages ---- */
 
-/* CROWDED: the greatest part of all pages that sparse pages hold. If more are stored, the voxels are moved
- * into one array: pages are slower to sample, and moving a quarter of the voxels takes little time beside
- * reading all of them. LEAST_SPARSE: the least bytes of a volume in sparse pages; smaller ones gain nothing
- * that counts. */
+/* CROWDED: the greatest fraction of a volume's pages that sparse pages hold. If more pages are stored, the
+ * voxels are moved into one array: pages are slower to sample, and moving a quarter of the voxels takes
+ * little time beside reading all of them. LEAST_SPARSE: the least size in bytes of a volume in sparse pages.
+ * Smaller volumes would save too little memory. */
 #define CROWDED 0.25
 enum { LEAST_SPARSE = 4 << 20 };
 
@@ -82,8 +82,9 @@ static bool may_be_rounded(hl_voxel_type type) {
   return hl_voxel_type_storage(type) == HL_STORAGE_F32 && type != HL_VOXEL_F16 && type != HL_VOXEL_F32;
 }
 
-/* Returns whether memory has room for one array beside the sparse pages that are moved into it. Without a
- * limit it is the machine's memory: a file's header may name a volume beyond all memory. */
+/* Returns whether memory has room for one array beside the sparse pages that are moved into it. If the caller
+ * sets no memory limit, the limit is the machine's memory, because a file's header may promise a volume that
+ * is larger than any memory. */
 static bool has_room_to_spread(const hl_context *context, double bytes) {
   const double limit = (double)context->options.memory_limit,
                taken = (double)atomic_load(&context->whole->held) +
@@ -92,7 +93,8 @@ static bool has_room_to_spread(const hl_context *context, double bytes) {
   return taken + bytes * (1 + 2 * CROWDED) <= (limit > 0 ? limit : machine);
 }
 
-/* Addresses of 32 bits are too few to reserve some for pages that stay empty. */
+/* Returns whether a volume may be stored in sparse pages. A machine with addresses of 32 bits does not have
+ * enough addresses for pages that stay empty. */
 static bool may_be_sparse(const hl_context *context, const hl_volume_description *grid) {
   const double bytes = (double)grid->dimensions[0] * (double)grid->dimensions[1] *
                        (double)grid->dimensions[2] *

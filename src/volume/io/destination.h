@@ -1,5 +1,5 @@
-/* volume/io/destination.h - where a reader puts voxels: into memory, into the pages of a scratch file if
- * memory is short, or over ranks into this rank's share of the slices.
+/* volume/io/destination.h - stores the voxels that a reader gives: in memory, in the pages of a scratch file
+ * if memory is short, or, if the work is divided among ranks, in this rank's share of the slices.
  *
  * In: stored values, in pieces of any size and order, from several threads at once. Out: the volume. */
 #ifndef HL_VOLUME_DESTINATION_H
@@ -13,7 +13,7 @@ typedef struct hl_destination {
   hl_context *context;
   const char *path;      /* borrowed; starts the error lines */
   size_t voxel_bytes;    /* bytes of a stored value, or of a voxel's colours */
-  unsigned char *voxels; /* owned; [k][j][i]; null with pages */
+  unsigned char *voxels; /* owned; [k][j][i]; null if the voxels are in pages */
   hl_pages *pages;       /* owned; null if the voxels are in one array in memory */
   hl_exact exact;        /* the file's own numbers, if stored values round any of them */
   hl_own_voxels *own;    /* owned; this rank's slices of a volume over ranks, for which `voxels` is null; null
@@ -32,15 +32,15 @@ hl_status hl_destination_open(hl_context *context, const hl_volume_description *
                               hl_error *error);
 
 /* Opens a destination of HL_DESTINATION_PIECES whose voxels have one value until they are stored, if sparse
- * pages can hold the voxels. value: the stored value. Otherwise it does what hl_destination_open() does, and
- * every voxel must be stored. */
+ * pages can hold the voxels. value: the stored value. If sparse pages cannot hold the voxels, works as
+ * hl_destination_open() does, and every voxel must be stored. */
 hl_status hl_destination_open_sparse(hl_context *context, const hl_volume_description *grid,
                                      const void *value, const char *path, hl_destination *destination,
                                      hl_error *error);
 static inline bool hl_destination_is_sparse(const hl_destination *destination) {
   return destination->pages != NULL && hl_pages_are_sparse(destination->pages);
 }
-/* Returns whether so many voxels were stored in sparse pages that one array should hold them. */
+/* Returns whether the sparse pages hold too many voxels, so that one array should hold the volume instead. */
 bool hl_destination_is_crowded(const hl_destination *destination);
 /* Moves the voxels of sparse pages into one array, which also holds the value of voxels that are not stored.
  * No other thread may use the destination meanwhile. */
@@ -53,8 +53,8 @@ hl_status hl_destination_take(hl_destination *destination, size_t first, size_t 
                               hl_error *error);
 void hl_destination_put(hl_destination *destination, size_t first, size_t count, void *place);
 
-/* Returns whether any of these voxels is kept. Over ranks, voxels of other ranks are not kept, and need not
- * be read. */
+/* Returns whether any of these voxels is kept. If the work is divided among ranks, the voxels of other ranks
+ * are not kept, and need not be read. */
 bool hl_destination_wants(const hl_destination *destination, size_t first, size_t count);
 
 /* Returns whether voxels are not in one array in memory. Then hl_destination_store() must copy them to their
@@ -70,8 +70,8 @@ static inline void hl_destination_note(hl_destination *destination, bool swap, c
   hl_exact_note(&destination->exact, swap, source, first, count);
 }
 
-/* Makes the volume, which takes over the destination's memory, also on failure. grid: the grid with which the
- * destination was opened. */
+/* Makes the volume. The destination's memory passes to the volume, and is released if the function fails.
+ * grid: the grid with which the destination was opened. */
 hl_status hl_destination_adopt(hl_destination *destination, const hl_volume_description *grid,
                                hl_volume **volume, hl_error *error);
 

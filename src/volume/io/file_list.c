@@ -1,4 +1,4 @@
-/* volume/io/file_list.c - see file_list.h. */
+/* volume/io/file_list.c - reads the voxels of several files as one stream, as file_list.h describes. */
 #include "volume/io/file_list.h"
 
 #include <math.h>
@@ -81,9 +81,10 @@ typedef struct files_stream {
   char *header_path; /* owned; path of the header, in whose folder the files are looked for */
   hl_file_list list;
   size_t next;         /* index of the file that is opened next */
-  hl_stream *file;     /* owned; the current file, at its voxels; null if there is none */
-  uint64_t each, left; /* number of bytes of voxels in each file; number of them that are left in the current
-                        * file */
+  hl_stream *file;     /* owned; the current file, whose next byte belongs to its voxels; null if no file is
+                        * open */
+  uint64_t each, left; /* number of bytes of voxels in each file; number of bytes of voxels that are left in
+                        * the current file */
 } files_stream;
 
 /* Opens a file and goes to its voxels. *file is owned by the caller, also on failure. */

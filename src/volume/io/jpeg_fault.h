@@ -1,5 +1,5 @@
-/* volume/io/jpeg_fault.h - turns libjpeg's errors into a jump with a message. Included only if the build has
- * libjpeg. */
+/* volume/io/jpeg_fault.h - turns an error of libjpeg into a jump with a message. Only builds with libjpeg
+ * include this file. */
 #ifndef HL_VOLUME_JPEG_FAULT_H
 #define HL_VOLUME_JPEG_FAULT_H
 
@@ -9,8 +9,8 @@
 #include <jpeglib.h>
 
 typedef struct hl_jpeg_fault {
-  struct jpeg_error_mgr manager; /* libjpeg's part; the decoder's `err` points to it */
-  jmp_buf jump;                  /* where execution goes on after an error */
+  struct jpeg_error_mgr manager; /* libjpeg's error manager, to which the decoder's `err` points */
+  jmp_buf jump;                  /* the place at which execution continues after an error */
   char message[JMSG_LENGTH_MAX]; /* the error's message, set before the jump */
 } hl_jpeg_fault;
 
@@ -22,7 +22,7 @@ static inline void hl_jpeg_stop(j_common_ptr info) {
 
 static inline void hl_jpeg_pass_over(j_common_ptr info) { (void)info; }
 
-/* Sets what the decoder does on errors: it jumps to `jump`, which the caller must set. Warnings are
+/* Makes the decoder jump to `jump` after an error. The caller must have set `jump` by setjmp(). Warnings are
  * ignored. */
 static inline void hl_jpeg_catch(struct jpeg_decompress_struct *info, hl_jpeg_fault *fault) {
   info->err = jpeg_std_error(&fault->manager);

@@ -1,5 +1,6 @@
-/* volume/io/lengths.c - see lengths.h. The symbols are those of OME's schema (UnitsLength) and the
- * International System of Units. The names are those of UDUNITS-2 and ImageJ. */
+/* volume/io/lengths.c - finds the length of a unit that a microscope's file names. The symbols are those of
+ * OME's schema (UnitsLength) and the International System of Units. The names are those of UDUNITS-2 and
+ * ImageJ. */
 #include "volume/io/lengths.h"
 
 #include <stddef.h>

@@ -1,4 +1,4 @@
-/* volume/io/lengths.h - units of length as microscopes' files name them. */
+/* volume/io/lengths.h - finds the length of a unit that a microscope's file names. */
 #ifndef HL_VOLUME_LENGTHS_H
 #define HL_VOLUME_LENGTHS_H
 

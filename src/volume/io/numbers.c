@@ -1,4 +1,4 @@
-/* volume/io/numbers.c - numbers from a stream.
+/* volume/io/numbers.c - reads numbers from a stream.
  *
  * In: a stream at the first number. Out: doubles. */
 #include "volume/io/numbers.h"

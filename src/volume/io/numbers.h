@@ -22,7 +22,7 @@ typedef struct hl_number_code {
 double hl_binary_number(const unsigned char *bytes, hl_voxel_type type, bool big_endian);
 
 /* Reads `count` numbers. *numbers: [count], owned by the caller (hl_release). Integers are exact up to 2^53.
- * If the stream is too short for this many numbers, fails before memory is allocated. */
+ * If the stream is too short for `count` numbers, fails before memory is allocated. */
 hl_status hl_read_numbers(hl_stream *stream, const hl_number_code *code, uint64_t count, double **numbers,
                           hl_error *error);
 

@@ -1,5 +1,5 @@
-/* volume/io/packed_streams.c - streams that unpack whole files of bzip2 and xz. Like files of gzip, such
- * files are recognised by their first bytes.
+/* volume/io/packed_streams.c - makes streams that unpack whole files of bzip2 and xz. These files are
+ * recognised by their first bytes, as files of gzip are.
  *
  * In: packed bytes from the stream below. Out: plain bytes, never more than the reader requests. The two
  * libraries take their own memory: bzip2 some 4 MB, xz at most XZ_MEMORY. */
@@ -136,7 +136,8 @@ hl_status hl_stream_push_bzip2(hl_stream **stream, hl_error *error) {
  * need 65 MiB. */
 #define XZ_MEMORY ((uint64_t)256 << 20)
 /* The greatest number of bytes from one packed byte. Derived: the longest match repeats 273 bytes, and costs
- * fourteen binary decisions of at least log2(2048 / 2017) = .022 bits each. That is 7,090 bytes from one. */
+ * fourteen binary decisions of at least log2(2048 / 2017) = .022 bits each. The result is 7,090 bytes from
+ * one byte. */
 enum { XZ_GREATEST_RATIO = 8192 };
 
 typedef struct xz_stream {

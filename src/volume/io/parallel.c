@@ -1,5 +1,5 @@
-/* volume/io/parallel.c - see parallel.h. It also reports progress, handles cancellation, and keeps the first
- * error. */
+/* volume/io/parallel.c - reads the parts of a volume on all threads. It also reports progress, handles
+ * cancellation, and keeps the first error. */
 #include "volume/io/parallel.h"
 
 #include <pthread.h>

@@ -2,7 +2,8 @@
  *
  * In: a stream at the first voxel, and the header. Out: the volume. The file's bytes are read into the
  * volume's own memory and converted there, piece by piece. Voxels of 8 bytes, which become shorter, are read
- * through a small buffer. Voxels of volumes larger than memory are read through a piece of memory. */
+ * through a small buffer. If a volume is larger than memory, its voxels are read piece by piece, and each
+ * piece is copied to its place. */
 #include "volume/io/payload.h"
 
 #include <math.h>
@@ -141,7 +142,7 @@ static hl_status read_into_pages(void *data, size_t index, int worker, hl_error 
 }
 
 /* The number of voxels that a thread reads at once. Storing is fastest for whole slices. Therefore some whole
- * slices are read at once, if those of all threads take at most an eighth of the memory limit. Otherwise
+ * slices are read at once, if the slices of all threads take at most an eighth of the memory limit. Otherwise
  * about PIECE_BYTES are read: whole rows, or a part of one row. */
 static size_t piece_for_pages(const hl_context *context, const hl_payload *payload, int threads,
                               size_t voxel_bytes) {
@@ -247,7 +248,7 @@ static void put_number(hl_voxel_type type, double value, size_t index, unsigned 
   }
 }
 
-/* Reads the next number of a text. done: how many numbers were read before it. */
+/* Reads the next number of a text. done: the number of numbers that were read before this one. */
 static hl_status read_text_value(hl_stream *stream, const hl_payload *payload, uint64_t done, size_t index,
                                  unsigned char *raw, hl_error *error) {
   double value;
@@ -268,8 +269,8 @@ static hl_status read_text_value(hl_stream *stream, const hl_payload *payload, u
   return HL_OK;
 }
 
-/* Reads `count` values into `raw`, as values of the type read_type(). done: how many values were read
- * before. */
+/* Reads `count` values into `raw`, as values of the type read_type(). done: the number of values that were
+ * read before these. */
 static hl_status read_values(hl_stream *stream, const hl_payload *payload, uint64_t done, size_t count,
                              unsigned char *raw, hl_error *error) {
   size_t bytes = hl_voxel_type_bytes(payload->grid.type), got;
@@ -301,8 +302,8 @@ static hl_status read_text(hl_stream *stream, const hl_payload *payload, hl_dest
 
 /* ---- several components: one of them, or their magnitude ----
  *
- * The file holds [outer][component][block] values, block voxels of one component at a time: block is 1 where
- * the components of a voxel lie side by side, and all voxels where components follow each other as a whole.
+ * The file holds [outer][component][block] values, block voxels of one component at a time: block is 1 if the
+ * components of a voxel lie side by side. It is the number of all voxels if each component is a whole volume.
  * The magnitude is summed up in the voxels themselves, so that any order needs no more memory. */
 
 /* The place of the next value among blocks and components. */
@@ -330,7 +331,8 @@ static void add_square(float *magnitude, size_t component, double value) {
   *magnitude = (float)(component > 0 ? sqrt(before * before + value * value) : fabs(value));
 }
 
-/* Takes a value, if its component is wanted. raw: values as they were read. stage: their stored values. */
+/* Stores a value in the volume, if its component is wanted. raw: values as they were read. stage: their
+ * stored values. */
 static void take_value(const hl_payload *payload, const unsigned char *raw, const unsigned char *stage,
                        size_t index, const component_place *place, hl_destination *destination) {
   size_t voxel = place->first + place->in_block;
@@ -376,7 +378,7 @@ static hl_status read_components(hl_stream *stream, const hl_payload *payload, h
   component_place place = {0, 0, 0};
   size_t count = voxel_count(payload);
   for (uint64_t done = 0; place.first < count;) {
-    /* of components in planes, those after the wanted one are not needed */
+    /* if components follow each other as whole volumes, the components after the wanted one are not needed */
     if (payload->block == count && payload->component >= 0 && place.component > (size_t)payload->component)
       break;
     bool skipped;
@@ -387,7 +389,7 @@ static hl_status read_components(hl_stream *stream, const hl_payload *payload, h
       continue;
     }
     uint64_t left = (uint64_t)(count - place.first) *
-                    payload->components; /* number of values that may be left to read, at most */
+                    payload->components; /* the greatest number of values that may be left to read */
     size_t wanted = left < STAGE_VOXELS ? (size_t)left : STAGE_VOXELS;
     if (payload->block - place.in_block < wanted && payload->block > 1)
       wanted = payload->block - place.in_block;

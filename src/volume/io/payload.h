@@ -32,7 +32,8 @@ typedef struct hl_payload {
   bool text_is_fraction; /* whether the text's numbers are fractions from 0 to 1, which stand for the values 0
                           * to 255 of u8 */
   hl_trailing trailing;
-  const char *promiser; /* for error lines: what states the size and the type, such as "the header" */
+  const char *promiser; /* for error lines: the name of the part of the file that states the size and the
+                         * type, such as "the header" */
 } hl_payload;
 
 void hl_payload_defaults(hl_payload *payload);

@@ -1,5 +1,6 @@
-/* volume/io/source.c - see source.h. Files are read by pread(). Deflated data are inflated up to the last
- * byte that was needed so far, and the inflated bytes are kept. */
+/* volume/io/source.c - reads bytes at any position of a file, of memory, or of deflated data. Files are read
+ * by pread(). Deflated data are inflated up to the last byte that was needed so far, and the inflated bytes
+ * are kept. */
 #define _GNU_SOURCE
 #include "volume/io/source.h"
 
@@ -27,7 +28,7 @@ struct hl_source {
   uint64_t window_begin;
   size_t window_length, window_most; /* number of bytes in the window; number of bytes that the last call read
                                       * from the file */
-  /* For data that are a part of another source, and may be deflated. */
+  /* These members serve data that are a part of another source, and that may be deflated. */
   hl_source *below;  /* owned; may be null */
   uint64_t below_at; /* the next byte that is taken from `below` */
   struct {
@@ -172,9 +173,9 @@ hl_context *hl_source_context(const hl_source *source) { return source->context;
 const char *hl_source_path(const hl_source *source) { return source->path; }
 uint64_t hl_source_size(const hl_source *source) { return source->size; }
 
-/* Finds the part that holds the byte at `offset`. *offset becomes its place in the part's descriptor, and
- * *wanted at most the number of bytes up to the part's end: 0 if there is no such part. Returns the
- * descriptor. */
+/* Finds the part that holds the byte at `offset`, and returns the part's descriptor, or -1 if there is no
+ * such part. *offset is set to the byte's position in the descriptor. *wanted is reduced to the number of
+ * bytes up to the part's end, or to 0 if there is no such part. */
 static int find_part(const hl_source *source, uint64_t *offset, size_t *wanted) {
   for (size_t n = 0; n < source->part_count; n++) {
     const hl_source_part *part = &source->parts[n];
@@ -265,9 +266,8 @@ static hl_status peek_inflated(hl_source *source, uint64_t offset, size_t wanted
   if (offset >= source->inflated.length) *available = 0;
   else if (source->inflated.length - offset < *available)
     *available = (size_t)(source->inflated.length - offset);
-  if (*available > 0)
-    *bytes = source->inflated.bytes + offset; /* otherwise *bytes stays the empty block that the caller has
-                                               * set */
+  if (*available > 0) /* If no byte is available, *bytes stays the empty block that the caller has set. */
+    *bytes = source->inflated.bytes + offset;
   return status;
 }
 

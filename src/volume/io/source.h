@@ -24,12 +24,12 @@ hl_status hl_source_of_descriptor(hl_context *context, const char *path, int des
 /* Bytes of a file that lie at the beginning of a descriptor's file. */
 typedef struct hl_source_part {
   int descriptor;
-  uint64_t begin, count; /* their place in the file, and their number */
+  uint64_t begin, count; /* the position of these bytes in the file, and their number */
 } hl_source_part;
 
 /* Opens a file of which some parts are known. parts: [count], copied; the descriptors stay the caller's, and
- * must stay open as long as the source. whole: the file's size. Where no part is known, the source reads as
- * if the file ended there. */
+ * must stay open as long as the source. whole: the file's size. At a position that lies in no known part, the
+ * source gives no bytes, as at the end of a file. */
 hl_status hl_source_of_parts(hl_context *context, const char *path, const hl_source_part *parts, size_t count,
                              uint64_t whole, hl_source **source, hl_error *error);
 /* Opens memory. path: the name in error lines. The bytes must outlive the source. */

@@ -1,4 +1,5 @@
-/* volume/io/stream.c - functions for all streams: the buffer, lines, and skipping. Also streams of files. */
+/* volume/io/stream.c - functions that all streams share: they fill the buffer, read lines, and skip bytes.
+ * This file also implements streams of files and of memory. */
 #define _GNU_SOURCE
 #include "volume/io/stream.h"
 
@@ -242,8 +243,8 @@ hl_status hl_stream_read_all(hl_stream *stream, void *bytes, size_t wanted, hl_e
   return status;
 }
 
-/* Skips bytes of a plain file or of memory without reading them. Does so only for many bytes, for which it
- * saves time. Returns the number of bytes that were skipped. */
+/* Skips bytes of a plain file or of memory without reading them. A small number of bytes is not skipped in
+ * this way, because that would save no time. Returns the number of bytes that were skipped. */
 static uint64_t seek_over(hl_stream *stream, uint64_t count) {
   if (stream->below != NULL || !file_of(stream)->regular) return 0;
   file_stream *file = (file_stream *)stream;

@@ -1,5 +1,5 @@
-/* volume/io/stream.h - streams of bytes. Bytes are read in order, through a chain that consists of a file and
- * any decoders on top of it.
+/* volume/io/stream.h - reads streams of bytes. Bytes are read in order, through a chain that consists of a
+ * file and the decoders on top of it.
  *
  * A format's reader reads its header from the top of the chain, pushes decoders for the voxels, and reads on.
  * No stream holds more than its buffer, so that loading a volume needs little other memory. */
@@ -32,7 +32,7 @@ struct hl_stream {
   void (*close)(hl_stream *stream); /* releases the memory that this kind of stream owns; may be null */
 };
 
-/* Opens a file. regular_only: whether to refuse pipes and devices, for files that another file names. */
+/* Opens a file. regular_only: whether to refuse pipes and devices, as for a file that another file names. */
 hl_status hl_stream_open(hl_context *context, const char *path, bool regular_only, hl_stream **stream,
                          hl_error *error);
 /* Opens a block of memory as if it were a file. The memory must outlive the stream. path: the file's name in
@@ -68,8 +68,8 @@ void hl_stream_take(hl_stream *stream, size_t count);
 hl_status hl_stream_read(hl_stream *stream, void *bytes, size_t wanted, size_t *count, hl_error *error);
 /* Reads exactly the requested bytes, or fails. */
 hl_status hl_stream_read_all(hl_stream *stream, void *bytes, size_t wanted, hl_error *error);
-/* Reads all bytes that are left. It is for pipes, and for compressed data whose parts are needed in any
- * order. *bytes must be null before; the caller owns it, also on failure. */
+/* Reads all bytes that are left. Callers use this function for pipes, and for compressed data whose parts are
+ * needed in any order. *bytes must be null before; the caller owns it, also on failure. */
 hl_status hl_stream_read_rest(hl_stream *stream, unsigned char **bytes, size_t *length, hl_error *error);
 hl_status hl_stream_skip(hl_stream *stream, uint64_t count, hl_error *error);
 /* Reads one line, without its line end. A line ends with LF or CR LF; if the first line ends with CR alone,

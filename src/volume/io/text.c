@@ -1,7 +1,7 @@
-/* volume/io/text.c - words and numbers of text headers.
+/* volume/io/text.c - reads words and numbers of text headers.
  *
- * These functions do not depend on the program's locale. The C library's conversions do, and in some locales
- * "1.5" is not a number for them. */
+ * These functions do not depend on the program's locale. The C library's conversions depend on it: in some
+ * locales they do not accept "1.5" as a number. */
 #include "volume/io/text.h"
 
 #include <math.h>
@@ -92,7 +92,7 @@ static bool scan_special(const char *text, size_t length, double *value) {
   return true;
 }
 
-/* Converts a number for which the fast way is not exact. */
+/* Converts a number for which the fast conversion is not exact. */
 static double convert_slowly(const char *text, size_t length) {
   char copy[HL_NUMBER_CHARACTERS];
   memcpy(copy, text, length);

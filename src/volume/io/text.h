@@ -1,4 +1,4 @@
-/* volume/io/text.h - words and numbers of text headers, the same in every locale. */
+/* volume/io/text.h - reads words and numbers of text headers. The results are the same in every locale. */
 #ifndef HL_VOLUME_TEXT_H
 #define HL_VOLUME_TEXT_H
 

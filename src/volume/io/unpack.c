@@ -38,7 +38,7 @@ hl_status hl_unpack_deflate(hl_context *context, const unsigned char *packed, si
                             size_t count, bool *sound, hl_error *error) {
   enum {
     EITHER_HEADER = 15 + 32
-  }; /* zlib.h: the header may be zlib's or gzip's, which the first bytes tell */
+  }; /* zlib.h: the header may be a header of zlib or of gzip; the first bytes tell which one */
   z_stream zlib = {.zalloc = zlib_allocate,
                    .zfree = zlib_release,
                    .opaque = context,

@@ -1,8 +1,8 @@
 /* volume/io/writer.c - writes the headers of the formats in which volumes are saved.
  *
  * In: the grid of a volume. Out: the bytes before the voxels, native byte order. The world of NIfTI is
- * right-anterior-superior, that of MetaImage left-posterior-superior. The coordinates of a grid of another
- * anatomical space are converted, so that each voxel stays at its place in the body. */
+ * right-anterior-superior. The world of MetaImage is left-posterior-superior. The coordinates of a grid of
+ * another anatomical space are converted, so that each voxel stays at its place in the body. */
 #define _GNU_SOURCE
 #include "volume/io/writer.h"
 
@@ -51,7 +51,7 @@ static void put_real(hl_written_header *header, size_t at, double value) {
   memcpy(header->bytes + at, &real, sizeof real);
 }
 
-/* Rotates a grid about z by half a turn, by which x and y change their signs. */
+/* Rotates a grid about z by half a turn, which changes the signs of x and y. */
 static void turn(hl_volume_description *grid) {
   for (int row = 0; row < 2; row++) {
     grid->origin[row] = 0 - grid->origin[row];

@@ -1,5 +1,5 @@
-/* volume/io/writer.h - the formats in which volumes are written. Each has a header, voxels, and at most a few
- * bytes after them. */
+/* volume/io/writer.h - describes the formats in which volumes are written. A file of such a format has a
+ * header, voxels, and at most a few bytes after the voxels. */
 #ifndef HL_VOLUME_WRITER_H
 #define HL_VOLUME_WRITER_H
 
@@ -34,8 +34,8 @@ typedef struct hl_writer {
    * dimensions, type, origin, axes, space. */
   hl_status (*make_header)(const char *path, const hl_volume_description *grid, hl_written_header *header,
                            hl_error *error);
-  const char *loses; /* what the format cannot state about the grid's place, such as "the space"; null if
-                      * there is nothing */
+  const char *loses; /* the name of the property of the grid's place that the format cannot state, such as
+                      * "the space"; null if there is none */
   const char *units; /* units of length that the format can state, separated by '|'. Lengths in other units
                       * are converted to the first of them. Null if the format states no units; then lengths
                       * are written as they are */

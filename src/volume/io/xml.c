@@ -60,7 +60,8 @@ static size_t tag_length(const unsigned char *bytes, size_t length) {
 }
 
 /* Reads a character reference, such as "&#181;" or "&#xB5;", and writes its character to *out as UTF-8. This
- * is never longer than the reference. Returns the reference's length; 0 if it is none. */
+ * is never longer than the reference. Returns the reference's length; 0 if the text is no character
+ * reference. */
 static size_t resolve_number(const char *value, char **out) {
   bool hex = value[1] == '#' && (value[2] == 'x' || value[2] == 'X');
   size_t n = hex ? 3 : 2, digits = 0;

@@ -1,5 +1,5 @@
-/* volume/io/xml.h - reads the tags of an XML file one by one. It is enough for VTK's files, and safe with any
- * others.
+/* volume/io/xml.h - reads the tags of an XML file one by one. The reader is sufficient for VTK's files, and
+ * safe for all other XML files.
  *
  * Text between tags, comments and processing instructions are skipped. Document type declarations (and with
  * them entity definitions and external references) and CDATA are refused. */

@@ -1,5 +1,5 @@
-/* volume/formats/amr/amr.c - see amr.h. A grid of one level becomes dense voxels, as there is nothing to
- * adapt. */
+/* volume/formats/amr/amr.c - makes volumes of adaptive grids, as amr.h describes. A grid of one level becomes
+ * dense voxels, because none of its cells are refined. */
 #include "volume/formats/amr/amr.h"
 
 #include <math.h>

@@ -1,4 +1,5 @@
-/* volume/formats/amr/amr.h - volumes of adaptive grids: cells in patches at levels of refinement.
+/* volume/formats/amr/amr.h - makes volumes of adaptive grids, whose cells lie in patches at levels of
+ * refinement.
  *
  * Files and callers number the levels from 0, which is the coarsest. Each level has an index space of its
  * own: cell i of a level covers the cells i ratio .. i ratio + ratio - 1 of the next finer level. */

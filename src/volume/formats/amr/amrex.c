@@ -1,6 +1,6 @@
-/* volume/formats/amr/amrex.c - plotfiles of AMReX (Castro, Nyx, PeleLM, WarpX, ...): a folder with a text
- * "Header" and a folder Level_N for each level, in which Cell_H lists the patches and says where their values
- * are.
+/* volume/formats/amr/amrex.c - reads plotfiles of AMReX (Castro, Nyx, PeleLM, WarpX, ...). A plotfile is a
+ * folder with a text "Header" and a folder Level_N for each level, in which Cell_H lists the patches and says
+ * where their values are.
  *
  * Source: AMReX's documentation, "AMReX Plotfile", and its source (VisMF and FAB). Before a patch's values
  * stands a line "FAB ((8, (64 11 52 0 1 12 0 1023)),(8, (8 7 6 5 4 3 2 1)))((0,0,0) (7,7,7) (0,0,0)) 2". It
@@ -112,7 +112,7 @@ static hl_status list_components(plotfile *file, text_cursor *text, hl_error *er
   hl_status status = HL_OK;
   if (!take_integer(text, &components) || components < 1 || components > 100000)
     return fail_text(file, text, "the number of components", error);
-  take_line(text, line, sizeof line); /* the rest of the number's line */
+  take_line(text, line, sizeof line); /* skips the rest of the number's line */
   file->components = (size_t)components;
   for (ptrdiff_t n = 0; n < components && status == HL_OK; n++) {
     if (!take_line(text, line, sizeof line)) return fail_text(file, text, "the name of a component", error);
@@ -149,7 +149,7 @@ static hl_status read_shape(plotfile *file, text_cursor *text, hl_error *error) 
   return HL_OK;
 }
 
-/* Warns where the coordinates are not Cartesian. */
+/* Warns if the coordinates are not Cartesian. */
 static void tell_coordinates(const plotfile *file, text_cursor *text) {
   ptrdiff_t first[3], system;
   size_t count[3];

@@ -1,4 +1,4 @@
-/* volume/formats/dicom/codecs.h - the decoders of compressed frames.
+/* volume/formats/dicom/codecs.h - decodes compressed frames.
  *
  * Each decoder fills [rows][columns][samples] values of 8 or 16 bits (the pixels' `allocated`), native byte
  * order; bits above the pixels' `stored` bits are undefined. A decoder whose library is absent fails and

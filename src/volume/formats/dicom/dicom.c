@@ -1,5 +1,5 @@
-/* volume/formats/dicom/dicom.c - DICOM: folders, archives and discs of slices, single files, series of
- * frames.
+/* volume/formats/dicom/dicom.c - reads DICOM: folders, archives and discs of slices, single files, and series
+ * of frames.
  *
  * The steps are in dicom/: elements.c and header.c read a file's header, set.c finds the series among all
  * files, stack.c orders the frames of one series, frame.c decodes a frame, voxels.c makes the volume. */

@@ -1,5 +1,5 @@
-/* volume/formats/dicom/directory.c - the files of a DICOMDIR. Names that lead out of its folder are ignored.
- */
+/* volume/formats/dicom/directory.c - lists the files that a DICOMDIR names. Names that lead out of its folder
+ * are ignored. */
 #define _GNU_SOURCE
 #include "volume/formats/dicom/directory.h"
 
@@ -20,8 +20,8 @@ static bool is_there(const hl_bundle *bundle, const char *name) {
   return there;
 }
 
-/* Adds a file. The name DICOM\IM0001 becomes DICOM/IM0001, or dicom/im0001 where the disc was copied with
- * names in lower case. */
+/* Adds a file. The name DICOM\IM0001 becomes DICOM/IM0001, or dicom/im0001 if the disc was copied with names
+ * in lower case. */
 static hl_status add_file(hl_bundle *bundle, char *name, hl_error *error) {
   for (char *c = name; *c != 0; c++)
     if (*c == '\\') *c = '/';

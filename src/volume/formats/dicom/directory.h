@@ -1,5 +1,5 @@
-/* volume/formats/dicom/directory.h - DICOMDIR: the file that lists the files of a disc (PS3.10, chapter 8).
- */
+/* volume/formats/dicom/directory.h - reads a DICOMDIR, which is the file that lists the files of a disc
+ * (PS3.10, chapter 8). */
 #ifndef HL_VOLUME_DICOM_DIRECTORY_H
 #define HL_VOLUME_DICOM_DIRECTORY_H
 

@@ -39,7 +39,7 @@ static bool is_long(uint16_t vr) {
   return false;
 }
 
-/* Returns whether an element is a sequence that is to be read. In files without value representations,
+/* Returns whether an element is a sequence whose items are read. In files without value representations,
  * nothing marks a sequence whose length is stated. Therefore the sequences that are needed are listed
  * here. */
 static bool is_wanted_sequence(uint32_t tag) {
@@ -48,7 +48,7 @@ static bool is_wanted_sequence(uint32_t tag) {
       0x00209113, 0x00209116, /* plane position, plane orientation */
       0x00289110, 0x00289145, /* pixel measures, pixel value transformation */
       0x00209111, 0x00189114, 0x00189117,
-      0x00189118, /* frame content, MR echo, MR diffusion, cardiac */
+      0x00189118, /* these sequences are frame content, MR echo, MR diffusion and cardiac synchronization */
       0x00289132, 0x00540022, 0x00041220,
       0x0062000a, /* VOI LUT of a frame, detectors, entries of a DICOMDIR, segment of a frame */
       0x0020930e, 0x0020930f, 0x00209310,

@@ -1,4 +1,4 @@
-/* volume/formats/dicom/elements.h - the data elements of a DICOM file, one after the other.
+/* volume/formats/dicom/elements.h - reads the data elements of a DICOM file, one after the other.
  *
  * Elements inside sequences are returned, too. The place of an element is described by its own tag and by the
  * tags of the sequences around it. Source: DICOM PS3.5, sections 7.1 (elements) and 7.5 (sequences). */
@@ -10,7 +10,7 @@
 enum { HL_DICOM_DEPTH_MOST = 16, HL_DICOM_PIXEL_DATA = 0x7fe00010 };
 #define HL_DICOM_UNDEFINED UINT32_MAX /* stated length of a sequence or item that an end marker ends */
 
-/* A value representation, two letters as in the file: HL_DICOM_VR('U', 'S'). */
+/* Makes the number of a value representation from its two letters in the file: HL_DICOM_VR('U', 'S'). */
 #define HL_DICOM_VR(a, b) ((uint16_t)((a) << 8 | (b)))
 
 typedef struct hl_dicom_element {

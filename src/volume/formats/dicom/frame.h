@@ -1,4 +1,4 @@
-/* volume/formats/dicom/frame.h - the pixels of one frame: reads and decodes them, as numbers. */
+/* volume/formats/dicom/frame.h - reads the pixels of one frame, and decodes them to numbers. */
 #ifndef HL_VOLUME_DICOM_FRAME_H
 #define HL_VOLUME_DICOM_FRAME_H
 

@@ -124,8 +124,8 @@ typedef struct attribute {
   uint32_t tag;
   uint16_t vr;      /* type of the attribute's numbers, for files that state none; 0 if the attribute is a
                      * text */
-  uint16_t numbers; /* how many numbers of the attribute are kept; for a text, how many bytes */
-  bool of_frame;    /* whether `place` is an offset in hl_dicom_frame; otherwise it is one in
+  uint16_t numbers; /* the number of the attribute's numbers that are kept; for a text, the number of bytes */
+  bool of_frame;    /* whether `place` is an offset in hl_dicom_frame; otherwise it is an offset in
                      * hl_dicom_header */
   size_t place;
 } attribute;
@@ -261,7 +261,7 @@ static hl_status take_offsets(hl_dicom_reader *reader, const hl_dicom_element *e
   return status;
 }
 
-/* Makes a number of a text that names a kind of picture, so that kinds can be compared. Equal texts give
+/* Makes a number from a text that names a kind of picture, so that kinds can be compared. Equal texts give
  * equal numbers (FNV-1a, cut to 52 bits). */
 static double kind_of(const char *text) {
   uint64_t hash = 14695981039346656037u;
@@ -269,7 +269,7 @@ static double kind_of(const char *text) {
   return (double)(hash >> 12);
 }
 
-/* Takes the kind of a single frame. */
+/* Reads the type of a single frame's picture, and stores its number as the frame's kind. */
 static hl_status take_frame_type(hl_dicom_reader *reader, const hl_dicom_element *element,
                                  hl_dicom_header *header, hl_error *error) {
   char text[2 * HL_DICOM_TEXT_BYTES];

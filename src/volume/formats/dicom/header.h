@@ -1,4 +1,4 @@
-/* volume/formats/dicom/header.h - the header of one DICOM file: everything except the pixels.
+/* volume/formats/dicom/header.h - reads the header of one DICOM file: everything except the pixels.
  *
  * Numbers that a file does not state are NAN. Source: DICOM PS3.3 (the attributes), PS3.6 (their tags). */
 #ifndef HL_VOLUME_DICOM_HEADER_H
@@ -42,8 +42,8 @@ typedef struct hl_dicom_frame {
 /* The format of the pixels. */
 typedef struct hl_dicom_pixels {
   size_t rows, columns, samples;
-  int allocated, stored, high;                         /* bits that a sample takes; bits that are used;
-                                                        * position of the highest used bit */
+  int allocated, stored, high;                         /* number of bits that a sample takes; number of bits
+                                                        * that are used; position of the highest used bit */
   bool is_signed, planar, is_float, big_endian, words; /* words: whether 8-bit pixels are stored in pairs as
                                                         * 16-bit words */
   size_t tiles;           /* number of tiles along each side of a mosaic, in which each tile is a slice; 1 for
@@ -81,12 +81,14 @@ typedef struct hl_dicom_header {
   hl_dicom_palette palette;
   hl_dicom_segments segments;
   hl_dicom_vectors vectors;
-  bool is_volume_space; /* whether positions are in the space of an ultrasound volume, not of the patient */
+  bool is_volume_space; /* whether positions are in the space of an ultrasound volume instead of the patient's
+                         * space */
   bool has_pixels;
   hl_dicom_pixels pixels;
 } hl_dicom_header;
 
-/* The size of a slice: of a tile if the picture is a mosaic, else of the whole picture. */
+/* The size of a slice. It is the size of a tile if the picture is a mosaic, else the size of the whole
+ * picture. */
 static inline size_t hl_dicom_slice_rows(const hl_dicom_pixels *p) { return p->rows / p->tiles; }
 static inline size_t hl_dicom_slice_columns(const hl_dicom_pixels *p) { return p->columns / p->tiles; }
 /* The number of samples that a pixel has after it is read. A palette gives three. */

@@ -1,5 +1,5 @@
-/* volume/formats/dicom/jpeg.c - JPEG frames. jpeg_lossless.c decodes the lossless process, jpeg_extended.c 12
- * bits, and libjpeg 8 bits. */
+/* volume/formats/dicom/jpeg.c - decodes JPEG frames. jpeg_lossless.c decodes the lossless process.
+ * jpeg_extended.c decodes samples of 12 bits, and libjpeg decodes samples of 8 bits. */
 #include "core/error.h"
 #include "volume/formats/dicom/codecs.h"
 
@@ -76,7 +76,7 @@ static hl_status decode(const hl_dicom_packed *packed, void *values, hl_error *e
 
 #endif
 
-/* Widens samples of 8 bits to 16, in place, from the last to the first. */
+/* Converts samples of 8 bits to 16 bits, in place, from the last to the first. */
 static void widen(const hl_dicom_pixels *p, void *values) {
   for (size_t n = p->rows * p->columns * p->samples; n > 0; n--)
     ((uint16_t *)values)[n - 1] = ((const unsigned char *)values)[n - 1];

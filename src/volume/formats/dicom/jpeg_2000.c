@@ -1,5 +1,5 @@
-/* volume/formats/dicom/jpeg_2000.c - JPEG 2000 and HTJ2K frames, by OpenJPEG (HTJ2K since its version 2.5).
- */
+/* volume/formats/dicom/jpeg_2000.c - decodes JPEG 2000 and HTJ2K frames by OpenJPEG, which reads HTJ2K since
+ * its version 2.5. */
 #include "core/error.h"
 #include "volume/formats/dicom/codecs.h"
 
@@ -94,7 +94,8 @@ static hl_status decode(opj_codec_t *codec, opj_stream_t *stream, const hl_dicom
   return status;
 }
 
-/* Decodes a frame. It should be a bare codestream, but some writers put it into a JP2 file. */
+/* Decodes a frame. A frame should be a bare codestream, but some writers put the codestream into a JP2
+ * file. */
 hl_status hl_dicom_decode_jpeg_2000(const hl_dicom_packed *packed, void *values, hl_error *error) {
   pulled source = {packed->bytes, packed->length, 0};
   bool is_file = packed->length > 12 && memcmp(packed->bytes + 4, "jP  \r\n\x87\n", 8) == 0;

@@ -1,4 +1,4 @@
-/* volume/formats/dicom/jpeg_codes.c - JPEG's marker segments and Huffman codes. */
+/* volume/formats/dicom/jpeg_codes.c - reads JPEG's marker segments and Huffman codes. */
 #include "volume/formats/dicom/jpeg_codes.h"
 
 #include <string.h>

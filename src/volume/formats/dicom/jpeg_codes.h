@@ -24,7 +24,7 @@ typedef struct hl_jpeg_reader {
   size_t length, at;
   uint64_t bits; /* the next bits of the data; the first of them is bit `bit_count` - 1 */
   int bit_count;
-  size_t missing;                         /* number of bytes beyond the end of the data that were needed */
+  size_t missing;                         /* number of bytes that were needed although the data had ended */
   size_t restart;                         /* number of units between two restart markers; 0 if there are no
                                            * such markers */
   hl_jpeg_table table[2][HL_JPEG_TABLES]; /* tables of DC codes and differences; tables of AC codes */
@@ -46,8 +46,8 @@ enum {
 typedef hl_status hl_jpeg_take_function(void *decoder, int marker, const unsigned char *content,
                                         size_t length, hl_error *error);
 
-/* Reads the marker segments up to and including that of the first scan. The scan's codes come next. name: the
- * kind of JPEG, for error lines. */
+/* Reads the marker segments up to and including the segment of the first scan. The scan's codes come next.
+ * name: the kind of JPEG, for error lines. */
 hl_status hl_jpeg_read_headers(hl_jpeg_reader *r, const hl_dicom_packed *packed, const char *name,
                                hl_jpeg_take_function *take, void *decoder, hl_error *error);
 

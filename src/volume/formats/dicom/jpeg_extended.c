@@ -1,4 +1,4 @@
-/* volume/formats/dicom/jpeg_extended.c - lossy grey JPEG of 12 bits (process 4), as libjpeg reads only 8
+/* volume/formats/dicom/jpeg_extended.c - decodes lossy grey JPEG of 12 bits (process 4). libjpeg reads only 8
  * bits.
  *
  * Source: ITU-T T.81. Frames and scans: annex B. Sequential coefficients: annex F.2. The transform: A.3.3. */
@@ -15,8 +15,8 @@ typedef struct decoder {
   int precision, quantization, id; /* id: the component's number */
   const hl_jpeg_table *dc, *ac;
   size_t rows, columns;
-  uint16_t steps[HL_JPEG_TABLES][64]; /* quantization steps of each table, in zigzag order; 0 where the file
-                                       * states none */
+  uint16_t steps[HL_JPEG_TABLES][64]; /* quantization steps of each table, in zigzag order; 0 for steps that
+                                       * the file does not state */
 } decoder;
 
 static hl_status refuse(const decoder *d, const char *why, hl_error *error) {
@@ -122,7 +122,7 @@ static double factor(int x, int u) {
   return turn < 8 ? cosines[turn] : -cosines[16 - turn];
 }
 
-/* The inverse cosine transform, first along rows, then along columns (T.81, A.3.3). */
+/* Applies the inverse cosine transform, first along rows, then along columns (T.81, A.3.3). */
 static void transform(const double factors[8][8], double block[64]) {
   double rows[64];
   for (int v = 0; v < 8; v++)

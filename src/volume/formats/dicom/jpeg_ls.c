@@ -1,4 +1,4 @@
-/* volume/formats/dicom/jpeg_ls.c - JPEG-LS frames, by CharLS. */
+/* volume/formats/dicom/jpeg_ls.c - decodes JPEG-LS frames by CharLS. */
 #include "core/error.h"
 #include "volume/formats/dicom/codecs.h"
 

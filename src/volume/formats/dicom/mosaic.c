@@ -1,4 +1,5 @@
-/* volume/formats/dicom/mosaic.c - see mosaic.h. */
+/* volume/formats/dicom/mosaic.c - finds the number of slices of a mosaic and their normal, as mosaic.h
+ * describes. */
 #include "volume/formats/dicom/mosaic.h"
 
 #include <math.h>
@@ -92,8 +93,8 @@ static hl_status take_csa(hl_dicom_reader *reader, const hl_dicom_element *eleme
   return status;
 }
 
-/* Reads a private creator: an element whose value is a name, and which reserves a block of elements. If the
- * value is `name`, *block becomes the block's number; otherwise it is not changed. */
+/* Reads a private creator, which is an element that reserves a block of elements for the name in its value.
+ * If the value is `name`, *block becomes the block's number; otherwise it is not changed. */
 static hl_status take_creator(hl_dicom_reader *reader, const hl_dicom_element *element, const char *name,
                               unsigned *block, hl_error *error) {
   char text[64];

@@ -1,5 +1,5 @@
-/* volume/formats/dicom/mosaic.h - mosaics: pictures that hold all slices of a volume, as Siemens' scanners
- * write them.
+/* volume/formats/dicom/mosaic.h - describes mosaics. A mosaic is a picture that holds all slices of a volume,
+ * as Siemens' scanners write it.
  *
  * A mosaic of n slices has ceil(sqrt(n)) tiles along each side, row by row; the last ones may be empty. The
  * number of slices and their normal are in private elements. Source: the layout that nibabel and dcm2niix
@@ -12,12 +12,12 @@
 typedef struct hl_dicom_mosaic {
   unsigned header_block, csa_block; /* numbers of the private blocks in the groups 0019 and 0029; 0 until they
                                      * are found */
-  double slices;                    /* number of slices; 0 if not told */
-  double normal[3];                 /* the direction from slice to slice; 0 if not told */
+  double slices;                    /* number of slices; 0 if not stated */
+  double normal[3];                 /* the direction from slice to slice; 0 if not stated */
 } hl_dicom_mosaic;
 
-/* Looks at an element at the top level of a file, and stores what it says of a mosaic. Other elements change
- * nothing. */
+/* Examines an element at the top level of a file, and stores the facts about a mosaic that the element
+ * states. Elements that state no such facts change nothing. */
 hl_status hl_dicom_mosaic_take(hl_dicom_reader *reader, const hl_dicom_element *element,
                                hl_dicom_mosaic *mosaic, hl_error *error);
 

@@ -1,4 +1,4 @@
-/* volume/formats/dicom/palette.c - see palette.h. */
+/* volume/formats/dicom/palette.c - reads the table of colours of a PALETTE COLOR picture. */
 #include "volume/formats/dicom/palette.h"
 
 #include <string.h>
@@ -32,7 +32,7 @@ static size_t read_plain(const unsigned char *bytes, size_t length, size_t count
   return found;
 }
 
-/* The output of reading a segmented table. */
+/* The table that is filled while a segmented table is read. */
 typedef struct table_writer {
   uint16_t values[ENTRIES];
   size_t count;

@@ -1,8 +1,8 @@
-/* volume/formats/dicom/rle.c - DICOM's run-length coding (PS3.5, annex G).
+/* volume/formats/dicom/rle.c - decodes DICOM's run-length coding (PS3.5, annex G).
  *
  * A frame begins with a header of sixteen 32-bit numbers: the number of segments, then the offset of each. A
- * segment holds one byte of every pixel, compressed like PackBits. Of a sample's bytes, the highest one has
- * the first segment. */
+ * segment holds one byte of every pixel, compressed like PackBits. The first segment holds the highest byte
+ * of a sample. */
 #include <string.h>
 
 #include "core/error.h"

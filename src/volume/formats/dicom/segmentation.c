@@ -1,4 +1,5 @@
-/* volume/formats/dicom/segmentation.c - see segmentation.h.
+/* volume/formats/dicom/segmentation.c - makes a volume of a segmentation whose frames are masks or fractions
+ * of segments.
  *
  * All masks are read twice: first to find which segments overlap, then into the label map. */
 #include "volume/formats/dicom/segmentation.h"
@@ -22,10 +23,10 @@ typedef struct segment_reading {
   const hl_dicom_set *set;
   const hl_dicom_stack *stack;
   int *layers;             /* owned; [segments]; the component to which each segment belongs */
-  unsigned char *overlaps; /* owned; [segments][segments]: 1 where two segments share a voxel */
+  unsigned char *overlaps; /* owned; [segments][segments]: 1 for two segments that share a voxel */
   size_t layer_count;
-  size_t chosen; /* index of what is read: of the segment in a file of fractions, of the component in a file
-                  * of masks */
+  size_t chosen; /* for a file of fractions, the index of the segment that is read; for a file of masks, the
+                  * index of the component that is read */
   bool fractions;
   hl_voxel_type type;
   size_t slice_voxels;
@@ -40,7 +41,7 @@ static const hl_dicom_frame *frame_at(const segment_reading *r, size_t place, si
 
 /* ---- which segments overlap ---- */
 
-/* Packs a slice's mask into bits: bit n is 1 where voxel n is not 0. */
+/* Packs a slice's mask into bits: bit n is 1 if voxel n is not 0. */
 static void pack(const unsigned char *values, size_t count, uint64_t *bits) {
   memset(bits, 0, (count + 63) / 64 * sizeof *bits);
   for (size_t n = 0; n < count; n++) bits[n / 64] |= (uint64_t)(values[n] != 0) << (n % 64);
@@ -208,7 +209,7 @@ static hl_status choose_layer(segment_reading *r, hl_load_request *request, hl_e
   payload.components = r->layer_count;
   payload.colors = HL_COLORS_UNREAD;
   bool chosen = request->component != HL_COMPONENT_DEFAULT;
-  if (!chosen) request->component = 0; /* values that are names have no magnitude */
+  if (!chosen) request->component = 0; /* label values have no magnitude, because they only stand for names */
   status = hl_component_only(request, r->set->bundle->path, false, &payload, error);
   if (!chosen) request->component = HL_COMPONENT_DEFAULT;
   if (status == HL_OK && payload.component < 0)

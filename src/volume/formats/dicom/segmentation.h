@@ -1,6 +1,5 @@
-/* volume/formats/dicom/segmentation.h - the voxels of a segmentation whose frames are masks or fractions of
- * segments.
- */
+/* volume/formats/dicom/segmentation.h - reads the voxels of a segmentation whose frames are masks or
+ * fractions of segments. */
 #ifndef HL_VOLUME_DICOM_SEGMENTATION_H
 #define HL_VOLUME_DICOM_SEGMENTATION_H
 
@@ -8,8 +7,9 @@
 #include "volume/formats/format.h"
 
 /* Reads a stack that has segments (stack.h). Masks become a label map whose values are the segments' numbers.
- * It has one component, or, if segments overlap, as many components as are needed to keep overlapping
- * segments apart. If frames are fractions, each segment is an array of its own, of which one is read. */
+ * The label map has one component if no segments overlap. If segments overlap, it has more components, so
+ * that overlapping segments are in different ones. If frames are fractions, each segment is an array, and one
+ * of these arrays is read. */
 hl_status hl_dicom_segmentation_read(hl_dicom_set *set, hl_dicom_stack *stack, hl_load_request *request,
                                      hl_volume **volume, hl_error *error);
 

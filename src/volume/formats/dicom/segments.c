@@ -1,4 +1,5 @@
-/* volume/formats/dicom/segments.c - see segments.h. */
+/* volume/formats/dicom/segments.c - reads the numbers, names and colours of the segments that a segmentation
+ * object lists. */
 #include "volume/formats/dicom/segments.h"
 
 #include <math.h>

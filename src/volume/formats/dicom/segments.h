@@ -1,5 +1,5 @@
-/* volume/formats/dicom/segments.h - the segments that a segmentation object lists: their numbers, names and
- * colours.
+/* volume/formats/dicom/segments.h - reads the segments that a segmentation object lists: their numbers, names
+ * and colours.
  *
  * Source: DICOM PS3.3, C.8.20 (segmentation objects). */
 #ifndef HL_VOLUME_DICOM_SEGMENTS_H
@@ -19,13 +19,13 @@ typedef enum hl_dicom_segment_kind {
 
 typedef struct hl_dicom_segments {
   hl_dicom_segment_kind kind;
-  double fraction_most;   /* the pixel value that stands for the fraction 1; NAN if not told */
+  double fraction_most;   /* the pixel value that stands for the fraction 1; NAN if not stated */
   hl_segment *list;       /* owned; [count]; `value` is the segment's number */
   size_t count, capacity; /* number of segments; room for segments */
 } hl_dicom_segments;
 
-/* Stores what an element says of segments. It stands at the top level of a file, or within an item of
- * HL_DICOM_SEGMENTS. Other elements change nothing. */
+/* Stores the facts about segments that an element states. The element stands at the top level of a file, or
+ * within an item of HL_DICOM_SEGMENTS. Elements that state no such facts change nothing. */
 hl_status hl_dicom_segments_take(hl_dicom_reader *reader, const hl_dicom_element *element,
                                  hl_dicom_segments *segments, hl_error *error);
 void hl_dicom_segments_release(hl_context *context, hl_dicom_segments *segments);

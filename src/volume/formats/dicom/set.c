@@ -70,8 +70,8 @@ static void list_series(const hl_dicom_set *set, char *text, size_t size) {
   if (set->series_count > NAMED && used < size) snprintf(text + used, size - used, "; ...");
 }
 
-/* How well a text names a series: 3 if it is the series' UID, 2 if it is the number, 1 if it is the
- * description, else 0. */
+/* Rates how reliably a text names a series. The rate is 3 if the text is the series' UID, 2 if it is the
+ * series' number, 1 if it is the series' description, and else 0. */
 static int match(const hl_dicom_series *series, const char *wanted) {
   double number;
   if (strcmp(series->uid, wanted) == 0) return 3;
@@ -85,9 +85,12 @@ static size_t largest(const hl_dicom_set *set) {
   for (size_t n = 0; n < set->series_count; n++) {
     const hl_dicom_series *series = &set->series[n];
     double size = (double)series->rows * (double)series->columns * (double)series->frames;
-    if (series->frames == 1) size *= 1e-6; /* a single picture is chosen only if there are no stacks */
+    /* A series of a single picture is chosen only if there is no series of several frames. */
+    if (series->frames == 1) size *= 1e-6;
     if (series->is_segmentation)
-      size *= 1e-3; /* a user who names no series more likely wants the scan than its segmentation */
+      /* A segmentation is chosen only if there is no scan of a similar size, because most users who name no
+       * series want the scan. */
+      size *= 1e-3;
     if (size > most) {
       most = size;
       chosen = n;
@@ -143,8 +146,8 @@ static double stated_step(const hl_dicom_header *header) {
   return header->thickness > 0 && isfinite(header->thickness) ? header->thickness : 1;
 }
 
-/* Sets the position of a tile of a mosaic. The position in the file is that of a picture of the mosaic's size
- * that has the same middle as the first slice. */
+/* Sets the position of a tile of a mosaic. The position in the file is the position of a picture that has the
+ * mosaic's size and the same middle as the first slice. */
 static void place_tile(const hl_dicom_header *header, size_t tile, hl_dicom_frame *frame) {
   const hl_dicom_pixels *p = &header->pixels;
   vec3 row = vec3_of(frame->orientation), column = vec3_of(frame->orientation + 3),
@@ -167,8 +170,8 @@ static void place_frame(const hl_dicom_header *header, size_t index, hl_dicom_fr
   double distance = (double)slice * stated_step(header),
          volume = hl_dicom_vectors_volume(&header->vectors, index);
   if (!isnan(volume)) frame->temporal = volume;
-  /* PS3.3, C.8.8.3.2: offsets may be counted from the first frame's position, or be coordinates; both are
-   * made to begin at 0 */
+  /* PS3.3, C.8.8.3.2: offsets may be counted from the first frame's position, or may be coordinates; in both
+   * cases the first offset is subtracted, so that they begin at 0 */
   if (index < header->offset_count) distance = header->offsets[index] - header->offsets[0];
   move(frame, vec3_cross(vec3_of(frame->orientation), vec3_of(frame->orientation + 3)), distance);
 }

@@ -1,5 +1,5 @@
-/* volume/formats/dicom/set.h - all DICOM pictures of an input, their frames, and the series to which they
- * belong. */
+/* volume/formats/dicom/set.h - lists all DICOM pictures of an input, their frames, and the series to which
+ * they belong. */
 #ifndef HL_VOLUME_DICOM_SET_H
 #define HL_VOLUME_DICOM_SET_H
 
@@ -7,11 +7,12 @@
 #include "volume/io/bundle.h"
 
 typedef struct hl_dicom_file {
-  uint32_t entry, series; /* index of the file in the bundle, and of its series in the set */
+  uint32_t entry, series; /* index of the file in the bundle; index of the file's series in the set */
   hl_dicom_pixels pixels;
   double padding[2]; /* the range of padding values, which mark pixels without data; NAN if there is none */
   double slice_spacing, thickness, window[2];
-  bool is_volume_space; /* whether positions are in the space of an ultrasound volume, not of the patient */
+  bool is_volume_space; /* whether positions are in the space of an ultrasound volume instead of the patient's
+                         * space */
   hl_dicom_segments segments; /* owned */
   hl_dicom_palette palette;   /* owned */
   bool is_localizer, is_deflated;
@@ -29,7 +30,7 @@ typedef struct hl_dicom_series {
   char uid[HL_DICOM_UID_BYTES], modality[HL_DICOM_TEXT_BYTES], description[HL_DICOM_TEXT_BYTES];
   double number; /* NAN if absent */
   size_t frames;
-  size_t rows, columns; /* rows and columns of its first slice */
+  size_t rows, columns; /* rows and columns of the series' first slice */
   bool is_segmentation; /* whether the series is one file with segments */
 } hl_dicom_series;
 
@@ -40,7 +41,7 @@ typedef struct hl_dicom_set {
   hl_dicom_series *series; /* owned; [series_count] */
   hl_dicom_frame *frames;  /* owned; [frame_count] */
   size_t file_count, file_capacity, series_count, series_capacity, frame_count, frame_capacity;
-  size_t damaged;         /* DICOM files that could not be read */
+  size_t damaged;         /* number of DICOM files that could not be read */
   char first_damage[300]; /* error of the first damaged file */
 } hl_dicom_set;
 
@@ -55,7 +56,7 @@ void hl_dicom_set_release(hl_dicom_set *set);
 hl_status hl_dicom_series_choose(const hl_dicom_set *set, const char *wanted, size_t *chosen,
                                  hl_error *error);
 
-/* A line for lists of series: "3 CT \"Thorax\" 512 x 512 x 200". */
+/* Writes the line of a series for a list: "3 CT \"Thorax\" 512 x 512 x 200". */
 const char *hl_dicom_series_text(const hl_dicom_series *series, char *text, size_t size);
 
 /* Opens a file for reading its elements. If the elements are deflated, the source inflates them. */

@@ -1,5 +1,5 @@
-/* volume/formats/dicom/stack.c - which frames of a series are slices of one volume, their order and their
- * distance.
+/* volume/formats/dicom/stack.c - finds the frames of a series that are slices of one volume, and finds their
+ * order and their distance.
  *
  * Source: DICOM PS3.3, C.7.6.2.1.1: voxel (i, j) of a frame lies at position + i * (column spacing) * row
  * direction + j * (row spacing) * column direction. Frames are ordered along the normal: the cross product of
@@ -28,7 +28,8 @@ typedef struct sorting {
   size_t count;
   vec3 row, column, normal;
   bool has_positions;
-  double tolerance; /* two frames count as lying at the same position if their distance is not greater */
+  double tolerance; /* two frames count as lying at the same position if their distance is not greater than
+                     * this */
   double *places;   /* owned; [place_count]: the frames' positions along the normal */
   size_t place_count;
 } sorting;
@@ -291,8 +292,8 @@ static int by_volume_alone(const void *a, const void *b) {
   return by_volume(((const placed_frame *)a)->frame, ((const placed_frame *)b)->frame);
 }
 
-/* Lists the frames of each position. Positions that have fewer frames than most positions are left out, and
- * so are a position's frames beyond this number. */
+/* Lists the frames of each position. Most positions have the same number of frames. Positions with fewer
+ * frames are left out. At positions with more frames, the surplus frames are left out. */
 static hl_status gather_places(sorting *s, hl_dicom_stack *stack, hl_error *error) {
   size_t times = usual_count(s), doubled = 0, incomplete = 0;
   if (times == 0) return hl_fail_memory(error, 1 << 14, "a list of slices");
@@ -381,8 +382,8 @@ static double median_step(const sorting *s) {
   return median;
 }
 
-/* Returns whether positions are evenly spaced, where some may be missing: the distance of each from the first
- * is a whole multiple of one step. step: the step, approximately. *slices: set to the number of slices
+/* Returns whether positions are evenly spaced, if some of them may be missing: the distance of each from the
+ * first is a whole multiple of one step. step: the step, approximately. *slices: set to the number of slices
  * without gaps. */
 static bool is_even(const sorting *s, double step, size_t *slices) {
   const double TOLERANCE = 0.05; /* in parts of a step */
@@ -403,7 +404,7 @@ static bool is_even(const sorting *s, double step, size_t *slices) {
 #define WIDEST_FILLED 3.5
 
 /* Places slices at even distances from the first to the last position. In segmentations, slices between
- * positions stay empty, because a segment is absent where it has no frame. */
+ * positions stay empty, because a segment is absent from a position at which it has no frame. */
 static void spread(const sorting *s, size_t count, bool snap, hl_dicom_stack *stack) {
   double first = s->places[0], span = s->places[s->place_count - 1] - first;
   for (size_t n = 0, place = 0; n < count; n++) {
@@ -419,7 +420,8 @@ static void spread(const sorting *s, size_t count, bool snap, hl_dicom_stack *st
   }
 }
 
-/* Tells the user how slices were made where the file has none. count: the number of all slices. */
+/* Tells the user how the slices were made for which the file has no frame. count: the number of all
+ * slices. */
 static void tell_spacing(const sorting *s, const hl_dicom_stack *stack, bool even, size_t count) {
   char text[300], holes[100] = "";
   double step = count > 1 ? (s->places[s->place_count - 1] - s->places[0]) / (double)(count - 1) : 0;

@@ -1,4 +1,5 @@
-/* volume/formats/dicom/vectors.c - see vectors.h. */
+/* volume/formats/dicom/vectors.c - reads the vectors of nuclear medicine, which tell each frame's slice, time
+ * slot and so on. */
 #include "volume/formats/dicom/vectors.h"
 
 #include <math.h>

@@ -1,5 +1,5 @@
-/* volume/formats/dicom/vectors.h - the vectors of nuclear medicine, which tell each frame's slice, time slot
- * and so on.
+/* volume/formats/dicom/vectors.h - reads the vectors of nuclear medicine, which tell each frame's slice, time
+ * slot and so on.
  *
  * Source: DICOM PS3.3, C.8.4.8 (NM multi-frame), C.7.6.6 (multi-frame). */
 #ifndef HL_VOLUME_DICOM_VECTORS_H
@@ -19,7 +19,8 @@ typedef struct hl_dicom_vectors {
   bool are_times; /* whether the frames follow each other in time, as in films of ultrasound or angiography */
 } hl_dicom_vectors;
 
-/* Stores what an element at the top level of a file says of vectors. Other elements change nothing. */
+/* Stores the facts about vectors that an element at the top level of a file states. Elements that state no
+ * such facts change nothing. */
 hl_status hl_dicom_vectors_take(hl_dicom_reader *reader, const hl_dicom_element *element,
                                 hl_dicom_vectors *vectors, hl_error *error);
 void hl_dicom_vectors_release(hl_context *context, hl_dicom_vectors *vectors);

@@ -1,9 +1,9 @@
 /* volume/formats/dicom/voxels.c - decodes slices on several threads, rescales their values, fills gaps.
  *
  * If all slices have the same slope and intercept, voxels stay integers, and slope and intercept become the
- * volume's value_scale and value_offset. If they differ, as in PET, values are computed and kept as floats.
- * Voxels that have the padding value become NAN. If any slice has such voxels, all integers are converted to
- * floats at the end. */
+ * volume's value_scale and value_offset. If slopes or intercepts differ, as in PET, values are computed and
+ * kept as floats. Voxels that have the padding value become NAN. If any slice has such voxels, all integers
+ * are converted to floats at the end. */
 #include "volume/formats/dicom/voxels.h"
 
 #include <math.h>
@@ -250,8 +250,8 @@ static hl_status make_threads(reading *r, size_t voxels, hl_error *error) {
                                                                 : hl_fail_memory(error, 1000, "threads");
 }
 
-/* Looks for padding in the middle slice. If there is some, the volume is read as floats from the start. To
- * convert all of its integers afterwards would need memory for integers and floats at once. */
+/* Looks for padding in the middle slice. If the slice has padding, the volume is read as floats from the
+ * start. A later conversion of all integers would need memory for integers and floats at the same time. */
 static hl_status find_padding(reading *r, hl_error *error) {
   if (r->as_floats || r->as_colors || isnan(r->scale.padding[0])) return HL_OK;
   size_t middle = r->stack->place_count / 2, bytes = r->slice_voxels * r->voxel_bytes;
@@ -282,7 +282,8 @@ static hl_status read_slices(reading *r, hl_error *error) {
                           r->stack->grid.dimensions[2], read_one, r, error);
 }
 
-/* Returns whether any slice has padding. Over ranks: whether any rank has such a slice. */
+/* Returns whether any slice has padding. If the work is divided among ranks, the result is whether any rank
+ * has such a slice. */
 static bool any_padded(const reading *r) {
   uint64_t padded = r->padded;
   if (r->to.own != NULL) hl_ranks_sum_counts(r->set->context->ranks, &padded, 1);
@@ -297,8 +298,8 @@ static hl_status read_all(reading *r, hl_error *error) {
   if (status != HL_OK || r->as_floats || !hl_destination_is_apart(&r->to) || !any_padded(r)) return status;
   hl_destination_close(&r->to);
   for (int w = 0; w < hl_pool_threads(r->workers.pool); w++) {
-    hl_release(r->set->context, r->workers.others[w]); /* the slices for filling gaps must be larger for
-                                                        * floats */
+    hl_release(r->set->context, r->workers.others[w]); /* floats need larger memory for the slices from which
+                                                        * gaps are filled */
     r->workers.others[w] = NULL;
   }
   r->as_floats = true;

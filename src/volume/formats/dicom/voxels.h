@@ -1,4 +1,4 @@
-/* volume/formats/dicom/voxels.h - the voxels of a stack of slices. */
+/* volume/formats/dicom/voxels.h - reads the voxels of a stack of slices. */
 #ifndef HL_VOLUME_DICOM_VOXELS_H
 #define HL_VOLUME_DICOM_VOXELS_H
 

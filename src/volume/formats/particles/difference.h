@@ -1,5 +1,5 @@
-/* volume/formats/particles/difference.h - how much a volume of particles differs from the exact sum of their
- * kernels. */
+/* volume/formats/particles/difference.h - computes the greatest difference between a volume of particles and
+ * the exact sum of the particles' kernels. */
 #ifndef HL_VOLUME_FORMATS_PARTICLES_DIFFERENCE_H
 #define HL_VOLUME_FORMATS_PARTICLES_DIFFERENCE_H
 

@@ -1,9 +1,9 @@
-/* volume/formats/particles/lammps.c - dumps of LAMMPS as text: particles at time steps.
+/* volume/formats/particles/lammps.c - reads dumps of LAMMPS as text, which hold particles at time steps.
  *
  * Source: the page "dump command" of LAMMPS' manual. A step is a sequence of items: "ITEM: TIMESTEP", "ITEM:
  * NUMBER OF ATOMS", "ITEM: BOX BOUNDS" with the kinds of the borders ("pp": periodic), and "ITEM: ATOMS" with
- * the names of the columns. The box of a triclinic cell, whose line has "xy xz yz", is taken as not periodic.
- */
+ * the names of the columns. The box of a triclinic cell, whose line has "xy xz yz", is taken as not
+ * periodic. */
 #include <stdio.h>
 #include <string.h>
 
@@ -16,7 +16,7 @@ typedef struct lammps_dump {
   int number; /* of the line */
   char line[HL_LINE_BYTES];
   bool ended;
-  size_t atoms;  /* of the step that is being read */
+  size_t atoms;  /* number of atoms of the step that is being read */
   size_t steps;  /* begun so far */
   size_t wanted; /* the step that is read */
   hl_particle_columns columns;

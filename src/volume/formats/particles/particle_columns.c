@@ -1,4 +1,4 @@
-/* volume/formats/particles/particle_columns.c - see particle_columns.h. */
+/* volume/formats/particles/particle_columns.c - collects particles that are rows of a text. */
 #include "volume/formats/particles/particle_columns.h"
 
 #include <math.h>
@@ -12,8 +12,7 @@
 
 /* ---- names ---- */
 
-/* The names of columns as programs write them: ParaView's, OVITO's and pandas' tables, LAMMPS, yt and
- * pynbody. */
+/* The names of columns as programs write them: ParaView, OVITO, pandas, LAMMPS, yt and pynbody. */
 static const struct {
   const char *names;
   hl_particle_role role;

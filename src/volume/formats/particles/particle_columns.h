@@ -42,13 +42,13 @@ typedef struct hl_particle_columns {
  * Returns the number of words; further words than HL_PARTICLE_COLUMNS_MOST are ignored. */
 int hl_particle_words(char *line, char *words[HL_PARTICLE_COLUMNS_MOST]);
 
-/* What a column of this name is. */
+/* Returns the role of a column with this name, such as a coordinate or the mass. */
 hl_particle_role hl_particle_role_of(const char *name);
 
 /* Adds a column by its name. Columns beyond HL_PARTICLE_COLUMNS_MOST are left out. */
 void hl_particle_columns_add(hl_particle_columns *columns, const char *name);
 
-/* Returns whether there are x, y and z. */
+/* Returns whether the columns include x, y and z. */
 bool hl_particle_columns_are_places(const hl_particle_columns *columns);
 
 /* Adds the particle of a line. The text of the line is changed. number: the line's number, for errors. */

@@ -1,4 +1,4 @@
-/* volume/formats/particles/particle_table.c - tables of particles as text: .csv, .tsv, .txt.
+/* volume/formats/particles/particle_table.c - reads tables of particles as text: .csv, .tsv, .txt.
  *
  * The first line names the columns, x, y and z among them, separated by commas, semicolons, tabs or spaces;
  * it may begin with '#'. Each further line is a particle; lines that begin with '#' are left out. */

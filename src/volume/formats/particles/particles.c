@@ -1,5 +1,5 @@
-/* volume/formats/particles/particles.c - volumes of particles: the check of the caller's arrays, and the
- * volume of their density.
+/* volume/formats/particles/particles.c - makes volumes of particles. It checks the caller's arrays, and makes
+ * the volume from the particles' field.
  *
  * In: a description of particles, from a caller or from the reader of a file. Out: a volume of the particles'
  * density, of its logarithm, or of the mean of a value. particles/particles.h computes the field. */
@@ -17,9 +17,10 @@
 #include "volume/in_bricks.h"
 
 enum {
-  SIDE = 512,            /* voxels along an axis at most, by default */
-  POINTS_A_PARTICLE = 64 /* greatest number of voxels for each particle, by default. Kernels of 48 neighbours
-                          * need 6 voxels for each particle if h = 2 voxels, and more if particles cluster */
+  SIDE = 512,            /* the default of the greatest number of voxels along an axis */
+  POINTS_A_PARTICLE = 64 /* the default of the greatest number of voxels for each particle. Kernels of 48
+                          * neighbours need 6 voxels for each particle if h = 2 voxels, and more if particles
+                          * cluster */
 };
 #define LEAST_POINTS ((size_t)1 << 21)
 #define MOST_POINTS  ((size_t)1 << 31)
@@ -77,7 +78,7 @@ static hl_status check(const hl_particles_description *d, const char *subject, h
 
 /* ---- from particles to a field ---- */
 
-/* One call of hl_particles_to_volume(). */
+/* The state of one call of hl_particles_to_volume(). */
 typedef struct making {
   hl_context *context;
   hl_pool *pool;
@@ -148,7 +149,7 @@ static float empty_density(const hl_particles_description *d, const hl_particle_
 
 static float least_density(const making *m) { return fmaxf(empty_density(m->d, &m->set), FLT_MIN); }
 
-/* The numbers of a field, and how they are converted. */
+/* The numbers of a field, and the conversion that is applied to them. */
 typedef struct conversion {
   float *field;
   const float *by; /* the density, for means */

@@ -1,4 +1,4 @@
-/* volume/formats/particles/particles.h - volumes of particles, for the readers of files. */
+/* volume/formats/particles/particles.h - makes volumes of particles for the readers of files. */
 #ifndef HL_VOLUME_PARTICLES_H
 #define HL_VOLUME_PARTICLES_H
 

@@ -1,8 +1,8 @@
-/* volume/formats/particles/vtp.c - the points of VTK's XML PolyData (.vtp) as particles.
+/* volume/formats/particles/vtp.c - reads the points of VTK's XML PolyData (.vtp) as particles.
  *
  * PolyData are particles if they have neither lines nor surfaces, and an array of masses or of smoothing
  * lengths at their points. All other PolyData are meshes (mesh/vtp.c). All other arrays at the points are
- * quantities. Of an array of vectors, the lengths are taken. */
+ * quantities. An array of vectors gives the lengths of the vectors. */
 #include <halflight/particles.h>
 #include <math.h>
 #include <string.h>

@@ -1,4 +1,5 @@
-/* volume/formats/particles/xyz.c - XYZ files: atoms of molecules, recognised by the name's ending.
+/* volume/formats/particles/xyz.c - reads XYZ files, which hold atoms of molecules. A file is recognised by
+ * its name's ending.
  *
  * A frame is the number of atoms, a comment, and a line for each atom: its element, x, y and z. Extended XYZ
  * names in the comment the columns (Properties=species:S:1:pos:R:3:...) and the box (Lattice="ax ay az bx by

@@ -1,5 +1,5 @@
-/* volume/formats/slices/slice_codecs.h - the decoders that slice_picture.c uses, one for each kind of
- * picture.
+/* volume/formats/slices/slice_codecs.h - decodes pictures for slice_picture.c, with one decoder for each kind
+ * of picture.
  *
  * Each decoder reads the shape. If `samples` is not null, it also reads the pixels, [height][width][samples]
  * of the shape's type in native byte order. Their block is released by the caller, also after a failure. A

@@ -1,4 +1,4 @@
-/* volume/formats/slices/slice_jpeg.c - JPEG slices of 8 bits, grey or in colours, by libjpeg. */
+/* volume/formats/slices/slice_jpeg.c - decodes JPEG slices of 8 bits, grey or in colours, by libjpeg. */
 #include "core/error.h"
 #include "volume/formats/slices/slice_codecs.h"
 

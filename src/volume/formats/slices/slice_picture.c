@@ -1,5 +1,5 @@
-/* volume/formats/slices/slice_picture.c - a picture file as a slice of voxels: finds the file's kind, and
- * takes one of its components. */
+/* volume/formats/slices/slice_picture.c - reads a picture file as a slice of voxels: finds the file's kind,
+ * and takes one of its components. */
 #include "volume/formats/slices/slice_picture.h"
 
 #include <math.h>
@@ -60,8 +60,9 @@ static double sample_at(const hl_slice_shape *shape, const unsigned char *sample
   return wide;
 }
 
-/* Stores what `component` chooses of a picture. voxels: for an index, stored values of the shape's type,
- * which is unsigned; for a magnitude, floats; for colours, colours. */
+/* Stores one component of a picture, the magnitude of its components, or its colours, as `component` says.
+ * voxels: stored values of the shape's type, which is unsigned, if `component` is an index; floats for a
+ * magnitude; colours for colours. */
 static void take_component(const hl_slice_shape *shape, const unsigned char *samples, int component,
                            void *voxels) {
   size_t count = shape->width * shape->height, step = shape->samples,

@@ -1,4 +1,4 @@
-/* volume/formats/slices/slice_picture.h - one picture of a folder of slices, decoded from memory: PNG, JPEG,
+/* volume/formats/slices/slice_picture.h - decodes one picture of a folder of slices from memory: PNG, JPEG,
  * the first page of a TIFF file, or bare voxels. */
 #ifndef HL_VOLUME_SLICE_PICTURE_H
 #define HL_VOLUME_SLICE_PICTURE_H

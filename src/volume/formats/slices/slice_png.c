@@ -1,5 +1,5 @@
-/* volume/formats/slices/slice_png.c - PNG slices, by libpng: grey and colours of 8 and 16 bits; fewer bits
- * become 8 with the same values, palettes become colours. */
+/* volume/formats/slices/slice_png.c - decodes PNG slices by libpng: grey and colours of 8 and 16 bits.
+ * Samples of fewer bits become 8 bits with the same values. Palettes become colours. */
 #include <png.h>
 #include <setjmp.h>
 #include <stdio.h>
@@ -13,7 +13,7 @@
 typedef struct png_slice {
   const hl_slice_file *file;
   hl_slice_shape *shape;
-  unsigned char **samples; /* null if only the shape is wanted */
+  unsigned char **samples; /* the place of the samples; null if only the shape is wanted */
   size_t at;
   png_structp png;
   png_infop info;

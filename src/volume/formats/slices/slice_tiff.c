@@ -1,4 +1,4 @@
-/* volume/formats/slices/slice_tiff.c - TIFF slices, through tiff_file.h. */
+/* volume/formats/slices/slice_tiff.c - decodes TIFF slices through tiff_file.h. */
 #include <string.h>
 
 #include "core/error.h"

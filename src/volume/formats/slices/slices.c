@@ -1,4 +1,4 @@
-/* volume/formats/slices/slices.c - folders and zip archives of numbered files. Each file is a slice: a
+/* volume/formats/slices/slices.c - reads folders and zip archives of numbered files. Each file is a slice: a
  * picture or bare voxels. The numbers in the names give the order.
  *
  * The names of a series differ only in their last number, as in "scan_007.tif". Of several series, the
@@ -38,7 +38,7 @@ typedef struct slices_reading {
   hl_load_request *request;
   const hl_bundle *bundle;
   numbered_name *names; /* owned; [count]; the names of all series */
-  size_t first, count;  /* index of the first name of the chosen series; number of its names */
+  size_t first, count;  /* index of the first name of the chosen series; number of the series' names */
   hl_slice_shape shape;
   int component;
   hl_destination to;

@@ -1,6 +1,5 @@
-/* volume/formats/tiff/tiff.c - TIFF and BigTIFF: stacks of pages, OME-TIFF (also of several files), ImageJ's
- * hyperstacks.
- */
+/* volume/formats/tiff/tiff.c - reads TIFF and BigTIFF: stacks of pages, OME-TIFF (also of several files), and
+ * ImageJ's hyperstacks. */
 #include <string.h>
 
 #include "volume/formats/tiff/tiff.h"

@@ -400,8 +400,8 @@ static void take_component(page_reading *r, const unsigned char *samples, unsign
   }
 }
 
-/* Unpacks a row of a decoded chunk, and takes from it what is wanted. plane: the component of the chunk, if
- * the chunk holds only one component. */
+/* Unpacks a row of a decoded chunk, and stores the row's wanted component or components. plane: the component
+ * of the chunk, if the chunk holds only one component. */
 static void take_row(page_reading *r, const unsigned char *row, unsigned plane, size_t count, size_t first) {
   const tiff_shape *shape = r->shape;
   unsigned each = shape->planar ? 1 : shape->components;
@@ -509,7 +509,7 @@ static hl_status read_chunks(page_reading *r, hl_error *error) {
  * seconds. */
 enum { TILE_IN_PAGES = 1024, SMALL_TILE_BYTES = 1 << 20 };
 
-/* Finds the sizes of the page's chunks. Of chunks that reach beyond the page, only the rows in the page
+/* Finds the sizes of the page's chunks. If a chunk reaches beyond the page, only its rows within the page
  * count. Fails if libtiff computes another length for a chunk's rows. */
 static hl_status measure_chunks(page_reading *r, hl_error *error) {
   const tiff_shape *shape = r->shape;

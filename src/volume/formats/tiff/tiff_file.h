@@ -10,7 +10,7 @@
 
 #include "volume/exact.h"
 
-/* What a directory states about the voxels of its page. */
+/* The size and type of a page's voxels, as the page's directory states them. */
 typedef struct tiff_shape {
   uint32_t width, height, depth; /* depth: number of slices of a page (ImageDepth) */
   hl_voxel_type type;
@@ -30,7 +30,7 @@ typedef struct tiff_file {
   uint64_t size, at;
   int descriptor; /* -1 if there is none */
   TIFF *tiff;
-  char message[300]; /* the first error of libtiff since the caller cleared this text */
+  char message[300]; /* the first error that libtiff has reported since the caller cleared this text */
   int warnings;      /* number of warnings logged so far; set it to TIFF_NO_WARNINGS before opening to log
                       * none */
 } tiff_file;
@@ -63,7 +63,7 @@ uint64_t tiff_file_plain(tiff_file *file, const tiff_shape *shape, uint64_t *byt
  * possible ratio. */
 bool tiff_file_can_hold(tiff_file *file, const tiff_shape *shape);
 
-/* Where the voxels of a page are put, and how they are read. */
+/* The place at which the voxels of a page are stored, and the way in which they are read. */
 typedef struct tiff_target {
   void *voxels;    /* the caller's; room for width x height stored voxels, or colours (colors.h) */
   hl_exact *exact; /* notes the page's numbers; may be null */

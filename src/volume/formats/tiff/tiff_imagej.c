@@ -1,4 +1,5 @@
-/* volume/formats/tiff/tiff_imagej.c - see tiff_imagej.h.
+/* volume/formats/tiff/tiff_imagej.c - reads the colours and the windows of channels from a private tag of
+ * ImageJ.
  *
  * Source: ImageJ's ij/io/TiffEncoder.java and TiffDecoder.java. Tag 50839 holds a header and pieces of data.
  * The header has the mark "IJIJ" and, for each kind of data, its four letters and the number of its pieces.

@@ -159,8 +159,7 @@ static hl_status find_plain(stack_reading *r, tiff_file *file, const tiff_shape 
   return HL_OK;
 }
 
-/* Takes the colours and windows of channels that ImageJ has stored, if it has stored them for all
- * channels. */
+/* Takes the colours and windows of channels from ImageJ's tag, if the tag has them for all channels. */
 static hl_status take_imagej(stack_reading *r, const hl_channel *channels, size_t count, hl_error *error) {
   if (count == 0 || count != r->request->selection.channels) return HL_OK;
   hl_status status = hl_channels_make(r->request, error);

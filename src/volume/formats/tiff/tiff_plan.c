@@ -1,9 +1,9 @@
-/* volume/formats/tiff/tiff_plan.c - the order of a TIFF file's pages.
+/* volume/formats/tiff/tiff_plan.c - finds the order of a TIFF file's pages.
  *
  * OME-XML follows the schema of 2016-06 of the Open Microscopy Environment. The element Pixels has the sizes
  * and the order of dimensions. The elements TiffData say which page of which file holds a plane. In files of
- * ImageJ, the description of the first page has lines "name=value", as ij.io.FileSaver writes them. Their
- * planes are ordered by channel, slice and frame, of which the channel changes fastest. */
+ * ImageJ, the description of the first page has lines "name=value", as ij.io.FileSaver writes them. The
+ * planes of such files are ordered by channel, slice and frame. The channel changes fastest. */
 #include "volume/formats/tiff/tiff_plan.h"
 
 #include <math.h>
@@ -64,7 +64,8 @@ typedef struct ome_reader {
   const char *path;
   size_t pages, components; /* pages and components of the first file */
   size_t size[3];           /* numbers of planes along Z, C, T */
-  char order[3];            /* "ZCT" in the file's order; the first one changes fastest */
+  char order[3];            /* the letters Z, C and T in the order of the file's axes; the first axis changes
+                             * fastest */
   bool in_pixels, done, is_planned;
   /* The current TiffData. */
   struct {
@@ -89,8 +90,8 @@ static bool read_number(const hl_xml_tag *tag, const char *name, size_t other, s
   return text == NULL || (hl_text_sizes(text, number, 1) == 1 && *number <= SIZE_MOST);
 }
 
-/* The length of a voxel along an axis; 0 if not stated. *unit: set to the length of its unit in micrometres,
- * or to 0 if it is no unit of length, such as "pixel". */
+/* The length of a voxel along an axis; 0 if the file does not state it. *unit: set to the length of its unit
+ * in micrometres, or to 0 if it is no unit of length, such as "pixel". */
 static double read_length(const hl_xml_tag *tag, char axis, double *unit) {
   char name[] = "PhysicalSizeX", unit_name[] = "PhysicalSizeXUnit";
   name[sizeof name - 2] = axis;

@@ -27,12 +27,14 @@ typedef struct tiff_plan {
 
 /* Makes the plan. description: the text in the first page; null if there is none. pages: number of slices in
  * all pages of the first file. components: samples of a pixel. depth: slices of a page. resolution: pixels
- * per unit along x and y in the first page; 0 if not told. Release the plan also after a failure. */
+ * per unit along x and y in the first page; 0 if the file does not state it. Release the plan also after a
+ * failure. */
 hl_status tiff_plan_make(hl_load_request *request, const char *path, const char *description, size_t pages,
                          size_t components, size_t depth, const double resolution[2], tiff_plan *plan,
                          hl_error *error);
 
-/* The number of pictures that a description by ImageJ or tifffile promises; 0 if it promises none. */
+/* The number of pictures that a description by ImageJ or tifffile promises; 0 if the description promises
+ * none. */
 size_t tiff_plan_pages(const char *description, size_t components);
 
 void tiff_plan_release(tiff_plan *plan);

@@ -1,4 +1,4 @@
-/* volume/formats/vdb/nanovdb_bricks.c - see nanovdb_bricks.h.
+/* volume/formats/vdb/nanovdb_bricks.c - makes bricks from a NanoVDB grid of floats.
  *
  * In: a grid's tree. Out: bricks of level 0, of 32^3 cells. A brick whose coefficients, with its margins, are
  * all the same number becomes a constant. This changes no bit of the field. Each brick is read twice, the
@@ -30,7 +30,7 @@ typedef struct brick_reader {
 } brick_reader;
 
 /* Reads the coefficients of a brick. Its part in the box of active voxels is read into `box`, which is
- * scratch memory. Coefficients beyond the box's faces are those at the faces. */
+ * scratch memory. A coefficient beyond the box's faces equals the nearest coefficient at the faces. */
 static hl_status read_brick(const brick_reader *r, size_t number, float *box, float *brick, hl_error *error) {
   const hl_bricks *bricks = r->bricks;
   int64_t first[3];

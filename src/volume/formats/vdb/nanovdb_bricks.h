@@ -1,5 +1,5 @@
-/* volume/formats/vdb/nanovdb_bricks.h - a NanoVDB grid of floats as bricks (bricks/bricks.h), without the
- * empty space between them. */
+/* volume/formats/vdb/nanovdb_bricks.h - makes bricks (bricks/bricks.h) from a NanoVDB grid of floats, without
+ * the empty space between the bricks. */
 #ifndef HL_VOLUME_NANOVDB_BRICKS_H
 #define HL_VOLUME_NANOVDB_BRICKS_H
 

@@ -1,8 +1,8 @@
-/* volume/formats/vdb/nanovdb_grid.h - the tree of a NanoVDB grid, read through PNanoVDB.h into a dense
+/* volume/formats/vdb/nanovdb_grid.h - reads the tree of a NanoVDB grid through PNanoVDB.h into a dense
  * volume.
  *
- * A grid is a block of memory in which offsets lead from a node to its children. Every look-up goes through
- * PNanoVDB's check of bounds, by which offsets that lead out of the block read zeros. */
+ * A grid is a block of memory in which offsets lead from a node to its children. PNanoVDB checks the bounds
+ * of every access, so that offsets that lead out of the block give zeros. */
 #ifndef HL_VOLUME_NANOVDB_GRID_H
 #define HL_VOLUME_NANOVDB_GRID_H
 
@@ -14,21 +14,22 @@ typedef struct nanovdb_grid {
   const char *path;     /* for error lines */
   unsigned char *bytes; /* borrowed; [size]; aligned to 64 bytes */
   size_t size;
-  uint32_t kind; /* the kind of grid, PNANOVDB_GRID_TYPE_ and a name */
-  int component; /* component of vectors and colours, or HL_COMPONENT_MAGNITUDE */
+  uint32_t kind; /* the kind of grid: a constant whose name begins with PNANOVDB_GRID_TYPE_ */
+  int component; /* the index of the component of vectors and colours that is read, or
+                  * HL_COMPONENT_MAGNITUDE */
 } nanovdb_grid;
 
 /* Finds the type and the number of components of a kind of grid. The type is 0 if grids of this kind cannot
  * be read. */
 void nanovdb_kind(uint32_t kind, hl_voxel_type *type, size_t *components);
 
-/* Checks the grid's memory, and sets the description's dimensions, origin and axes to those of the box of
- * active voxels. */
+/* Checks the grid's memory, and sets the description's dimensions, origin and axes to the dimensions, origin
+ * and axes of the box of active voxels. */
 hl_status nanovdb_grid_describe(const nanovdb_grid *grid, hl_volume_description *description,
                                 hl_error *error);
 
-/* Reads all voxels [k][j][i] of the box of active voxels, in stored form. description: of this box, with the
- * volume's type. exact: notes the voxels' numbers. */
+/* Reads all voxels [k][j][i] of the box of active voxels, in stored form. description: the box's description,
+ * with the volume's type. exact: notes the voxels' numbers. */
 hl_status nanovdb_grid_read(const nanovdb_grid *grid, const hl_volume_description *description, void *voxels,
                             hl_exact *exact, hl_error *error);
 

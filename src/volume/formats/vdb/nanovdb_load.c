@@ -93,8 +93,8 @@ static hl_status read_facts(grid_list *list, hl_load_request *request, uint64_t 
   return status == HL_OK ? hl_arrays_add(request, name, components, type, false, error) : status;
 }
 
-/* Reads the facts and names of a segment's grids. The grids themselves follow one after the other behind all
- * facts. */
+/* Reads the facts and names of a segment's grids. The grids themselves follow one after the other, after the
+ * facts of all grids. */
 static hl_status read_segment(grid_list *list, hl_load_request *request, uint64_t *at, hl_error *error) {
   unsigned char header[HEADER_BYTES];
   hl_status status = read_exactly(list, *at, header, sizeof header, error);

@@ -1,5 +1,5 @@
-/* volume/formats/vdb/openvdb.c - OpenVDB's own files. The context's `convert` callback has another program
- * convert them to NanoVDB. */
+/* volume/formats/vdb/openvdb.c - reads OpenVDB's own files. The context's `convert` callback lets another
+ * program convert the files to NanoVDB. */
 #include <stdio.h>
 #include <string.h>
 
@@ -16,7 +16,7 @@ static hl_status fail_unconverted(const char *path, hl_error *error) {
                  path);
 }
 
-/* Has the file converted, and reads the result under the original file's name. */
+/* Lets the callback convert the file, and reads the result under the original file's name. */
 static hl_status load(hl_stream **stream, hl_load_request *request, hl_volume **volume, hl_error *error) {
   const hl_context_options *options = &request->context->options;
   const char *path = (*stream)->path;

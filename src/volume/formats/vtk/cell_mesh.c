@@ -1,5 +1,6 @@
-/* volume/formats/vtk/cell_mesh.c - see cell_mesh.h. The types of cells and the order of their points: VTK's
- * file formats, "Linear cell types", and its list of cell types. */
+/* volume/formats/vtk/cell_mesh.c - collects a mesh of cells, as cell_mesh.h describes. Source of the types of
+ * cells and the order of their points: VTK's file formats, "Linear cell types", and VTK's list of cell
+ * types. */
 #include "volume/formats/vtk/cell_mesh.h"
 
 #include <math.h>
@@ -13,11 +14,12 @@
 
 enum { TYPES = 82 };
 
-/* Which points of a cell become corners of a hexahedron or a tetrahedron. */
+/* A kind of cell, and the indices of those of its points that become corners of a hexahedron or a
+ * tetrahedron. */
 typedef struct cell_kind {
   signed char points;                  /* least number of points of such a cell; 0 if the type is not read */
   bool is_curved, is_flat;             /* is_flat: a vertex, line or face */
-  signed char corner[HL_CELL_CORNERS]; /* -1: none, of tetrahedra */
+  signed char corner[HL_CELL_CORNERS]; /* -1 for the corners that a tetrahedron does not have */
 } cell_kind;
 
 #define TETRA \

@@ -12,7 +12,7 @@ typedef struct hl_cell_mesh {
   const char *subject; /* borrowed; starts error lines */
   double *points;      /* owned; [point_count][3] */
   float *values;       /* owned; [point_count]; NaN until they are set */
-  hl_cell *cells;      /* owned; [cell_count]; those with a volume */
+  hl_cell *cells;      /* owned; [cell_count]; the cells that enclose a volume */
   size_t *sources;     /* owned; [cell_count]; for each cell, the index of the cell in its piece from which it
                         * was made */
   size_t point_count, cell_count, cell_room;

@@ -1,5 +1,5 @@
-/* volume/formats/vtk/legacy_arrays.c - the part of legacy .vtk files that all of their data sets share: the
- * opening lines and the arrays of POINT_DATA and CELL_DATA.
+/* volume/formats/vtk/legacy_arrays.c - reads the part of legacy .vtk files that all of their data sets share:
+ * the opening lines and the arrays of POINT_DATA and CELL_DATA.
  *
  * In: a stream of lines with keywords. Out: a call for each array, at its values. */
 #include "volume/formats/vtk/legacy_arrays.h"
@@ -27,7 +27,7 @@ hl_status hl_legacy_vtk_line(hl_legacy_vtk *file, char line[HL_LINE_BYTES], bool
 static hl_status read_opening(hl_legacy_vtk *file, hl_error *error) {
   char line[HL_LINE_BYTES];
   bool ended;
-  /* The line "# vtk DataFile Version x.y". */
+  /* Reads the line "# vtk DataFile Version x.y". */
   hl_status status = hl_legacy_vtk_line(file, line, &ended, error);
   if (status == HL_OK) status = hl_legacy_vtk_line(file, line, &ended, error);
   do {

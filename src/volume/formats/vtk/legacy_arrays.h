@@ -1,5 +1,5 @@
-/* volume/formats/vtk/legacy_arrays.h - the part of legacy .vtk files that all of their data sets share: the
- * opening lines and the arrays of POINT_DATA and CELL_DATA. */
+/* volume/formats/vtk/legacy_arrays.h - reads the part of legacy .vtk files that all of their data sets share:
+ * the opening lines and the arrays of POINT_DATA and CELL_DATA. */
 #ifndef HL_VOLUME_LEGACY_ARRAYS_H
 #define HL_VOLUME_LEGACY_ARRAYS_H
 

@@ -1,4 +1,4 @@
-/* volume/formats/vtk/legacy_cells.c - see legacy_cells.h.
+/* volume/formats/vtk/legacy_cells.c - reads legacy .vtk files with UNSTRUCTURED_GRID or STRUCTURED_GRID.
  *
  * A first pass reads the geometry and lists the arrays under POINT_DATA and CELL_DATA. A second pass goes to
  * the values of the chosen array. Before version 5.1 of the format, the cells are one list of counts and
@@ -22,18 +22,18 @@ typedef struct number_list {
 } number_list;
 
 typedef struct cells_file {
-  hl_legacy_vtk file; /* must be the first member: callbacks get its address, and use it as the address of the
-                       * whole struct */
+  hl_legacy_vtk file; /* this member must be the first one: callbacks get its address, and use it as the
+                       * address of the whole struct */
   hl_load_request *request;
   bool is_curvilinear;
-  size_t size[3]; /* points of a curvilinear grid along i, j, k */
+  size_t size[3]; /* number of points of a curvilinear grid along i, j, k */
   number_list points, types;
   number_list list;             /* the cells of a file before version 5.1: count, points, count, points,
                                  * ... */
   number_list offsets, corners; /* the cells of a file of version 5.1 or newer; the first offset is 0 */
   size_t offset_count, room;    /* numbers of offsets and of corners, as the line CELLS of a newer file states
                                  * them */
-  bool lists;                   /* in the first pass: arrays are listed */
+  bool lists;                   /* whether this is the first pass, in which arrays are listed */
   size_t arrays;                /* number of arrays met so far in this pass that can hold the volume */
   hl_legacy_array chosen;       /* the chosen array, in the second pass; its texts are not valid */
 } cells_file;
@@ -67,7 +67,7 @@ static hl_status read_points(cells_file *cells, const char *arguments, hl_error 
   return read_list(cells, type, 3 * count, &cells->points, error);
 }
 
-/* Reads "CELLS number size" and, where no OFFSETS follow, the list of cells. */
+/* Reads "CELLS number size" and, if no OFFSETS follow, the list of cells. */
 static hl_status read_cells(cells_file *cells, const char *arguments, hl_error *error) {
   const unsigned char *bytes;
   size_t available, counts[2];

@@ -1,4 +1,4 @@
-/* volume/formats/vtk/legacy_cells.h - legacy .vtk files with UNSTRUCTURED_GRID or STRUCTURED_GRID. */
+/* volume/formats/vtk/legacy_cells.h - reads legacy .vtk files with UNSTRUCTURED_GRID or STRUCTURED_GRID. */
 #ifndef HL_VOLUME_LEGACY_CELLS_H
 #define HL_VOLUME_LEGACY_CELLS_H
 

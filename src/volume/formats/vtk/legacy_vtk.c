@@ -1,11 +1,11 @@
-/* volume/formats/vtk/legacy_vtk.c - legacy .vtk files with STRUCTURED_POINTS or RECTILINEAR_GRID, ASCII or
- * BINARY (big-endian). Grids of cells are passed on to legacy_cells.c.
+/* volume/formats/vtk/legacy_vtk.c - reads legacy .vtk files with STRUCTURED_POINTS or RECTILINEAR_GRID, ASCII
+ * or BINARY (big-endian). legacy_cells.c reads grids of cells.
  *
- * After three lines (mark, title, ASCII or BINARY) come keywords. A first pass lists the arrays under
- * POINT_DATA and CELL_DATA (SCALARS, COLOR_SCALARS, VECTORS, NORMALS, TENSORS, TEXTURE_COORDINATES and the
- * arrays of a FIELD), up to the first unknown keyword; a second pass stops at the values of the chosen array.
- * A pipe cannot be read twice. It is read only once, up to the array with the wanted name or, without a name,
- * up to the first array of one component. */
+ * A file begins with three lines: the mark, the title, and ASCII or BINARY. Lines with keywords follow. A
+ * first pass lists the arrays under POINT_DATA and CELL_DATA (SCALARS, COLOR_SCALARS, VECTORS, NORMALS,
+ * TENSORS, TEXTURE_COORDINATES and the arrays of a FIELD), up to the first unknown keyword; a second pass
+ * stops at the values of the chosen array. A pipe cannot be read twice. It is read only once, up to the array
+ * with the wanted name or, without a name, up to the first array of one component. */
 #include <string.h>
 
 #include "core/memory.h"
@@ -19,8 +19,8 @@
 #include "volume/io/text.h"
 
 typedef struct vtk_header {
-  hl_legacy_vtk file; /* must be the first member: callbacks get its address, and use it as the address of the
-                       * whole struct */
+  hl_legacy_vtk file; /* this member must be the first one: callbacks get its address, and use it as the
+                       * address of the whole struct */
   hl_payload payload;
   bool has_dimensions, is_rectilinear, is_of_cells;
   double *coordinates[3]; /* owned; the coordinates of a rectilinear grid; null for other grids */
@@ -28,7 +28,7 @@ typedef struct vtk_header {
   size_t tuples; /* number of tuples of the volume's array, set when it is found */
   hl_load_request *request;
   bool of_cells; /* whether the volume's array has values for cells instead of points */
-  bool lists;    /* in the first pass: arrays are listed */
+  bool lists;    /* whether this is the first pass, in which arrays are listed */
   bool once;     /* whether the file can be read only once. Then the first pass already stops at the first
                   * suitable array */
   size_t arrays; /* number of arrays met so far in this pass that can hold the volume */
@@ -149,7 +149,7 @@ static void release(vtk_header *header) {
   }
 }
 
-/* Returns whether an error can be ignored, as a suitable array was listed before it. */
+/* Returns whether an error can be ignored, because a suitable array was listed before it. */
 static bool is_enough(const hl_load_request *request, hl_status status) {
   if (status != HL_ERROR_INPUT && status != HL_ERROR_UNSUPPORTED) return false;
   for (size_t n = 0; n < request->array_count; n++)

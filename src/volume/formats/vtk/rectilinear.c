@@ -1,4 +1,4 @@
-/* volume/formats/vtk/rectilinear.c - see rectilinear.h. */
+/* volume/formats/vtk/rectilinear.c - makes volumes whose voxels lie on lines that are not evenly spaced. */
 #include "volume/formats/vtk/rectilinear.h"
 
 #include <math.h>
@@ -12,7 +12,7 @@
 static const double EVEN = 1e-3;
 enum { TIMES_MOST = 4 };
 
-/* An axis of the new grid, and where its voxels lie among the old ones. */
+/* An axis of the new grid, and the places of its voxels among the voxels of the old grid. */
 typedef struct axis_map {
   size_t count;       /* number of voxels of the new grid */
   double first, step; /* in the world */

@@ -1,5 +1,5 @@
-/* volume/formats/vtk/rectilinear.h - volumes whose voxels lie on lines that are not evenly spaced: VTK's
- * rectilinear grids. */
+/* volume/formats/vtk/rectilinear.h - makes volumes whose voxels lie on lines that are not evenly spaced, as
+ * in VTK's rectilinear grids. */
 #ifndef HL_VOLUME_RECTILINEAR_H
 #define HL_VOLUME_RECTILINEAR_H
 

@@ -1,9 +1,9 @@
-/* volume/formats/vtk/vthb.c - VTK's overlapping AMR (.vthb): a list of levels and boxes, each box in a .vti
- * file of its own.
+/* volume/formats/vtk/vthb.c - reads VTK's overlapping AMR (.vthb), which is an XML file that lists levels and
+ * boxes of cells. The values of each box are in a .vti file of its own.
  *
- * The list names files relative to its folder. A box is six numbers, the first and the last cell of its level
- * along x, y and z. The size of a level's cells is its spacing. The boxes of the first level are the domain.
- */
+ * The XML file names the .vti files relative to its own folder. A box is given by six numbers: along each of
+ * x, y and z, the numbers of its first and its last cell in the level. The spacing of a level is the size of
+ * the level's cells. The boxes of the first level are the domain. */
 #include <math.h>
 #include <string.h>
 
@@ -29,8 +29,10 @@ typedef struct amr_list {
   hl_load_request *request;
   hl_vtk_xml xml;
   double origin[3];
-  double spacing[HL_AMR_LEVELS_MOST][3]; /* spacing of each level; 0 if the list does not state it */
-  int level;                             /* level of the current element Block; -1 outside of such elements */
+  double spacing[HL_AMR_LEVELS_MOST][3]; /* for each level, the lengths of a cell's edges along x, y, z; 0 if
+                                          * the .vthb file does not state them */
+  int level;                             /* the level that the XML element Block names, while the tags inside
+                                          * that element are read; -1 outside of such elements */
   int levels;
   amr_box *boxes; /* owned; [box_count] */
   size_t box_count, box_room;
@@ -141,7 +143,7 @@ static hl_status find_shape(const amr_list *list, hl_amr_shape *shape, hl_error 
 
 /* ---- boxes ---- */
 
-/* Adds the voxels of a box's file. */
+/* Adds a box, whose voxels are in `piece`, to the adaptive grid. */
 static hl_status add_voxels(amr_list *list, hl_amr *amr, const amr_box *box, const hl_volume *piece,
                             hl_error *error) {
   const size_t *n = box->count;

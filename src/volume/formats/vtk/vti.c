@@ -1,5 +1,5 @@
-/* volume/formats/vtk/vti.c - VTK XML image data (.vti), rectilinear grids (.vtr), and image data in several
- * files (.pvti): ascii, base64 and appended arrays, plain or in compressed blocks.
+/* volume/formats/vtk/vti.c - reads VTK XML image data (.vti), rectilinear grids (.vtr), and image data in
+ * several files (.pvti): ascii, base64 and appended arrays, plain or in compressed blocks.
  *
  * A first pass over the tags lists the arrays of the first piece. The volume is the array that the caller
  * named. Without a name it is the array of the active scalars, else the first array of one component at
@@ -23,7 +23,8 @@ static const char *const kind_names[] = {"ImageData", "RectilinearGrid", "PImage
 
 enum { PIECES_MOST = 65536, ENTRIES_MOST = 1 << 20 };
 
-/* A piece of the whole volume: its extent and, if the volume consists of several files, its file. */
+/* A piece of the whole volume: the piece's extent and, if the volume consists of several files, the name of
+ * the piece's file. */
 typedef struct vti_piece {
   double extent[6];
   char *source; /* owned; name of the piece's file; null if the piece is in this file */
@@ -40,7 +41,7 @@ typedef struct vti_entry {
 typedef struct vti_header {
   hl_vtk_xml xml;
   struct {
-    double extent[6]; /* first and last point index along x, y, z */
+    double extent[6]; /* indices of the first and the last point along x, y, z */
     double origin[3], spacing[3], direction[9];
     bool has_extent;
     hl_vtk_array coordinates[3]; /* coordinates of a rectilinear grid's first piece */
@@ -50,8 +51,8 @@ typedef struct vti_header {
   vti_piece *pieces;  /* owned; [piece_count] */
   vti_entry *entries; /* owned; [entry_count]; the arrays of all pieces */
   size_t piece_count, piece_room, entry_count, entry_room;
-  bool is_whole; /* whether the last tag of the section, or the appended data, have been read: no array is
-                  * missing */
+  bool is_whole; /* whether all arrays are known, because the last tag of the section, or the appended data,
+                  * have been read */
   section section;
   char active[HL_VTK_NAME_BYTES];  /* name of the section's active scalars */
   int active_points, active_cells; /* indices of the active scalars at points and at cells; -1 if there are
@@ -208,8 +209,8 @@ static void make_grid(const vti_header *header, const double extent[6], bool cel
 }
 
 /* The index of the array that is read by default. It is the active scalars at points, if there are any. If
- * not, it is the active scalars at cells, unless there is an array of one component at points. Otherwise it
- * is -1. */
+ * not, it is the active scalars at cells, unless there is an array of one component at points. In all other
+ * cases the result is -1. */
 static int active_array(const vti_header *header) {
   if (header->active_points >= 0) return header->active_points;
   for (size_t n = 0; n < header->request->array_count; n++)
@@ -443,7 +444,7 @@ static hl_status read_parts(const vti_header *header, hl_volume **volume, hl_err
 /* ---- the whole ---- */
 
 /* Completes the list of pieces. A file without any Piece gets one, which has the whole extent. If there is
- * one piece, the whole extent becomes that of the piece. */
+ * one piece, the whole extent becomes the piece's extent. */
 static hl_status finish_pieces(vti_header *header, hl_error *error) {
   if (header->piece_count == 0 && header->grid.has_extent) {
     hl_status status = grow(header, (void **)&header->pieces, 0, &header->piece_room, sizeof *header->pieces,

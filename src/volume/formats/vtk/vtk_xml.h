@@ -47,19 +47,20 @@ hl_status hl_vtk_xml_count(const hl_vtk_xml *xml, const hl_xml_tag *tag, const c
 /* Copies a name. If it is null or too long, the copy is empty. */
 void hl_vtk_xml_copy_name(char to[HL_VTK_NAME_BYTES], const char *name);
 
-/* Makes room for one more element of a list that has `count`. *list: owned, [*room] elements of `size`
- * bytes. */
+/* Makes room for one more element of a list that has `count` elements. *list: owned, [*room] elements of
+ * `size` bytes. */
 hl_status hl_vtk_xml_grow(hl_context *context, const hl_vtk_xml *xml, void **list, size_t count, size_t *room,
                           size_t size, hl_error *error);
 
-/* Fails because of a value that is impossible, or (HL_ERROR_UNSUPPORTED) not supported. */
+/* Fails because of a value that is impossible, or, with HL_ERROR_UNSUPPORTED, because of a value that is not
+ * supported. */
 hl_status hl_vtk_xml_refuse(const hl_vtk_xml *xml, hl_status code, const char *what, const char *value,
                             hl_error *error);
 
 /* Reads the tag <VTKFile>, whose type must be `wanted`. */
 hl_status hl_vtk_xml_file_tag(hl_vtk_xml *xml, const hl_xml_tag *tag, const char *wanted, hl_error *error);
 
-/* Reads the tag <DataArray>, which says where an array's values are and how they are encoded. */
+/* Reads the tag <DataArray>, which states the place and the encoding of an array's values. */
 hl_status hl_vtk_xml_array_tag(const hl_vtk_xml *xml, const hl_xml_tag *tag, hl_vtk_array *array,
                                hl_error *error);
 

@@ -1,5 +1,5 @@
-/* volume/formats/vtk/vtu.c - the cells of VTK's XML unstructured grids (.vtu) and curvilinear grids (.vts),
- * as volumes.
+/* volume/formats/vtk/vtu.c - makes volumes of the cells of VTK's XML unstructured grids (.vtu) and
+ * curvilinear grids (.vts).
  *
  * A first pass over the tags lists the pieces and their arrays. A second pass reads the points, the cells and
  * the chosen array piece by piece. Arrays are chosen as in image data (vti.c). */

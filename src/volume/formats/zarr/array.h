@@ -1,4 +1,5 @@
-/* volume/formats/zarr/array.h - the metadata of a Zarr array, version 2 or 3: shape, chunks, type, codecs.
+/* volume/formats/zarr/array.h - describes the metadata of a Zarr array, version 2 or 3: shape, chunks, type,
+ * codecs.
  *
  * Sources: the Zarr storage specification version 2 (`.zarray`), the Zarr core specification version 3
  * (`zarr.json`) with its codecs `bytes`, `transpose`, `gzip`, `zstd`, `blosc`, `crc32c` and
@@ -31,14 +32,14 @@ typedef enum hl_zarr_filter_kind {
 typedef struct hl_zarr_filter {
   hl_zarr_filter_kind kind;
   size_t element;         /* bytes of an element, for shuffling */
-  hl_voxel_type from, to; /* types of the values: `from` as they are stored, `to` after the filter is
-                           * undone */
+  hl_voxel_type from, to; /* from: the type of the stored values; to: the type of the values after the filter
+                           * is undone */
   double scale, offset;
 } hl_zarr_filter;
 
 enum { HL_ZARR_FILTERS_MOST = 4 };
 
-/* How the voxels of a chunk are coded as bytes. */
+/* The coding by which the voxels of a chunk become bytes. */
 typedef struct hl_zarr_codecs {
   int order[HL_ZARR_AXES_MOST]; /* the array's axes in the order of a chunk's voxels, the slowest axis
                                  * first */
@@ -61,8 +62,8 @@ typedef struct hl_zarr_array {
   unsigned char fill[8]; /* the value of voxels in missing chunks, native byte order */
   hl_zarr_codecs codecs;
   char separator;        /* separator of the numbers in the names of chunks: '.' or '/' */
-  bool separator_untold; /* in version 2: whether the metadata do not state the separator. Then a chunk that
-                          * is missing under its name with '.' is looked for under its name with '/' */
+  bool separator_untold; /* in version 2: whether the metadata do not state the separator. In this case, a
+                          * chunk whose name with '.' is missing is searched under its name with '/' */
   bool has_prefix;       /* whether names of chunks begin with "c" */
   struct {
     bool are_used;                    /* whether files are shards, which hold several chunks */

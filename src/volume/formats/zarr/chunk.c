@@ -50,7 +50,7 @@ bool hl_zarr_check_sum(const unsigned char *bytes, size_t length) {
 typedef struct packed_bytes {
   const unsigned char *bytes;
   size_t length;
-  size_t unpacked; /* number of bytes that unpacking must give */
+  size_t unpacked; /* number of bytes that the data must have after they are unpacked */
 } packed_bytes;
 
 static hl_status fail_damaged(const hl_zarr_unpacker *u, const char *codec, hl_error *error) {

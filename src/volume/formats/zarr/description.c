@@ -1,4 +1,4 @@
-/* volume/formats/zarr/description.c - see description.h. */
+/* volume/formats/zarr/description.c - reads OME-Zarr's descriptions of channels, labels and label maps. */
 #include "volume/formats/zarr/description.h"
 
 #include <math.h>

@@ -1,4 +1,4 @@
-/* volume/formats/zarr/description.h - OME-Zarr's descriptions of channels, labels and label maps. */
+/* volume/formats/zarr/description.h - reads OME-Zarr's descriptions of channels, labels and label maps. */
 #ifndef HL_VOLUME_ZARR_DESCRIPTION_H
 #define HL_VOLUME_ZARR_DESCRIPTION_H
 
@@ -8,11 +8,11 @@
  * show them. request->selection must be set. */
 hl_status hl_zarr_describe_channels(const json_t *ome, hl_load_request *request, hl_error *error);
 
-/* Reads what an image of labels states about its labels: their colours, and their names, which are the
- * properties "class", "name" or "label". */
+/* Reads the colours and the names of labels that an image of labels states. A name is the property "class",
+ * "name" or "label". */
 hl_status hl_zarr_name_labels(const json_t *ome, hl_volume *volume, hl_error *error);
 
-/* Lists the images of labels that belong to an image: those in the group "labels" of the image's group. If
+/* Lists the images of labels that belong to an image. They are in the group "labels" of the image's group. If
  * that group cannot be read, the list is empty. */
 hl_status hl_zarr_list_label_maps(const hl_bundle *bundle, const char *folder, hl_volume *volume,
                                   hl_error *error);

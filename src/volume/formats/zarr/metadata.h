@@ -1,4 +1,4 @@
-/* volume/formats/zarr/metadata.h - the JSON files of a Zarr hierarchy. */
+/* volume/formats/zarr/metadata.h - reads the JSON files of a Zarr hierarchy. */
 #ifndef HL_VOLUME_ZARR_METADATA_H
 #define HL_VOLUME_ZARR_METADATA_H
 
@@ -23,8 +23,8 @@ hl_status hl_zarr_metadata_read(const hl_bundle *bundle, const char *folder, con
 hl_status hl_zarr_attributes_read(const hl_bundle *bundle, const char *folder, json_t **attributes,
                                   hl_error *error);
 
-/* The attributes that belong to OME-Zarr, borrowed: in version 0.5 the member "ome", in version 0.4 all
- * attributes. */
+/* The attributes that belong to OME-Zarr, borrowed. In version 0.5 they are the member "ome", and in version
+ * 0.4 all attributes. */
 const json_t *hl_zarr_ome(const json_t *attributes);
 
 /* Fails with "PATH/FOLDER...: WHAT". */

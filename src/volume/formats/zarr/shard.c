@@ -1,4 +1,5 @@
-/* volume/formats/zarr/shard.c - see shard.h. */
+/* volume/formats/zarr/shard.c - reads the index of a shard, and finds the parts of a shard's file that hold
+ * the wanted chunks. */
 #include "volume/formats/zarr/shard.h"
 
 #include <stdlib.h>

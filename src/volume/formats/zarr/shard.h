@@ -1,22 +1,23 @@
-/* volume/formats/zarr/shard.h - the index of a shard: where its chunks are, and which parts of the file hold
- * the wanted ones.
+/* volume/formats/zarr/shard.h - reads the index of a shard, which states the places of its chunks, and finds
+ * the parts of the file that hold the wanted chunks.
  *
  * Source: the Zarr codec `sharding_indexed`. The index has 16 bytes for each chunk, its place and its length
- * in the file, both of 64 bits, least significant byte first; both are 2^64 - 1 for a chunk that is missing.
- */
+ * in the file, both of 64 bits, least significant byte first; both are 2^64 - 1 for a chunk that is
+ * missing. */
 #ifndef HL_VOLUME_ZARR_SHARD_H
 #define HL_VOLUME_ZARR_SHARD_H
 
 #include "volume/formats/zarr/array.h"
 
-/* The bytes of a shard's index, with its check sum. */
+/* The number of bytes of a shard's index, with its check sum. */
 size_t hl_zarr_index_bytes(const hl_zarr_array *array);
 
-/* Where the index lies in a shard's file. */
+/* The range of bytes of a shard's file in which the index lies. */
 hl_fetch_range hl_zarr_index_range(const hl_zarr_array *array);
 
 /* Finds a chunk by its number along each of the array's axes within the shard. index: [16 * chunks of a
- * shard]. *length is 0 if the chunk is missing. False: the chunk lies outside of the file of `size` bytes. */
+ * shard]. *length is 0 if the chunk is missing. Returns false if the chunk lies outside of the file of `size`
+ * bytes. */
 bool hl_zarr_index_find(const hl_zarr_array *array, const unsigned char *index, const uint64_t *inner,
                         uint64_t size, uint64_t *offset, uint64_t *length);
 

@@ -26,7 +26,8 @@ enum {
 
 static const bool native_is_big_endian = __BYTE_ORDER__ == __ORDER_BIG_ENDIAN__;
 
-/* What one thread holds: memory for a chunk, and the file that it has read last, which may be a shard. */
+/* The memory and the open file of one thread. The file is the one that the thread has read last, and may be a
+ * shard. */
 typedef struct worker {
   hl_zarr_unpacker unpacker;
   char key[KEY_BYTES];  /* name of the open file; "" if there is none */
@@ -45,7 +46,7 @@ typedef struct reading {
   uint64_t size[3];                 /* size of the volume */
   uint64_t files[3], inner[3];      /* along i, j, k: number of files, and number of chunks in each file */
   uint64_t parts;                   /* number of all parts */
-  uint64_t first;                   /* number of the first part of the files that are being read at present */
+  uint64_t first;                   /* number of the first part in the files that are being read */
   size_t stride[HL_ZARR_AXES_MOST]; /* number of bytes from a voxel of a chunk to the next one, along each of
                                      * the array's axes */
   unsigned char fill[4];            /* the fill value in stored form */
@@ -57,7 +58,7 @@ typedef struct reading {
   atomic_size_t absent;             /* number of chunks whose files do not exist */
 } reading;
 
-/* Where a part lies: its chunk in the array, and its voxels in the volume. */
+/* The place of a part: the chunk in the array, and the voxels in the volume. */
 typedef struct part {
   uint64_t file[HL_ZARR_AXES_MOST];  /* coordinates of the part's file */
   uint64_t inner[HL_ZARR_AXES_MOST]; /* index of the chunk within its file */
@@ -161,8 +162,9 @@ static void store_row(const reading *r, const unsigned char *from, size_t step, 
   }
 }
 
-/* Stores the voxels of a part, row by row. chunk: the voxels of the part's chunk; null if all get the fill
- * value. box: whether the rows are gathered in the worker's memory as one box, in place of the volume. */
+/* Stores the voxels of a part, row by row. chunk: the voxels of the part's chunk; null if all voxels get the
+ * fill value. box: whether the rows are gathered in the worker's memory as one box, in place of the
+ * volume. */
 static void put_rows(const reading *r, const worker *w, const part *p, const unsigned char *chunk, bool box) {
   const bool apart = hl_destination_is_apart(r->to);
   unsigned char *row = w->row;
@@ -290,8 +292,8 @@ enum { FILES_AT_A_TIME = 64 };
 
 static uint64_t parts_of_file(const reading *r) { return r->inner[0] * r->inner[1] * r->inner[2]; }
 
-/* Returns whether shards have chunks that are not read: those of other times or channels, or of other
- * ranks. */
+/* Returns whether shards have chunks that are not read, because the chunks belong to other times or channels,
+ * or to other ranks. */
 static bool reads_parts_of_shards(const reading *r) {
   return r->array->shards.are_used && (parts_of_file(r) < r->array->shards.chunks || r->to->own != NULL);
 }
@@ -303,7 +305,7 @@ static uint64_t files_at_a_time(const reading *r) {
   return reads_parts_of_shards(r) && files < FILES_AT_A_TIME ? files : FILES_AT_A_TIME;
 }
 
-/* The greatest length of a file; more would not be read. */
+/* The greatest length of a file that is fetched. A file of this array cannot be longer. */
 static uint64_t longest_file(const hl_zarr_array *array) {
   uint64_t chunk = hl_zarr_chunk_most(array) + 16, length;
   return __builtin_mul_overflow(chunk, array->shards.chunks, &length) ? UINT64_MAX : length + 64;
@@ -347,7 +349,7 @@ static hl_status bring_files(const reading *r, uint64_t count, char separator, b
   return status;
 }
 
-/* Parts of shards that are to be fetched. */
+/* A list of those parts of shards that will be fetched. */
 typedef struct span_list {
   char (*keys)[KEY_BYTES]; /* owned; [FILES_AT_A_TIME]; names of the shards */
   size_t shards, count;
@@ -371,8 +373,8 @@ static hl_status list_chunks(const reading *r, const worker *w, uint64_t number,
   return status;
 }
 
-/* Adds to the list what is to be fetched of one shard, whose index has been fetched. A shard that does not
- * exist, or that the server has sent as a whole, adds nothing. */
+/* Adds to the list the parts of one shard that must be fetched. The shard's index has been fetched already. A
+ * shard that does not exist, or that the server has sent as a whole, adds no parts. */
 static hl_status list_spans(const reading *r, uint64_t number, span_list *list, hl_error *error) {
   part place;
   worker *w = &r->workers[0];
@@ -403,7 +405,7 @@ static void close_files(const reading *r, int workers) {
   }
 }
 
-/* Fetches the chunks that are read of the shards of the `count` parts from r->first on. */
+/* Fetches the wanted chunks of the shards that hold the `count` parts from r->first on. */
 static hl_status bring_chunks(const reading *r, uint64_t count, int workers, hl_error *error) {
   hl_context *context = r->bundle->context;
   span_list *list = hl_allocate_zeroed(context, 1, sizeof *list);
@@ -423,7 +425,7 @@ static hl_status bring_chunks(const reading *r, uint64_t count, int workers, hl_
   return status;
 }
 
-/* Brings some files at a time, and reads their parts. */
+/* Fetches some files at a time from the server, and reads their parts. */
 static hl_status read_from_server(reading *r, hl_pool *pool, hl_error *error) {
   const hl_zarr_array *array = r->array;
   bool by_parts = reads_parts_of_shards(r);
@@ -466,7 +468,7 @@ static size_t longest(const reading *r, int a) {
   return (size_t)(chunk < r->size[a] ? chunk : r->size[a]);
 }
 
-/* The bytes of a worker's row, or of its box. */
+/* The number of bytes of a worker's memory for a row or for a box. */
 static size_t row_bytes_of(const reading *r) {
   return longest(r, 0) * (r->is_filled ? longest(r, 1) * longest(r, 2) : 1) * r->stored_bytes;
 }
@@ -497,8 +499,8 @@ static hl_status read_parts(reading *r, hl_pool *pool, hl_error *error) {
   return status;
 }
 
-/* Tells how many chunks a server lacks. A store may lack them on purpose, but a server's fault looks the
- * same, and nobody sees a server's files as those of a folder. */
+/* Tells the user the number of chunks that a server lacks. A store may lack chunks on purpose, but a fault of
+ * the server looks the same. A user can list the files of a folder, but not the files of a server. */
 static void tell_absent(const reading *r, hl_absence *absence) {
   if (!hl_bundle_is_on_server(r->bundle)) return;
   const size_t absent = atomic_load(&r->absent), all = absent + atomic_load(&r->found);
@@ -537,7 +539,7 @@ hl_status hl_zarr_voxels_read(const hl_bundle *bundle, const hl_zarr_array *arra
     status = hl_destination_open_sparse(bundle->context, grid, r.fill, bundle->path, to, error);
   if (status != HL_OK) return status;
   r.is_filled = hl_destination_is_sparse(to);
-  pthread_rwlock_init(&r.lock, NULL); /* a lock without attributes cannot fail to be made */
+  pthread_rwlock_init(&r.lock, NULL); /* this call cannot fail, because the lock has no attributes */
   status = read_all(&r, absence, error);
   pthread_rwlock_destroy(&r.lock);
   return status;

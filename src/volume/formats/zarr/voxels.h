@@ -5,7 +5,8 @@
 #include "volume/formats/zarr/array.h"
 #include "volume/io/destination.h"
 
-/* Which of the array's axes are the volume's axes, and which index along all others is read. */
+/* The part of an array that becomes the volume: the array's axes that are the volume's axes, and the index
+ * that is read along each other axis. */
 typedef struct hl_zarr_choice {
   int axis[3];                       /* for each of i, j, k, the index of the array's axis; -1 if there is
                                       * none, so that the volume has a single voxel along it */
@@ -15,7 +16,8 @@ typedef struct hl_zarr_choice {
 
 /* Opens the destination and reads all voxels into it. Fails if all chunks are missing. grid: the volume's
  * grid, which must fit the choice. *to must be zero before, and is to be closed also after a failure.
- * *absence: which chunks a server lacks; unchanged for a store that is on no server. */
+ * *absence: set to the number of chunks that a server lacks, and to the number of all chunks; unchanged for a
+ * store that is on no server. */
 hl_status hl_zarr_voxels_read(const hl_bundle *bundle, const hl_zarr_array *array,
                               const hl_zarr_choice *choice, const hl_volume_description *grid,
                               hl_destination *to, hl_absence *absence, hl_error *error);

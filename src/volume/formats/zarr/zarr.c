@@ -1,4 +1,5 @@
-/* volume/formats/zarr/zarr.c - Zarr arrays and OME-Zarr images, in folders and zip archives, and on servers.
+/* volume/formats/zarr/zarr.c - reads Zarr arrays and OME-Zarr images, in folders and zip archives, and on
+ * servers.
  *
  * The steps are in zarr/: metadata.c reads JSON files, array_read.c an array's metadata, image.c OME-Zarr's
  * axes and levels, series.c lists the images of a collection, voxels.c and chunk.c read the voxels. */
@@ -24,8 +25,8 @@ static bool is_marker(const char *name) {
          strcmp(name, ".zattrs") == 0;
 }
 
-/* Finds the root of the hierarchy in an archive, which may lie in a folder. It is the folder of that marker
- * file which has the fewest folders in its path. */
+/* Finds the root of the hierarchy in an archive. The root may be a folder of the archive. It is the folder
+ * that holds the marker file with the fewest folders in its path. */
 static bool find_root_of_archive(const hl_bundle *bundle, char folder[HL_ZARR_PATH_BYTES]) {
   int least = HL_BUNDLE_DEPTH_MOST;
   for (size_t n = 0; n < bundle->count; n++) {
@@ -61,7 +62,7 @@ static hl_status find_root(hl_bundle *bundle, char folder[HL_ZARR_PATH_BYTES], b
 
 /* ---- one image ---- */
 
-/* Finds the sizes along x, y, z of the volume that a level gives. */
+/* Finds the sizes along x, y, z of the volume that is made of a level. */
 static void level_sizes(const hl_zarr_image *image, int level, size_t sizes[3]) {
   const hl_zarr_array *array = &image->levels[level].array;
   for (int a = 0; a < 3; a++) sizes[a] = 1;
