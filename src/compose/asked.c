@@ -1,4 +1,5 @@
-/* compose/asked.c - the table of options that scenes are composed by, and the reading of their values. */
+/* compose/asked.c - defines the table of options by which scenes are composed, and reads the options'
+ * values. */
 #include "compose/asked.h"
 
 #include <math.h>
@@ -97,7 +98,7 @@ const hl_option_row hl_option_rows[HL_ASK_COUNT] = {
 
 const char *hl_option_name(size_t index) { return index < HL_ASK_COUNT ? hl_option_rows[index].name : NULL; }
 
-/* The row of an option; HL_ASK_COUNT: there is no option of this name. */
+/* The number of the table's row for an option; HL_ASK_COUNT if no option has this name. */
 static size_t find_row(const char *name) {
   size_t row = 0;
   while (row < HL_ASK_COUNT && (name == NULL || strcmp(hl_option_rows[row].name, name) != 0)) row++;

@@ -1,4 +1,5 @@
-/* compose/asked.h - the options of one call, ordered as in the table of options, with their values read. */
+/* compose/asked.h - reads the options of one call. The values that were read have the order of the table of
+ * options. */
 #ifndef HL_COMPOSE_ASKED_H
 #define HL_COMPOSE_ASKED_H
 
@@ -80,7 +81,7 @@ typedef struct hl_asked {
                      * value */
   const char *texts[HL_ASK_MOST_TEXTS]; /* [count] */
   int count;
-  bool chosen; /* one of the choices was given; `choice` is its value */
+  bool chosen; /* whether one of the choices was given; if so, `choice` is its value */
   int choice;
   double number[3];
   bool percent[3]; /* whether each number is a percentile */
@@ -94,9 +95,10 @@ typedef struct hl_option_row {
   char separator; /* character between numbers */
   bool percent;   /* each number may be a percentile */
   bool repeats;
-  const hl_setting_choice *choices; /* null: the choices of the setting, if there are any */
+  const hl_setting_choice *choices; /* the choices of the option; if null, the option has the choices of the
+                                     * setting, if there are any */
   hl_setting_kind setting_kind;
-  const char *setting; /* the setting that the option sets; null: none */
+  const char *setting; /* the setting that the option sets; null if it sets none */
 } hl_option_row;
 
 extern const hl_option_row hl_option_rows[HL_ASK_COUNT];
@@ -104,7 +106,8 @@ extern const hl_option_row hl_option_rows[HL_ASK_COUNT];
 /* Reads options into asked: [HL_ASK_COUNT]. The texts in it are borrowed from the options. */
 hl_status hl_options_read(const hl_option *options, size_t count, hl_asked *asked, hl_error *error);
 
-/* The choices of a row: its own or, if it has none, those of its setting; null: neither has choices. */
+/* The choices of a row's option. If the row has no choices of its own, they are the choices of the row's
+ * setting. Null if the setting has no choices either. */
 const hl_setting_choice *hl_row_choices(const hl_option_row *row);
 
 #endif

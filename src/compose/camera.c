@@ -1,5 +1,5 @@
-/* compose/camera.c - the options of the camera's place: "size", "view", "up", "azimuth", "elevation", "roll",
- * "zoom", "fovy" and "ortho". */
+/* compose/camera.c - applies the options of the camera's place: "size", "view", "up", "azimuth", "elevation",
+ * "roll", "zoom", "fovy" and "ortho". */
 #include <math.h>
 #include <string.h>
 
@@ -20,8 +20,8 @@ static double distance(const double a[3], const double b[3]) {
   return sqrt(dot(difference, difference));
 }
 
-/* --ortho and --fovy: changes the projection so that the picture shows the same height of the world at the
- * target as before. */
+/* Applies --ortho and --fovy: changes the projection so that the picture shows the same height of the world
+ * at the target as before. */
 static void change_projection(const hl_asked *asked, hl_camera *camera) {
   double away = distance(camera->position, camera->target);
   if (asked[HL_ASK_ORTHO].given && camera->type == HL_CAMERA_PERSPECTIVE) {
@@ -60,7 +60,7 @@ static hl_status choose_view(const hl_composer *composer, const hl_scene_descrip
       hl_view_choose(description, side, up->given ? vector : NULL, view, composer->error));
 }
 
-/* Sets the angles that options give; false if the view stays as it was. */
+/* Sets the angles that options give. Returns false if the options do not change the view. */
 static bool turn_view(const hl_asked *asked, hl_view *view) {
   const hl_view before = *view;
   if (asked[HL_ASK_AZIMUTH].given) view->azimuth_deg = asked[HL_ASK_AZIMUTH].number[0];

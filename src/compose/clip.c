@@ -1,8 +1,9 @@
-/* compose/clip.c - "clip" AXIS=LO:HI: keeps a part of each volume along an axis of its file's world.
+/* compose/clip.c - applies the option "clip" AXIS=LO:HI, which keeps a part of each volume along an axis of
+ * its file's world.
  *
- * A bare number is a fraction of the box around the volume's voxels; a number with a unit is a coordinate. An
- * end that is left out stays where the scene's own clip box has it; without a clip box it is the end of the
- * volume. */
+ * A bare number is a fraction of the box around the volume's voxels; a number with a unit is a coordinate. If
+ * the option leaves out an end, the part ends where the scene's own clip box ends. Without a clip box, the
+ * part ends where the volume ends. */
 #include <string.h>
 
 #include "compose/composer.h"

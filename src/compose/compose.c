@@ -1,4 +1,4 @@
-/* compose/compose.c - hl_scene_compose(): the order in which options change a scene.
+/* compose/compose.c - implements hl_scene_compose(), which applies options to a scene in a fixed order.
  *
  * A scene cannot be changed. So its description is copied, the copy is changed, and another scene is made of
  * it. Only arrays that change (lights, volumes, transfer functions) are copied, too. */
@@ -20,17 +20,17 @@
 typedef struct scene_change {
   hl_scene_description description;
   hl_changed_volumes volumes;
-  hl_light *lights; /* owned; [description.light_count] */
-  hl_scene_mesh
-      *colored; /* owned; the scene's meshes, where "colormap" gives some of them colours; else null */
-  hl_scene_mesh *meshes; /* owned; the last mesh is the floor; null: no floor is added */
-  float *sky;            /* owned; the pixels of the image of "sky"; null: none */
+  hl_light *lights;       /* owned; [description.light_count] */
+  hl_scene_mesh *colored; /* owned; the scene's meshes if "colormap" gives some of them colours; else null */
+  hl_scene_mesh *meshes;  /* owned; the meshes, of which the last one is the floor; null if no floor is
+                           * added */
+  float *sky;             /* owned; the pixels of the image of "sky"; null if there is none */
 } scene_change;
 
 /* Logs that the camera does not see the top of the floor: it looks along the floor, or from below. Derived: a
  * floor of the edge a, seen at the distance d at an angle of the sine s above its plane, is a s / (2 d
- * tan(fovy / 2)) of the picture high, or a s / height for an orthographic camera. Less than a pixel is a
- * line. */
+ * tan(fovy / 2)) of the picture high, or a s / height for an orthographic camera. A floor that is less than a
+ * pixel high is seen as a line. */
 static void tell_of_hidden_floor(const hl_composer *composer, const hl_scene_description *description,
                                  const hl_mesh *floor) {
   const float(*corner)[3] = hl_mesh_describe(floor)->positions;
@@ -53,7 +53,8 @@ static void tell_of_hidden_floor(const hl_composer *composer, const hl_scene_des
          pixels > -1 ? "looks along the floor" : "looks at the floor from below");
 }
 
-/* "floor": adds a floor, a mesh below everything that is seen. The camera must have been placed before. */
+/* Applies "floor": adds a floor, which is a mesh below everything that is seen. The camera must have been
+ * placed before. */
 static hl_status add_floor(const hl_composer *composer, scene_change *change) {
   hl_scene_description *description = &change->description;
   if (!composer->asked[HL_ASK_FLOOR].given) return HL_OK;
@@ -77,7 +78,7 @@ static hl_status add_floor(const hl_composer *composer, scene_change *change) {
   return HL_OK;
 }
 
-/* "colormap" NAME=COLOR: gives meshes their colours. */
+/* Applies "colormap" NAME=COLOR to meshes: gives them their colours. */
 static hl_status color_meshes(const hl_composer *composer, scene_change *change) {
   hl_scene_description *description = &change->description;
   const size_t count = description->mesh_count;
@@ -116,8 +117,9 @@ static void change_settings(const hl_asked *asked, hl_scene_description *descrip
     memcpy(description->background, background->number, sizeof description->background);
 }
 
-/* Gives scenes of smooth labels the B-spline, whose coefficients smooth labels are. The scene of a bare label
- * map has the linear kernel, which was chosen for the numbers of labels. */
+/* Gives scenes of smooth labels the B-spline as their kernel, because the numbers of smooth labels are its
+ * coefficients. The scene of a bare label map has the linear kernel, which was chosen for the numbers of
+ * labels. */
 static void smooth_labels(const hl_composer *composer, hl_scene_description *description) {
   bool labels = false;
   for (size_t v = 0; v < description->volume_count; v++) labels |= description->volumes[v].label_count > 0;

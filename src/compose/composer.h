@@ -1,5 +1,5 @@
-/* compose/composer.h - one call of hl_scene_compose(), and the functions that the files of src/compose
- * share. */
+/* compose/composer.h - declares the state of one call of hl_scene_compose(), and the functions that the files
+ * of src/compose share. */
 #ifndef HL_COMPOSE_COMPOSER_H
 #define HL_COMPOSE_COMPOSER_H
 
@@ -11,11 +11,12 @@ typedef struct hl_composer {
   hl_context *context;
   const hl_asked *asked; /* [HL_ASK_COUNT] */
   unsigned flags;        /* members of hl_compose_flag */
-  bool bare;             /* HL_COMPOSE_BARE is among them */
+  bool bare;             /* whether HL_COMPOSE_BARE is among the flags */
   hl_error *error;       /* may be null */
 } hl_composer;
 
-/* The status of a failed call whose failure options have caused, not a file. */
+/* Converts the status of a failed call for the case that the options, and not a file, have caused the
+ * failure. */
 static inline hl_status hl_blame_options(hl_status status) {
   return status == HL_ERROR_INPUT ? HL_ERROR_ARGUMENT : status;
 }
@@ -25,7 +26,7 @@ static inline hl_status hl_blame_options(hl_status status) {
 /* Returns true if the options replace or change the volumes' transfer functions. */
 bool hl_asks_for_functions(const hl_asked *asked);
 
-/* The transfer function of volume number `index` with the options applied. Where color is not null and no
+/* The transfer function of volume number `index` with the options applied. If color is not null and no
  * "colormap" is given for this volume, the function has this colour. The caller owns the function's points,
  * also after a failure. */
 hl_status hl_compose_function(const hl_composer *composer, const hl_scene_description *description,
@@ -39,7 +40,7 @@ hl_status hl_check_volume_names(const hl_composer *composer, const hl_scene_desc
 bool hl_text_is_for(const hl_composer *composer, const char *text, const hl_scene_volume *volume,
                     size_t index, const char **rest);
 
-/* "colormap" NAME=COLOR: whether one of its values names a mesh. */
+/* Returns whether a value of "colormap", of the form NAME=COLOR, names a mesh. */
 bool hl_colors_meshes(const hl_composer *composer, const hl_scene_description *description);
 
 /* Gives meshes the colours that "colormap" NAME=COLOR asks for. meshes: [description->mesh_count]. */
@@ -47,7 +48,7 @@ hl_status hl_color_meshes(const hl_composer *composer, const hl_scene_descriptio
                           hl_scene_mesh *meshes);
 
 /* The value of an option for one volume. The option may be given several times, and the last value for this
- * volume counts; null: there is none. */
+ * volume counts. Null if there is no value. */
 const char *hl_text_for(const hl_composer *composer, hl_ask option, const hl_scene_volume *volume,
                         size_t index);
 
@@ -94,8 +95,8 @@ hl_status hl_compose_sky(const hl_composer *composer, hl_scene_description *desc
 
 /* ---- camera.c ---- */
 
-/* Places the camera. seen: the visible part of the volumes has changed; the camera of a bare volume then
- * frames the volumes anew. */
+/* Places the camera. seen: whether the visible part of the volumes has changed; if so, the camera of a bare
+ * volume frames the volumes anew. */
 hl_status hl_compose_camera(const hl_composer *composer, bool seen, hl_scene_description *description);
 
 /* Places the camera anew, without changing its direction, so that everything in the scene fits into the
@@ -105,7 +106,7 @@ hl_status hl_frame_anew(hl_scene_description *description, hl_error *error);
 /* ---- values.c ---- */
 
 /* Turns a bare label map back into a volume of values, if options ask for its values. *scene: a new scene of
- * the description; null: there is no such label map. */
+ * the description; null if there is no such label map. */
 hl_status hl_compose_values(const hl_composer *composer, const hl_scene_description *description,
                             hl_scene **scene);
 

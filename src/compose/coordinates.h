@@ -1,17 +1,17 @@
-/* compose/coordinates.h - places in a volume as text: fractions of its box, or coordinates of its file's
- * world. */
+/* compose/coordinates.h - reads places in a volume from text: fractions of the volume's box, or coordinates
+ * of the world of the volume's file. */
 #ifndef HL_COMPOSE_COORDINATES_H
 #define HL_COMPOSE_COORDINATES_H
 
 #include <halflight/volume.h>
 #include <stdbool.h>
 
-/* A bare number is a fraction of the box around the volume's voxels, a number with a unit is a coordinate of
- * the file's world. */
+/* A coordinate as it was typed. A bare number is a fraction of the box around the volume's voxels. A number
+ * with a unit is a coordinate of the file's world. */
 typedef struct hl_coordinate {
   bool given, fraction;
   double number;
-  double metres; /* the length of the number's unit; 0: the number is in the file's own unit */
+  double metres; /* the length of the number's unit; 0 if the number is in the file's own unit */
 } hl_coordinate;
 
 /* Reads "0.25", "10mm", "10u" or nothing, and moves *text past it. Returns false if something else is there.
@@ -21,17 +21,17 @@ bool hl_read_coordinate(const char **text, hl_coordinate *coordinate);
 /* The length of a unit of the volume's world in metres; 0 if the volume's file does not tell its unit. */
 double hl_metres_of_volume(const hl_volume *volume);
 
-/* A number with a unit in the file's world. metres: the length of a unit of this world, as
- * hl_metres_of_volume() gives it; if it is 0, the number counts as one of the file's own unit. */
+/* Converts a number with a unit to the unit of the file's world. metres: the length of the world's unit, as
+ * hl_metres_of_volume() gives it. If metres is 0, the number is taken to be in the world's unit already. */
 double hl_length_of(const hl_coordinate *coordinate, double metres);
 
 /* The coordinate in the file's world. otherwise: the result if the text has no number. low, high: the ends of
- * the box around the volume's voxels. metres: as above. */
+ * the box around the volume's voxels. metres: as for hl_length_of(). */
 double hl_coordinate_of(const hl_coordinate *coordinate, double otherwise, double low, double high,
                         double metres);
 
-/* Reads a range along an axis, as "x=LO:HI", and moves *text past it. False if the text has something else
- * there. */
+/* Reads a range along an axis, as "x=LO:HI", and moves *text past it. Returns false if the text has something
+ * else there. */
 typedef struct hl_axis_range {
   int axis;
   hl_coordinate ends[2];

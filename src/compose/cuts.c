@@ -1,6 +1,6 @@
-/* compose/cuts.c - "cut-plane" POINT:NORMAL or AXIS=AT, "cut-box" RANGES and "cut-sphere" CENTRE:RADIUS:
- * parts that are cut out of volumes. In a scene of one volume, the options' numbers are in the world of the
- * volume's file; in a scene of several volumes, they are in the scene's world. */
+/* compose/cuts.c - applies the options "cut-plane" POINT:NORMAL or AXIS=AT, "cut-box" RANGES and "cut-sphere"
+ * CENTRE:RADIUS, which cut parts out of volumes. In a scene of one volume, the options' numbers are in the
+ * world of the volume's file; in a scene of several volumes, they are in the scene's world. */
 #include <math.h>
 #include <string.h>
 
@@ -8,7 +8,7 @@
 #include "compose/coordinates.h"
 #include "text/plain.h"
 
-/* The option for each type of cut. */
+/* The option that makes each type of cut. */
 static const int option_of[] = {
     [HL_CUT_PLANE] = HL_ASK_CUT_PLANE, [HL_CUT_BOX] = HL_ASK_CUT_BOX, [HL_CUT_SPHERE] = HL_ASK_CUT_SPHERE};
 enum { CUT_TYPES = 3 };
@@ -40,7 +40,8 @@ static bool read_normal(const char *text, double normal[3]) {
 }
 
 /* Reads a plane across an axis. The texts "x=AT" and "x=AT:" cut away the part from AT on, and "x=:AT" cuts
- * away the part before AT. Only the coordinate along the axis matters in the plane's point: it is AT. */
+ * away the part before AT. The plane's point has AT as its coordinate along the axis. Its other coordinates
+ * have no effect. */
 static bool read_axis_plane(const char *text, typed_cut *cut) {
   hl_axis_range away = {.axis = *text - 'x'};
   const char *at = text + 2;
@@ -106,9 +107,9 @@ size_t hl_count_cuts(const hl_asked *asked) {
   return count;
 }
 
-/* Places a cut. low, high: the box around the volume's voxels. metres: as hl_metres_of_volume() gives
- * it; 0 in the world of a scene. Where the text gives no end for a side of a cut box, the box ends beyond the
- * voxels there. */
+/* Places a cut. low, high: the box around the volume's voxels. metres: as hl_metres_of_volume() gives it; 0
+ * in the world of a scene. If the text gives no end for a side of a cut box, the box ends beyond the voxels
+ * on this side. */
 static void place_cut(const typed_cut *typed, const double low[3], const double high[3], double metres,
                       hl_cut *cut) {
   double longest = 0;

@@ -1,4 +1,5 @@
-/* compose/functions.c - transfer functions by "tf", "colormap", "range", "range-scale" and "threshold". */
+/* compose/functions.c - changes transfer functions by the options "tf", "colormap", "range", "range-scale"
+ * and "threshold". */
 #include <halflight/transfer_function.h>
 #include <math.h>
 #include <stdio.h>
@@ -25,7 +26,7 @@ static const char *colormap_name(const void *data, size_t index) {
 }
 
 /* Compares a text with known names, without regard to upper and lower case. Returns the name that equals the
- * text; null: none does. */
+ * text, or null if no name does. */
 static const char *find_known(const char *text, const char *(*known)(const void *, size_t)) {
   const char *candidate;
   for (size_t i = 0; (candidate = known(NULL, i)) != NULL; i++)
@@ -33,7 +34,7 @@ static const char *find_known(const char *text, const char *(*known)(const void 
   return NULL;
 }
 
-/* Names that other programs use, each with the name that means nearly the same in this program. */
+/* Names of presets in other programs, each with the name that means nearly the same in this program. */
 static const char *const meanings[][2] = {
     {"jet", "turbo"},
     {"rainbow", "turbo"},
@@ -82,7 +83,7 @@ static hl_status refuse_name(const char *option, const char *name, const char *k
 
 /* ---- names ---- */
 
-/* A volume or a mesh, as the values of options name it. */
+/* A volume or a mesh that the values of options can name. */
 typedef struct part {
   const char *name, *file; /* may be null */
   const char *kind;        /* "volume" or "mesh" */
@@ -111,14 +112,14 @@ static void name_of(const part *part, char *name, size_t size) {
   }
 }
 
-/* The text after "NAME="; null: the text has no name, and is for every volume. If a file has the whole text
- * as its name, the text is that file's name, even with a '=' in it. */
+/* The text after "NAME="; null if the text has no name, and so is for every volume. If a file has the whole
+ * text as its name, the text is that file's name, even with a '=' in it. */
 static const char *after_name(const hl_context *context, const char *text) {
   const char *equals = strchr(text, '=');
   return equals == NULL || hl_file_kind(context, text) != 0 ? NULL : equals + 1;
 }
 
-/* Returns whether a value "NAME=..." names the part. *rest: the text after "NAME="; null: the value has no
+/* Returns whether a value "NAME=..." names the part. *rest: the text after "NAME="; null if the value has no
  * name. */
 static bool names_part(const hl_composer *composer, const char *text, part part, const char **rest) {
   char own[256];
@@ -153,7 +154,7 @@ static bool is_for_any_mesh(const hl_composer *composer, const char *text,
   return false;
 }
 
-/* Adds a part's name to a list, as far as there is room. */
+/* Adds a part's name to a text that lists names. The name is cut if there is no room. */
 static void list_name(part part, char *names, size_t size) {
   char own[256];
   const size_t used = strlen(names);
@@ -169,7 +170,7 @@ static void list_names(const hl_scene_description *description, bool with_meshes
     list_name(part_of_mesh(&description->meshes[m], m), names, size);
 }
 
-/* Refuses values with a NAME= that no volume has. many: the option may be given several times for one
+/* Refuses values with a NAME= that no volume has. many: whether the option may be given several times for one
  * volume. */
 static hl_status check_names(const hl_composer *composer, hl_ask option, bool many,
                              const hl_scene_description *description) {
@@ -253,8 +254,8 @@ bool hl_is_left_out(const hl_composer *composer, const hl_scene_description *des
 
 /* ---- colormaps in a list ---- */
 
-/* Returns whether the value of "colormap" is a list, with a colormap or a colour for each volume. R,G,B is
- * one colour, and no list. */
+/* Returns whether the value of "colormap" is a list, with a colormap or a colour for each volume. A text of
+ * the form R,G,B is one colour, and no list. */
 static bool is_list(const hl_composer *composer, const hl_asked *colormap) {
   double color[3];
   return colormap->count == 1 && strchr(colormap->text, ',') != NULL &&
@@ -298,9 +299,10 @@ static hl_status load_function(const hl_composer *composer, const char *name, co
   return refuse_name("tf", name, "preset or file", "presets", preset_name, composer->error);
 }
 
-/* Makes values below the threshold clear, and values from the threshold on nearly opaque over a voxel's edge.
- * Opacity rises on a ramp below the threshold, so that surfaces are shaded without stairs. The ramp is a
- * twentieth of the volume's range wide, but at most half the way from the least value to the threshold. */
+/* Makes values below the threshold transparent. Values from the threshold on become nearly opaque: light is
+ * absorbed within the length of a voxel's edge. Opacity rises on a ramp below the threshold, so that surfaces
+ * are shaded without stairs. The ramp is a twentieth of the volume's range wide, but at most half the way
+ * from the least value to the threshold. */
 static hl_status make_opaque_from(const hl_composer *composer, const hl_volume *volume, double threshold,
                                   hl_transfer_function *function) {
   enum { POINTS = 2 };

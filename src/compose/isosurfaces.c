@@ -1,5 +1,5 @@
-/* compose/isosurfaces.c - "iso" [NAME=]VALUE[:COLOR[:OPACITY]]: surfaces on which a volume has one value.
- * They take the place of the matter that its transfer function shows. */
+/* compose/isosurfaces.c - applies the option "iso" [NAME=]VALUE[:COLOR[:OPACITY]], which shows surfaces on
+ * which a volume has one value. The surfaces replace the matter that the volume's transfer function shows. */
 #include <math.h>
 #include <string.h>
 
@@ -11,7 +11,7 @@
 
 enum { COLOR_BYTES = 64 };
 
-/* Reads VALUE[:COLOR[:OPACITY]]; false: the text is something else. */
+/* Reads VALUE[:COLOR[:OPACITY]]. Returns false if the text is something else. */
 static bool read_iso(const char *text, hl_isosurface *surface) {
   char *rest, color[COLOR_BYTES];
   surface->value = hl_plain_number(text, &rest);
@@ -60,7 +60,7 @@ static hl_status warn_of_range(const hl_composer *composer, const hl_scene_volum
   return HL_OK;
 }
 
-/* Hides all matter of a volume, so that only its surfaces show. */
+/* Hides all matter of a volume, so that only its isosurfaces are seen. */
 static void clear_function(hl_transfer_function *function) {
   for (size_t n = 0; n < function->opacity_count; n++) ((hl_opacity_point *)function->opacity)[n].opacity = 0;
 }

@@ -1,5 +1,5 @@
-/* compose/labels.c - "labels", "mask", "label-table" and "show": a label map becomes one more volume, or a
- * mask over the volumes, or the bare volume itself is shown as a label map. */
+/* compose/labels.c - applies the options "labels", "mask", "label-table" and "show". A label map becomes one
+ * more volume, or a mask over the volumes, or the bare volume itself is shown as a label map. */
 #include <string.h>
 
 #include "compose/composer.h"
@@ -94,7 +94,7 @@ static hl_status add_layers(const hl_composer *composer, const hl_label_layers *
   hl_status status = make(composer, &description, scene);
   if (status == HL_OK && composer->bare) {
     description = *hl_scene_describe(*scene); /* in the new scene's description, transfer functions were made
-                                               * from the labels; framing uses them */
+                                               * from the labels; the camera is placed by these functions */
     status = hl_frame_anew(&description, composer->error);
     if (status == HL_OK) status = make(composer, &description, scene);
   }
@@ -102,8 +102,8 @@ static hl_status add_layers(const hl_composer *composer, const hl_label_layers *
   return status;
 }
 
-/* The options for reading the file of labels. itself: the label map takes the place of the scene's only
- * volume, which is bare, and is read with the options of this volume. Otherwise the map is converted to the
+/* The options for reading the file of labels. itself: whether the label map replaces the scene's only volume,
+ * which is bare; if so, the map is read with the options of this volume. If not, the map is converted to the
  * anatomical space of the scene's first volume. */
 static hl_volume_load_options reading_of(const hl_scene_description *description, bool itself) {
   hl_volume_load_options reading;
@@ -147,8 +147,8 @@ static hl_status put_on_mask(const hl_composer *composer, const hl_mask *mask, h
   return status;
 }
 
-/* Moves the labels that show to the front of the list. Labels that do not show are left out, and their matter
- * belongs to the rest. Returns the number of labels that show. */
+/* Moves the visible labels to the front of the list. Hidden labels are left out, and their matter belongs to
+ * the rest. Returns the number of visible labels. */
 static size_t keep_shown(hl_label *labels, size_t count) {
   size_t kept = 0;
   for (size_t n = 0; n < count; n++)
@@ -156,7 +156,7 @@ static size_t keep_shown(hl_label *labels, size_t count) {
   return kept;
 }
 
-/* "mask": puts the file's label map over the scene's volumes as a mask. */
+/* Applies "mask": puts the file's label map over the scene's volumes as a mask. */
 static hl_status add_mask(const hl_composer *composer, hl_shown_list *show, hl_label_layers *layers,
                           hl_scene **scene) {
   const hl_scene_description *description = hl_scene_describe(*scene);
@@ -184,7 +184,7 @@ static hl_status add_mask(const hl_composer *composer, hl_shown_list *show, hl_l
   return put_on_mask(composer, &mask, scene);
 }
 
-/* "labels": adds the label map of a file, or makes the bare volume itself a label map. */
+/* Applies "labels": adds the label map of a file, or makes the bare volume itself a label map. */
 static hl_status add_map(const hl_composer *composer, hl_shown_list *show, hl_label_layers *layers,
                          hl_scene **scene) {
   const hl_asked *asked = composer->asked;
@@ -203,7 +203,7 @@ static hl_status add_map(const hl_composer *composer, hl_shown_list *show, hl_la
         "'%.300s' does not look like a label map, and --%s takes it as one: a label map over a scan is given "
         "by --labels FILE",
         path, asked[HL_ASK_SHOW].given ? "show" : "label-table");
-  /* Without a mask, the rest is what the other labels hold. */
+  /* Without a mask, the item "rest" stands for all labels that the list does not name. */
   for (size_t s = 0; s < show->count; s++) show->labels[s].all |= show->labels[s].rest;
   hl_status status = load_layers(composer, path, asked[HL_ASK_LABEL_TABLE].text, &reading, show, layers);
   if (status == HL_OK) status = hl_check_shown(show, layers, composer->error);

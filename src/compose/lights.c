@@ -1,5 +1,5 @@
-/* compose/lights.c - "light-rig", "light", "light-size", "shadows" and "ambient", and the strength of a bare
- * volume's light. */
+/* compose/lights.c - applies the options "light-rig", "light", "light-size", "shadows" and "ambient", and
+ * chooses the strength of a bare volume's light. */
 #include "compose/lights.h"
 
 #include <string.h>
@@ -41,7 +41,8 @@ static hl_status change_first_light(const hl_composer *composer, hl_scene_descri
   return HL_OK;
 }
 
-/* "shadows": sets the scene's shadows. Every light that casts shadows then follows this setting. */
+/* Applies "shadows": sets the kind of the scene's shadows. Every light that casts shadows then follows this
+ * setting. */
 static void change_shadows(const hl_composer *composer, hl_scene_description *description, hl_light *lights) {
   if (!composer->asked[HL_ASK_SHADOWS].given) return;
   hl_shadows shadows = (hl_shadows)composer->asked[HL_ASK_SHADOWS].choice;
@@ -50,8 +51,9 @@ static void change_shadows(const hl_composer *composer, hl_scene_description *de
     if (lights[i].shadows != HL_SHADOWS_OFF) lights[i].shadows = HL_SHADOWS_DEFAULT;
 }
 
-/* The light of a bare volume was chosen for the whole volume and its transfer function. If the volume is cut,
- * has isosurfaces or is in a light rig, the light's strength is chosen anew for its visible part. */
+/* Chooses the strength of a bare volume's light anew if the volume is cut, has isosurfaces, or is lit by a
+ * light rig. The first choice was made for the whole volume and its transfer function; the new one is made
+ * for the visible part. */
 static hl_status expose_anew(const hl_composer *composer, hl_scene_description *description,
                              hl_light *lights) {
   double factor = 1;

@@ -1,4 +1,4 @@
-/* compose/lights.h - the changes that options make to a scene's light. */
+/* compose/lights.h - changes a scene's light by options. */
 #ifndef HL_COMPOSE_LIGHTS_H
 #define HL_COMPOSE_LIGHTS_H
 
@@ -9,8 +9,8 @@
 hl_status hl_compose_lights(const hl_composer *composer, hl_scene_description *description,
                             hl_light **lights);
 
-/* "ambient": sets the ambient light. It takes the place of the sky that was chosen for a bare volume. If
- * "shadows" is off, constant light without shadows takes the place of that sky. */
+/* Applies "ambient": sets the ambient light, which replaces the sky that was chosen for a bare volume. If
+ * "shadows" is off, constant light without shadows replaces that sky. */
 void hl_compose_ambient(const hl_composer *composer, hl_scene_description *description);
 
 #endif

@@ -71,7 +71,7 @@ static bool has_name(const hl_label *label, const hl_shown_label *shown, bool ex
 }
 
 static bool is_named(const hl_label *label, const hl_shown_label *shown, bool exactly) {
-  if (shown->rest) return shown->all; /* a label of this name is named by its number */
+  if (shown->rest) return shown->all; /* a label whose own name is "rest" can only be named by its number */
   if (is_whole(label, shown)) return true;
   if (shown->wrong != NULL) return false;
   int64_t number;
@@ -91,16 +91,18 @@ static void show_label(hl_shown_label *shown, double opacity, bool exactly, hl_l
   label->tint = 1; /* in a mask, matter takes the label's colour */
 }
 
-/* The opacity of each of `count` bodies that the list shows together, by "all". The item's opacity is the
- * opacity of all of them along a typical path. Derived: a path through n equal bodies that fill a space meets
- * the cube root of n of them, and the parts of the light that these let pass multiply. */
+/* The opacity of each of `count` bodies that the list shows together by the item "all". opacity: the item's
+ * opacity, which is the opacity of all bodies together along a typical path. Derived: of n equal bodies that
+ * fill a space, a path meets as a rule the cube root of n. The fractions of light that these bodies let pass
+ * are multiplied. */
 static double opacity_of_each(double opacity, size_t count) {
   return opacity < 1 && count > 1 ? -expm1(log1p(-opacity) / cbrt((double)count)) : opacity;
 }
 
 void hl_show_labels(hl_shown_list *list, hl_label *labels, size_t count) {
-  bool exactly[HL_MOST_SHOWN] = {false}; /* whether an item is exactly the name of a label; atlases have names
-                                          * that differ only in case */
+  bool exactly[HL_MOST_SHOWN] = {false}; /* for each item, whether it equals the name of a label in every
+                                          * letter's case, because atlases have names that differ only in
+                                          * case */
   size_t bodies = 0;
   if (list->count == 0) return;
   for (size_t n = 0; n < count; n++) bodies += labels[n].visible != 0;

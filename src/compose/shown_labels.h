@@ -1,18 +1,18 @@
-/* compose/shown_labels.h - "show": the labels of a label map that show, with their colours and opacities. */
+/* compose/shown_labels.h - applies the option "show", which chooses the visible labels of a label map, with
+ * their colours and opacities. */
 #ifndef HL_COMPOSE_SHOWN_LABELS_H
 #define HL_COMPOSE_SHOWN_LABELS_H
 
 #include "compose/asked.h"
 
-/* One of the labels that "show" names: NAME|NUMBER|all|rest[=COLOR][:OPACITY]. */
+/* An item of the list in the option "show": NAME|NUMBER|all|rest[=COLOR][:OPACITY]. */
 typedef struct hl_shown_label {
-  char name[128], whole[128]; /* the name alone, and the whole text; the whole text may itself be the name of
-                               * a label, with ":" or "=" in it */
-  const char *wrong; /* an error's advice on how to mend the text, if it is no valid name; null: the text is
-                      * valid */
-  bool all;  /* the item stands for all labels that the list does not name: "all", and "rest" without a
-              * mask */
-  bool rest; /* the item is "rest"; with a mask it stands for what lies outside of the labels */
+  char name[128], whole[128]; /* name: the item's name alone; whole: the item's whole text, which may itself
+                               * be the name of a label, with ":" or "=" in it */
+  const char *wrong; /* the advice of an error on how to correct the item; null if the item is valid */
+  bool all;  /* whether the item stands for all labels that the list does not name, as "all" does, and "rest"
+              * without a mask */
+  bool rest; /* whether the item is "rest"; with a mask, "rest" stands for the matter outside of the labels */
   bool colored, found;
   double color[3], opacity;
 } hl_shown_label;
@@ -22,7 +22,7 @@ enum { HL_MOST_SHOWN = 512, HL_MOST_LABEL_LAYERS = 64 };
 typedef struct hl_shown_list {
   hl_shown_label labels[HL_MOST_SHOWN];
   size_t count;
-  bool of_mask; /* the labels are parts of a mask; else they are bodies of their own */
+  bool of_mask; /* whether the labels are parts of a mask; if not, they are bodies of their own */
 } hl_shown_list;
 
 /* The layers of a label map's file as volumes. The structure owns their labels and voxels. */
@@ -34,11 +34,11 @@ typedef struct hl_label_layers {
 hl_status hl_read_shown(const hl_asked *show, hl_shown_list *list, hl_error *error);
 
 /* Shows the labels that the list names. An empty list changes nothing. "all" shows every label except those
- * that a table hides. What the list says of a label by name or number counts more than "all", wherever it
- * stands in the list. */
+ * that a table hides. If an item names a label by its name or number, this item counts for the label, and not
+ * "all". The order of the items has no effect. */
 void hl_show_labels(hl_shown_list *list, hl_label *labels, size_t count);
 
-/* Logs how labels are named whose own names are "all" or "rest", where the list has these words. */
+/* Logs how to name labels whose own names are "all" or "rest", if the list has these words. */
 void hl_tell_of_shadowed_labels(hl_context *context, const hl_shown_list *list,
                                 const hl_label_layers *layers);
 

@@ -1,4 +1,4 @@
-/* compose/sky.c - "sky" COLOR|GRADIENT|IMAGE: light from all directions. */
+/* compose/sky.c - applies the option "sky" COLOR|GRADIENT|IMAGE, which gives light from all directions. */
 #include <halflight/image.h>
 #include <string.h>
 
@@ -47,7 +47,8 @@ hl_status hl_check_sky(const hl_asked *sky, hl_error *error) {
       sky->text);
 }
 
-/* The colours of an image without alpha. They are premultiplied, so the result is the image over black. */
+/* The colours of an image without alpha. Because the image's colours are premultiplied, the result is the
+ * image over black. */
 static float *take_pixels(hl_context *context, const hl_image *image) {
   size_t count = (size_t)hl_image_width(image) * (size_t)hl_image_height(image);
   const float *from = hl_image_pixels_const(image);

@@ -8,7 +8,7 @@
 #include "guess/looks.h"
 #include "scene/function/transfer_function.h"
 
-/* Returns whether options say how values are drawn, or ask for a mask, which only volumes of values can
+/* Returns whether options concern the look of values, or ask for a mask, which only volumes of values can
  * have. */
 static bool asks_for_values(const hl_composer *composer, const hl_scene_volume *volume, size_t index) {
   static const hl_ask named[] = {HL_ASK_TF, HL_ASK_COLORMAP, HL_ASK_ISO};
@@ -21,9 +21,9 @@ static bool asks_for_values(const hl_composer *composer, const hl_scene_volume *
 }
 
 /* Makes volumes of values of those label maps whose values options ask for: removes their labels, and gives
- * them the transfer function and material for their values. The scene's kernel is then the one for the first
- * volume's values. functions: [description->volume_count], zeroed; the caller owns their points, also after a
- * failure. */
+ * them the transfer function and material for their values. The scene then has the kernel that suits the
+ * first volume's values. functions: [description->volume_count], zeroed; the caller owns their points, also
+ * after a failure. */
 static hl_status take_labels_off(const hl_composer *composer, hl_scene_volume *volumes,
                                  hl_transfer_function *functions, hl_scene_description *description) {
   for (size_t v = 0; v < description->volume_count; v++) {

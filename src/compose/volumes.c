@@ -84,8 +84,8 @@ static bool changes_any(const hl_composer *composer) {
 }
 
 /* Allocates the arrays for everything that may change. The array of cuts has room for the options' cuts and
- * for the cuts that are there already: those of the only volume or, in a scene of several volumes, those of
- * the scene. */
+ * for the cuts that are there already: the cuts of the only volume or, in a scene of several volumes, the
+ * cuts of the scene. */
 static hl_status make_room(const hl_composer *composer, const hl_scene_description *description,
                            hl_changed_volumes *changed) {
   hl_context *context = composer->context;

@@ -1,5 +1,5 @@
-/* compose/volumes.h - the changes that options make to a scene's volumes, and the arrays that the changed
- * volumes need. */
+/* compose/volumes.h - changes a scene's volumes by options, and makes the arrays that the changed volumes
+ * need. */
 #ifndef HL_COMPOSE_VOLUMES_H
 #define HL_COMPOSE_VOLUMES_H
 
@@ -10,10 +10,10 @@ typedef struct hl_changed_volumes {
   hl_scene_volume *volumes;        /* [count] */
   hl_transfer_function *functions; /* [count]; with their points */
   hl_isosurface *surfaces;         /* [count][values of "iso"] */
-  hl_cut *cuts; /* the options' cuts, after the cuts of the only volume or, in a scene of several volumes, of
-                 * the scene */
+  hl_cut *cuts; /* all cuts: first the cuts of the only volume or, in a scene of several volumes, the cuts of
+                 * the scene, then the options' cuts */
   size_t count;
-  bool seen; /* the visible part of the volumes has changed */
+  bool seen; /* whether the visible part of the volumes has changed */
 } hl_changed_volumes;
 
 /* Changes the description's volumes and cuts. The description then borrows the arrays. Release the arrays

@@ -1,4 +1,5 @@
-/* fetch/asking.h - which servers the program and the Python package ask, and where copies of files lie.
+/* fetch/asking.h - decides which servers the program and the Python package ask, and chooses the folder for
+ * copies of files.
  *
  * A server is asked only if the user named its URL. A URL that stands in a file is refused. */
 #ifndef HL_FETCH_ASKING_H
@@ -9,9 +10,9 @@
 #include <halflight/context.h>
 
 typedef struct fetch_permission {
-  bool named;          /* the user named the URL */
-  const char *instead; /* text for the error that refuses a URL in a file: which servers are asked, and what
-                        * the user can do */
+  bool named;          /* whether the user named the URL */
+  const char *instead; /* a text for the error that refuses a URL in a file: it says which servers are asked,
+                        * and gives the user advice */
   int (*cancelled)(void *user_data); /* asked while files are fetched */
   void *user_data;
 } fetch_permission;

@@ -20,8 +20,9 @@
 #define MARK     "\nhalflight-copy 2\n"
 #define NEW_NAME "new-"
 
-/* The lines that follow a copy's bytes: MARK, the key, the condition, the number of bytes with the place of
- * the first of them and the size of the server's file, and the length of these lines. */
+/* The lines that follow a copy's bytes. They hold MARK, the key, and the condition. One line holds three
+ * numbers: the number of bytes, the position of the first byte in the server's file, and the size of that
+ * file. The last line holds the length of all these lines. */
 enum { LENGTH_DIGITS = 8, LINES_MOST = COPIES_KEY_BYTES + FETCH_CONDITION_BYTES + 128 };
 
 static hl_status fail(hl_error *error, const char *path) {
@@ -39,8 +40,8 @@ static void copy_path(const char *folder, const char *key, char path[COPIES_PATH
 
 /* ---- one copy ---- */
 
-/* Reads the lines at the end of a copy. Returns false if they are another key's, or if the copy is cut
- * short. */
+/* Reads the lines at the end of a copy. Returns false if the lines belong to another key, or if the copy was
+ * cut off. */
 static bool read_lines(const char *key, hl_fetched_file *file, char *condition) {
   const int descriptor = file->descriptor;
   struct stat about;

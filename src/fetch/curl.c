@@ -17,7 +17,7 @@
 
 /* ---- the list of transfers ---- */
 
-/* Writes an option and its text. Quotes and backslashes are escaped, as curl's lists want it. */
+/* Writes an option and its text. Quotes and backslashes are escaped, as curl's lists require. */
 static void write_option(FILE *list, const char *name, const char *text) {
   fprintf(list, "%s = \"", name);
   for (const char *c = text; *c != '\0'; c++) {
@@ -72,8 +72,8 @@ static bool copy_line(const char *line, char *text, size_t size) {
   return true;
 }
 
-/* Makes the header line under whose condition the server is to send a file again. It names the file's tag if
- * the server gave one, else the file's date. */
+/* Makes the header line by which a later request asks for a file only if the file has changed. The line names
+ * the file's tag if the server gave one, else the file's date. */
 static void read_condition(const char *tag, const char *date, char condition[FETCH_CONDITION_BYTES]) {
   char text[FETCH_CONDITION_BYTES - 32];
   condition[0] = '\0';

@@ -1,9 +1,9 @@
 /* fetch/fetch.c - fetches files of a store. The server is asked for each file, even if there is a copy. It is
  * asked again if a transfer failed for a reason that may be temporary.
  *
- * The server answers 304 if the copy is up to date. It answers 404 or 410 where there is no file. It answers
- * 200 with a whole file, and 206 with the wanted part of one. It may redirect to another URL of its own. Any
- * other answer is an error, because an absent file has a meaning in a store. */
+ * The server answers 304 if the copy is up to date. The answer is 404 or 410 if there is no file, 200 with a
+ * whole file, and 206 with the wanted part of a file. The server may redirect to another URL of the same
+ * server. Any other answer is an error, because an absent file has a meaning in a store. */
 #define _GNU_SOURCE
 #include "fetch.h"
 
@@ -30,8 +30,9 @@ typedef struct wanted {
   char key[COPIES_KEY_BYTES];   /* the key of its copy */
   char path[COPIES_PATH_BYTES]; /* the file that curl writes to; "" if there is none */
   hl_fetched_file copy;         /* the copy that an earlier run left; its descriptor is -1 if there is none */
-  int moves;                    /* how often the server has redirected the request in this try */
-  bool done, moved; /* moved: the request is to be made of the URL to which the server has redirected it */
+  int moves;                    /* number of times that the server has redirected the request in this try */
+  bool done, moved; /* moved: whether the server has redirected the request to another URL, at which it must
+                     * be made again */
 } wanted;
 
 typedef struct fetching {
@@ -123,14 +124,15 @@ static hl_status fail_transfer(const fetching *t, const wanted *file, bool tried
   return fail(t, file->name, what);
 }
 
-/* A number for the state of a server's file that a condition names; 0 without one. */
+/* A number that stands for the state of a server's file, made from the condition that names this state; 0 if
+ * there is no condition. */
 static uint64_t state_of(const char *condition) {
   if (condition[0] == '\0') return 0;
   const uint64_t hash = hl_hash_bytes(HL_HASH_BEGIN, condition, strlen(condition));
   return hash != 0 ? hash : 1;
 }
 
-/* Keeps the bytes that have come, if they are the wanted ones. */
+/* Makes a copy of the bytes that were received, if they are the wanted bytes. */
 static hl_status keep(fetching *t, wanted *file, hl_fetched_file *result) {
   const curl_transfer *transfer = &file->transfer;
   hl_fetched_file told = {.descriptor = -1};
@@ -154,7 +156,7 @@ static bool is_move(int answer) {
   return answer == 301 || answer == 302 || answer == 303 || answer == 307 || answer == 308;
 }
 
-/* Lets the request be made again, of the URL to which the server redirects it. */
+/* Prepares the request to be made again at the URL to which the server redirects it. */
 static hl_status follow(const fetching *t, wanted *file) {
   curl_transfer *transfer = &file->transfer;
   char what[300];
@@ -173,7 +175,8 @@ static hl_status follow(const fetching *t, wanted *file) {
   return HL_OK;
 }
 
-/* Takes the result of a transfer: the file has come, is absent, or must be asked for again. */
+/* Evaluates the result of a transfer. The file has been received, or is absent, or must be requested
+ * again. */
 static hl_status take(fetching *t, wanted *file, hl_fetched_file *result) {
   curl_transfer *transfer = &file->transfer;
   bool whole = transfer->problem == 0;
@@ -195,12 +198,12 @@ static hl_status take(fetching *t, wanted *file, hl_fetched_file *result) {
   return HL_OK;
 }
 
-/* Returns whether a file takes part in the next run: it was redirected in the run before, or, at the
- * beginning of a try, it is not done. */
+/* Returns whether a file is requested in the next run of curl. At the beginning of a try, these are all files
+ * that are not done. Later they are the files whose requests were redirected in the run before. */
 static bool takes_part(const wanted *file, bool begins) { return begins ? !file->done : file->moved; }
 
-/* Runs curl on files that are not done. begins: on all of them, at the store's URLs; otherwise on those that
- * were redirected. */
+/* Runs curl on files that are not done. begins: whether curl runs on all of these files, at the store's URLs;
+ * if not, it runs only on the files whose requests were redirected. */
 static hl_status run(fetching *t, bool begins, hl_fetched_file *results) {
   curl_transfer *transfers = calloc(t->count, sizeof *transfers);
   size_t count = 0;
@@ -237,7 +240,7 @@ static bool any_moved(const fetching *t) {
   return false;
 }
 
-/* Waits before the next try, longer each time. */
+/* Waits before the next try. Each wait is longer than the wait before it. */
 static hl_status pause_before(const fetching *t, int tries) {
   const struct timespec step = {.tv_nsec = 10000000};
   for (int n = 0; n < 25 << (tries - 1); n++) {

@@ -1,5 +1,5 @@
-/* fetch/fetch_absent.c - built in place of fetch.c on systems that lack what fetch.c needs: no server is
- * asked. */
+/* fetch/fetch_absent.c - refuses to fetch files. It is built in place of fetch.c on systems that lack the
+ * functions that fetch.c needs. */
 #include <stdio.h>
 
 #include "fetch.h"

@@ -1,4 +1,5 @@
-/* fetch/fetcher.h - the parameters of fetching: where copies lie, and how a run is cancelled. */
+/* fetch/fetcher.h - defines the parameters of fetching: the folder of copies, and the callback that cancels a
+ * run. */
 #ifndef HL_FETCH_FETCHER_H
 #define HL_FETCH_FETCHER_H
 

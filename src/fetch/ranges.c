@@ -19,7 +19,7 @@ bool range_write(const hl_fetch_range *range, char text[RANGE_BYTES]) {
   return true;
 }
 
-/* Reads a number of decimal digits, and the character after it. *text is set to what follows. */
+/* Reads a number of decimal digits, and the character after it. *text is moved past this character. */
 static bool read_number(const char **text, char after, uint64_t *number) {
   char *end;
   if ((*text)[0] < '0' || (*text)[0] > '9') return false;

@@ -1,7 +1,9 @@
-/* figure/axes.c - the directions of the world: arrows at the lower right, or letters at the picture's edges.
+/* figure/axes.c - draws the directions of the world: arrows at the lower right, or letters at the picture's
+ * edges.
  *
- * Where a volume's file says how a body lies, the letters are those of anatomy: R and L for the body's right
- * and left, A and P for its front and back, S and I for the directions of its head and feet. */
+ * If a volume's file states the orientation of a body, the letters are the letters of anatomy: R and L for
+ * the body's right and left, A and P for its front and back, S and I for the directions of its head and
+ * feet. */
 #include <string.h>
 
 #include "figure/overlay.h"
@@ -32,7 +34,7 @@ static vec3 seen(const hl_map *map, int axis) {
 
 /* ---- arrows ---- */
 
-/* Lengths, in units of the letters' size. */
+/* Lengths in the drawing of the axes, in units of the letters' size. */
 static const double arrow_length = 2.1, letter_room = 1.1;
 
 double hl_overlay_arrows_height(const hl_ink *ink) { return 2 * (arrow_length + letter_room) * ink->size; }

@@ -1,9 +1,9 @@
-/* figure/bar.c - the scale bar: how long a length of the world is in the picture.
+/* figure/bar.c - draws the scale bar, which shows the length of a line in the world.
  *
- * The unit is the one in the volumes' files, or the one that the overlay names; without either, the bar is
- * refused. All visible volumes must have the same unit, after the scales that the scene gives them. In a
- * perspective picture the scale changes with depth. The bar is then right at one depth, which the overlay
- * chooses and the bar's text names. */
+ * The unit of lengths is the unit in the volumes' files, or the unit that the overlay names. If neither is
+ * known, the bar is refused. All visible volumes must have the same unit, after the scales that the scene
+ * gives them. In a perspective picture the scale changes with depth. The bar is then correct at one depth
+ * only. The overlay chooses this depth, and the bar's text names it. */
 #include <stdio.h>
 #include <string.h>
 
@@ -16,7 +16,7 @@ enum { LABEL_BYTES = 96 };
 /* The unit of the scene's lengths. */
 typedef struct bar_unit {
   const char *name;    /* the unit's name in the files */
-  const hl_unit *unit; /* the unit; null: its name is not known */
+  const hl_unit *unit; /* the unit; null if its name is not known */
   double per_scene;    /* the length of one unit of the scene's world, in the files' unit */
 } bar_unit;
 
@@ -24,7 +24,7 @@ static const char *name_of(const hl_scene_volume *volume) {
   return volume->name != NULL ? volume->name : volume->file != NULL ? volume->file : "volume";
 }
 
-/* Takes the unit of the first volume, and refuses a volume whose unit is another. */
+/* Takes the unit of the first volume, and refuses a volume with a different unit. */
 static hl_status add_volume(const hl_overlay *overlay, const hl_scene_volume *volume, bar_unit *unit,
                             hl_error *error) {
   const char *name = overlay->world_unit != NULL ? overlay->world_unit : hl_volume_unit(volume->volume);

@@ -1,4 +1,5 @@
-/* figure/figure.c - the public functions of figures: defaults, checks, and writing to files.
+/* figure/figure.c - implements the public functions of figures: sets defaults, checks figures, and writes
+ * them to files.
  *
  * In: a figure with its pictures. Out: PDF and SVG from page.c as they are drawn; PNG and TIFF through the
  * pixels that page.c draws and the picture's own writers. */

@@ -1,4 +1,4 @@
-/* figure/ink.c - texts, lines and fills over a picture, through cairo and pango.
+/* figure/ink.c - draws texts, lines and filled shapes over a picture, through cairo and pango.
  *
  * Texts are laid out as plain text, never as markup. A halo in the opposite grey lies below each text, so
  * that it can be read on dark and on bright parts of a picture. In a PDF the letters stay text in their font,
@@ -33,7 +33,7 @@ static char *clean(const char *text) {
 static PangoLayout *lay_out(const hl_ink *ink, const hl_line_of_text *line) {
   PangoLayout *layout = pango_cairo_create_layout(ink->cairo);
   PangoFontDescription *font = pango_font_description_new();
-  /* Without hinting, letters have the same places on paper and in pixels. */
+  /* Hinting is off, so that letters have the same places on paper and in pixels. */
   cairo_font_options_t *unhinted = cairo_font_options_create();
   cairo_font_options_set_hint_style(unhinted, CAIRO_HINT_STYLE_NONE);
   cairo_font_options_set_hint_metrics(unhinted, CAIRO_HINT_METRICS_OFF);
@@ -109,7 +109,8 @@ void hl_ink_bar(const hl_ink *ink, hl_rectangle bar) {
   const double rim = ink->size * halo_width / 2;
   set_grey(ink->cairo, ink->halo, halo_alpha);
   cairo_rectangle(ink->cairo, bar.left - rim, bar.top - rim, bar.width + 2 * rim, bar.height + 2 * rim);
-  /* the bar's own rectangle runs in the opposite sense, so that it is left out of the halo */
+  /* the edges of the bar's own rectangle run in the opposite direction, so that the rectangle is left out of
+   * the halo */
   cairo_rectangle(ink->cairo, bar.left + bar.width, bar.top, -bar.width, bar.height);
   cairo_fill(ink->cairo);
   set_grey(ink->cairo, ink->color, 1);

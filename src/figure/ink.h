@@ -9,7 +9,8 @@
 #include "figure/map.h"
 
 typedef struct hl_ink {
-  cairo_t *cairo;     /* where things are drawn; borrowed; its unit is the point */
+  cairo_t *cairo;     /* borrowed; the surface on which everything is drawn; its unit of length is the
+                       * point */
   double size;        /* size of letters, points */
   const char *font;   /* the name of the font; borrowed */
   double color, halo; /* greys of the ink and of its halo, sRGB: 0 is black, 1 is white */
@@ -19,12 +20,12 @@ typedef struct hl_ink {
 typedef struct hl_line_of_text {
   const char *text;
   double x, y;             /* the text's position on the page, points */
-  double align_x, align_y; /* the part of the text that lies at (x, y): 0: its left or top edge; 1: its right
-                            * or bottom edge; a number between: a place between the edges */
+  double align_x, align_y; /* the part of the text that lies at (x, y): 0 for its left or top edge, 1 for its
+                            * right or bottom edge, and a number between for a place between the edges */
   double scale;            /* a factor on the size of letters; 0 counts as 1 */
   bool bold;
   bool paragraphs; /* whether a line break begins a new line; if not, a line break is drawn as a character */
-  /* the greatest width of a line, points; a longer line is cut and ends in "..."; 0: lines may have any
+  /* the greatest width of a line, points; a longer line is cut and ends in "..."; 0 if lines may have any
    * width */
   double wide_most;
 } hl_line_of_text;

@@ -1,5 +1,6 @@
-/* figure/legend.c - the legend, which says what colours mean. Each visible volume has a part: a strip with
- * its transfer function's colours and opacity over its values, or rows for its isosurfaces or its labels.
+/* figure/legend.c - draws the legend, which explains the colours of the picture. Each visible volume has a
+ * part: a strip with its transfer function's colours and opacity over its values, or rows for its isosurfaces
+ * or its labels.
  *
  * The strip shows the function's own colours, as a fully lit surface has them. Its range begins at the least
  * value with opacity and ends at the greatest, unless the overlay states it. The curve beside the strip shows
@@ -19,12 +20,12 @@ enum { STEPS_BETWEEN_POINTS = 8, CURVE_STEPS = 256, TICKS_MOST = 6, NUMBER_BYTES
 /* lengths in the legend, in units of the letters' size */
 static const double row = 1.35, strip_width = 1.1, curve_width = 1.6, gap = 0.45, swatch = 0.9;
 
-/* The legend while it is drawn, from its top downwards. */
+/* The state of drawing the legend, from its top downwards. */
 typedef struct legend {
   const hl_ink *ink;
   const hl_overlay_place *place;
   double right, bottom; /* the legend's right and lower edge, points */
-  double y;             /* where the top of the next volume's part lies, points */
+  double y;             /* the place of the top of the next volume's part on the page, points */
   double strip_height;  /* height of a strip of colours, points */
 } legend;
 
@@ -46,7 +47,7 @@ static size_t count_rows(const hl_scene_volume *volume) {
   return count;
 }
 
-/* The title of a volume's part of the legend; null: the part has no title. */
+/* The title of a volume's part of the legend; null if the part has no title. */
 static const char *title_of(const hl_overlay_place *place, const hl_scene_volume *volume, bool first) {
   if (first && place->overlay->legend_title != NULL) return place->overlay->legend_title;
   if (volume->name != NULL && volume->name[0] != '\0') return volume->name;

@@ -1,4 +1,4 @@
-/* figure/map.c - where points of a scene's world lie on the page.
+/* figure/map.c - finds the places on the page of points of a scene's world.
  *
  * Derived from the camera's definition: the height of an orthographic picture is camera->height units of the
  * world; the height of a perspective picture, at the depth d, is 2 d tan(fovy / 2) units. */

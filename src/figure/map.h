@@ -1,4 +1,4 @@
-/* figure/map.h - where points of a scene's world lie on the page. */
+/* figure/map.h - finds the places on the page of points of a scene's world. */
 #ifndef HL_FIGURE_MAP_H
 #define HL_FIGURE_MAP_H
 
@@ -27,7 +27,7 @@ hl_map hl_map_of(const hl_camera *camera, hl_rectangle picture);
  * perspective cameras need. */
 double hl_map_scale(const hl_map *map, double depth);
 
-/* Finds where a point of the world lies on the page. Returns false if the point lies behind the eye. */
+/* Finds the place on the page of a point of the world. Returns false if the point lies behind the eye. */
 bool hl_map_point(const hl_map *map, vec3 world, double *x, double *y);
 
 #endif

@@ -1,9 +1,9 @@
-/* figure/marks.c - the marks of a scene over its picture: lines, heads of arrows, texts and measures.
+/* figure/marks.c - draws the marks of a scene over its picture: lines, heads of arrows, texts and measures.
  *
- * Marks lie over the picture, also where matter stands before them, as in the viewer. A mark of which a point
- * lies behind the eye is left out. Lengths and angles are measured in the first volume's file: the scene's
- * scale, rotation and translation of that volume are undone. The unit is the unit of that file, or the unit
- * that the overlay names; where there is neither, lengths are written without a unit. */
+ * Marks lie over the picture. As in the viewer, matter in front of a mark does not hide it. A mark is left
+ * out if one of its points lies behind the eye. Lengths and angles are measured in the first volume's file:
+ * the scene's scale, rotation and translation of that volume are undone. The unit is the unit of that file,
+ * or the unit that the overlay names; if neither is known, lengths are written without a unit. */
 #include <stdio.h>
 #include <string.h>
 
@@ -73,7 +73,7 @@ static void write_length(double length, char text[MEASURE_BYTES]) {
   while (digits[0] == '0' && digits[1] != '\0') memmove(digits, digits + 1, strlen(digits));
 }
 
-/* The unit in which the lengths of marks are written; null: it is not known. */
+/* The unit in which the lengths of marks are written; null if it is not known. */
 static const char *unit_of(const hl_overlay_place *place) {
   const hl_scene_description *scene = place->scene;
   const char *name = place->overlay->world_unit;
@@ -82,7 +82,8 @@ static const char *unit_of(const hl_overlay_place *place) {
   return unit != NULL ? unit->symbol : name;
 }
 
-/* Writes the text of the length or the angle that a mark measures; "": this kind of mark measures nothing. */
+/* Writes the text of the length or the angle that a mark measures; "" if this kind of mark measures
+ * nothing. */
 static void write_measure(const hl_overlay_place *place, const hl_mark *mark, char text[MEASURE_BYTES]) {
   text[0] = '\0';
   if (mark->kind == HL_MARK_ANGLE) {
@@ -112,8 +113,8 @@ static void add_head(const hl_ink *ink, point_on_page from, point_on_page tip) {
   cairo_line_to(ink->cairo, tip.x - x + y / 2, tip.y - y - x / 2);
 }
 
-/* Where the text of a mark begins: in the middle of a ruler, at the corner of an angle, at the start of an
- * arrow, else at the last point. */
+/* The place at which the text of a mark begins: the middle of a ruler, the corner of an angle, the start of
+ * an arrow, or the last point of any other mark. */
 static point_on_page anchor_of(const hl_mark *mark, const point_on_page first[3], point_on_page last) {
   switch (mark->kind) {
     case HL_MARK_RULER: return (point_on_page){(first[0].x + first[1].x) / 2, (first[0].y + first[1].y) / 2};
@@ -123,8 +124,8 @@ static point_on_page anchor_of(const hl_mark *mark, const point_on_page first[3]
   }
 }
 
-/* Returns whether a ruler's line rises to the right on the page. Its text then lies below the line, and else
- * above, so that the text covers neither the line nor its end. */
+/* Returns whether a ruler's line rises to the right on the page. If so, the ruler's text is written below the
+ * line, and if not, above the line, so that the text covers neither the line nor its end. */
 static bool rises(const hl_mark *mark, const point_on_page first[3]) {
   return mark->kind == HL_MARK_RULER && (first[1].x - first[0].x) * (first[1].y - first[0].y) < 0;
 }
@@ -158,7 +159,7 @@ static bool draw_path(const hl_ink *ink, const hl_map *map, const hl_mark *mark,
     else cairo_line_to(ink->cairo, last->x, last->y);
   }
   if (mark->kind == HL_MARK_ARROW) add_head(ink, first[0], first[1]);
-  /* a line of no length becomes a round dot */
+  /* a line of the length 0 becomes a round dot */
   if (mark->kind == HL_MARK_TEXT) cairo_line_to(ink->cairo, last->x, last->y);
   hl_ink_stroke(ink, (mark->kind == HL_MARK_TEXT ? 0.35 : 0.14) * ink->size);
   return true;

@@ -47,7 +47,7 @@ static const double ground_opacity = 0.54;
 /* The least opacity that changes an 8-bit code. */
 static const float seen_opacity = 0.5F / 255;
 
-/* Finds the box of what a part draws, by drawing it on a surface that records. */
+/* Finds the box around the drawing of a part, by drawing the part on a recording surface. */
 static hl_status find_box(const hl_ink *ink, const hl_overlay_place *place, overlay_part part,
                           hl_rectangle *box, hl_error *error) {
   cairo_surface_t *record = cairo_recording_surface_create(CAIRO_CONTENT_COLOR_ALPHA, NULL);
@@ -91,7 +91,8 @@ static void draw_ground(const hl_ink *ink, hl_rectangle box) {
   cairo_fill(ink->cairo);
 }
 
-/* Draws a part that has a corner of the picture to itself, on a ground where matter lies behind it. */
+/* Draws a part that is alone in a corner of the picture. If matter lies behind the part, draws a ground below
+ * it. */
 static hl_status draw_part(const hl_ink *ink, const hl_overlay_place *place, const hl_image *image,
                            overlay_part part, hl_error *error) {
   const double rim = 0.4 * ink->size;

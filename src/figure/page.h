@@ -1,4 +1,4 @@
-/* figure/page.h - a figure drawn on a surface of cairo: pixels, PDF or SVG. */
+/* figure/page.h - draws a figure on a surface of cairo: pixels, PDF or SVG. */
 #ifndef HL_FIGURE_PAGE_H
 #define HL_FIGURE_PAGE_H
 
@@ -17,7 +17,8 @@ hl_status hl_page_draw(hl_context *context, const hl_figure *figure, int width, 
 /* Writes a figure as PDF, or as SVG, to output->file. */
 hl_status hl_page_write(const hl_figure *figure, bool pdf, hl_output *output, hl_error *error);
 
-/* The names of the libraries for drawing that the build lacks, "cairo and pango"; null if it lacks none. */
+/* The names of the drawing libraries that the build lacks, such as "cairo and pango"; null if the build lacks
+ * none. */
 const char *hl_page_missing(void);
 
 #endif

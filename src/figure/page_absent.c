@@ -1,4 +1,5 @@
-/* figure/page_absent.c - in place of page.c in builds without cairo and pango: refuses to draw. */
+/* figure/page_absent.c - refuses to draw figures. Builds without cairo and pango have this file in place of
+ * page.c. */
 #include "figure/page.h"
 
 static hl_status refuse(hl_error *error) {

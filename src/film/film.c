@@ -1,8 +1,7 @@
-/* film/film.c - the scenes of a film's frames.
+/* film/film.c - makes the scenes of a film's frames.
  *
  * The scene's text is parsed once. For each frame, the keys' values are written into a copy of it. The
- * library reads and checks this copy like any other scene. Then the camera is turned.
- */
+ * library reads and checks this copy like any other scene. Then the camera is turned. */
 #define _GNU_SOURCE
 #include "film.h"
 
@@ -165,8 +164,8 @@ static hl_status turn_camera(const film *f, int frame, hl_camera *camera,
 
 static double dot(const double a[3], const double b[3]) { return a[0] * b[0] + a[1] * b[1] + a[2] * b[2]; }
 
-/* The direction of a light that has given angles, in the axes of the light (of the world or of the
- * camera). */
+/* The direction of a light that has the given angles. The direction is in the axes of the light's frame,
+ * which are the axes of the world or of the camera. */
 static void direction_at(const hl_light *light, const hl_camera *camera, double azimuth, double elevation,
                          double direction[3]) {
   if (light->frame == HL_LIGHT_FRAME_CAMERA) hl_light_direction_beside(azimuth, elevation, direction);

@@ -1,4 +1,4 @@
-/* film/keys.h - values over time: the argument of `--key PATH=FRAME:VALUE,...`. */
+/* film/keys.h - reads the argument of `--key PATH=FRAME:VALUE,...`, which gives values over time. */
 #ifndef HL_FILM_KEYS_H
 #define HL_FILM_KEYS_H
 
@@ -20,12 +20,12 @@ typedef struct film_key {
   bool smooth;
 } film_key;
 
-/* Reads "PATH=FRAME:VALUE,FRAME:VALUE,...". Returns HL_ERROR_ARGUMENT where the text is no key; the error
- * names the place in the text. Call film_key_release() even after a failure. */
+/* Reads "PATH=FRAME:VALUE,FRAME:VALUE,...". Returns HL_ERROR_ARGUMENT if the text is no key; the error names
+ * the place in the text. Call film_key_release() even after a failure. */
 hl_status film_key_read(const char *text, film_key *key, hl_error *error);
 void film_key_release(film_key *key);
 
-/* The value of a key at a frame. component: 0; for a colour, 0, 1 or 2. */
+/* The value of a key at a frame. component: 0 for a number; 0, 1 or 2 for a colour. */
 double film_key_value(const film_key *key, int frame, int component);
 
 #endif

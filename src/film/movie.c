@@ -137,7 +137,7 @@ static void release(movie *m) {
   free(m);
 }
 
-/* Completes a film: closes the pipe, at which ffmpeg ends. */
+/* Completes a film: closes the pipe, after which ffmpeg ends. */
 hl_status movie_end(movie *m, hl_error *error) {
   char said[400];
   hl_status status = HL_OK;

@@ -20,12 +20,12 @@ bool movie_available(void);
  * it fails. SIGPIPE must be ignored. */
 hl_status movie_begin(const char *path, double frames_per_second, movie **result, hl_error *error);
 
-/* Adds a picture, as the bytes of a PNG; all pictures of a film have the same size. After a failure the film
- * m is destroyed. */
+/* Adds a picture, which is given as the bytes of a PNG file. All pictures of a film have the same size. After
+ * a failure the film m is destroyed. */
 hl_status movie_add(movie *m, const unsigned char *png, size_t length, hl_error *error);
 
-/* Two ends of a film m. movie_end() completes the film and destroys m. movie_abandon() destroys m and leaves
- * no file behind; it accepts null. */
+/* Two functions that end a film m. movie_end() completes the film and destroys m. movie_abandon() destroys m
+ * and leaves no file behind; it accepts null. */
 hl_status movie_end(movie *m, hl_error *error);
 void movie_abandon(movie *m);
 

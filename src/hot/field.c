@@ -1,4 +1,5 @@
-/* hot/field.c - the hot functions of fields: the opacity of cells, and the sky's light in a row of cells. */
+/* hot/field.c - compiles the hot functions of fields: the opacity of cells, and the sky's light in a row of
+ * cells. */
 #include "hot/tables.h"
 
 #include "field/opacity_lanes.h"

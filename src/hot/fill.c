@@ -1,4 +1,4 @@
-/* hot/fill.c - the hot functions that fill tiles of a sheet with densities. */
+/* hot/fill.c - compiles the hot functions that fill tiles of a sheet with densities. */
 #include "hot/tables.h"
 
 #include "fill/relevant_blocks_lanes.h"

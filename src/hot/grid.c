@@ -1,4 +1,5 @@
-/* hot/grid.c - the hot functions of grids: bounds of cells, and which cells show something. */
+/* hot/grid.c - compiles the hot functions of grids: they find bounds of cells, and the cells that show
+ * something. */
 #include "hot/tables.h"
 
 #include "fill/windows_lanes.h"

@@ -1,4 +1,4 @@
-/* hot/render.c - the hot functions that make pixels of the picture. */
+/* hot/render.c - compiles the hot functions that make pixels of the picture. */
 #include "hot/tables.h"
 
 #include "render/maximum_lanes.h"

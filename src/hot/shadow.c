@@ -1,5 +1,5 @@
-/* hot/shadow.c - the hot functions of shadows: attenuation, and the blurs of the cascade, which the shadow
- * buffer shares. The hot functions of sub-lights are in sublights.c. */
+/* hot/shadow.c - compiles the hot functions of shadows: attenuation, and the blurs of the cascade, which the
+ * shadow buffer also uses. The hot functions of sub-lights are in sublights.c. */
 #include "hot/tables.h"
 
 #include "shadow/attenuate_lanes.h"

@@ -1,4 +1,4 @@
-/* hot/sublights.c - the hot functions of sub-lights. */
+/* hot/sublights.c - compiles the hot functions of sub-lights. */
 #include "hot/tables.h"
 
 #include "shadow_sublights/sublight_lanes.h"

@@ -1,4 +1,5 @@
-/* hot/surface.c - the hot functions of meshes: the pixels that triangles and spheres cover. */
+/* hot/surface.c - compiles the hot functions of meshes, which find the pixels that triangles and spheres
+ * cover. */
 #include "hot/tables.h"
 
 #include "surface/small_spheres_lanes.h"

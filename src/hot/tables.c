@@ -1,4 +1,4 @@
-/* hot/tables.c - for each instruction set, one table of the hot functions of all rooms. */
+/* hot/tables.c - defines one table for each instruction set. The table has the hot functions of all rooms. */
 #include "hot/tables.h"
 
 #define HL_HOT_TABLE(set)                                                                    \

@@ -1,4 +1,5 @@
-/* hot/tables.h - the tables of hot functions, one for each room and instruction set.
+/* hot/tables.h - declares the tables of hot functions. There is one table for each room and each instruction
+ * set.
  *
  * A file ROOM.c of this folder is compiled once for each instruction set, with the set's name as HL_HOT_SET.
  * It defines the table HL_HOT(ROOM). tables.c joins the tables of each instruction set. */

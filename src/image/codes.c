@@ -1,4 +1,4 @@
-/* image/codes.c - pixels as sRGB codes of 8 or 16 bits, for files and for the caller's memory.
+/* image/codes.c - converts pixels to sRGB codes of 8 or 16 bits, for files and for the caller's memory.
  *
  * In: linear premultiplied floats, a linear background. Out: RGB over the background or, with
  * background_transparent, unassociated RGBA.
@@ -6,15 +6,16 @@
  * Exposure, tone, compositing and alpha division are done in linear light; the curve is applied last
  * (srgb.h).
  *
- * Eight bits are too few for smooth dark gradients such as penumbras: rounding draws visible contours, 10
- * pixels wide and more. Errors measured on a penumbra-like gradient of 0.004 to 0.034 linear over 256 x 256
- * pixels, after averaging 8 x 8 pixels as the eye does at a distance: rounding 0.070 codes (root mean square;
- * 0.34 at worst), an 8 x 8 ordered dither 0.020 (0.08), without contours even at raised contrast. White noise
- * (0.050) and two low-discrepancy patterns (0.019 and 0.029) looked no better, and the ordered dither gives
- * the smallest files. Therefore 8-bit codes are dithered by less than half a code. The dither depends on the
- * position alone and is the same in all channels, so that greys stay grey. Values that are exact codes stay
- * unchanged, so that a PNG keeps its pixels when it is read and written again. Pixels without any volume are
- * rounded, so that a flat background stays flat. 16-bit codes are rounded. */
+ * Eight bits are too few for smooth dark gradients such as penumbras: rounding draws visible contours, which
+ * are 10 pixels wide and more. Errors measured on a penumbra-like gradient of 0.004 to 0.034 linear over 256
+ * x 256 pixels, after averaging 8 x 8 pixels as the eye does at a distance: rounding had an error of 0.070
+ * codes (root mean square; 0.34 at worst); an 8 x 8 ordered dither had 0.020 (0.08 at worst), and showed no
+ * contours even at raised contrast. White noise (0.050) and two low-discrepancy patterns (0.019 and 0.029)
+ * looked no better, and the ordered dither gives the smallest files. Therefore 8-bit codes are dithered by
+ * less than half a code. The dither depends on the position alone and is the same in all channels, so that
+ * greys stay grey. Values that are exact codes stay unchanged, so that a PNG keeps its pixels when it is read
+ * and written again. Pixels without any volume are rounded, so that a flat background stays flat. 16-bit
+ * codes are rounded. */
 #include "image/codes.h"
 
 #include <float.h>

@@ -1,4 +1,4 @@
-/* image/codes.h - pixels as sRGB codes of 8 or 16 bits. */
+/* image/codes.h - converts pixels to sRGB codes of 8 or 16 bits. */
 #ifndef HL_IMAGE_CODES_H
 #define HL_IMAGE_CODES_H
 
@@ -10,8 +10,8 @@
 typedef struct hl_codes {
   hl_srgb_encoder encoder;
   int depth;           /* number of bits of a code: 8 or 16 */
-  bool transparent;    /* whether a pixel has four codes, of which the last one is alpha; if not, it has
-                        * three codes */
+  bool transparent;    /* whether a pixel has four codes, of which the last one is alpha; if not, the pixel
+                        * has three codes */
   bool opaque_alpha;   /* whether a pixel has four codes, but alpha is always opaque */
   float background[3]; /* colour behind the picture, linear RGB */
   float exposure;      /* the factor by which the picture's light is multiplied */

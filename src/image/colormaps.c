@@ -1,4 +1,5 @@
-/* image/colormaps.c - the named colormaps: sRGB tables, and the linear colours between their entries.
+/* image/colormaps.c - defines the named colormaps by sRGB tables, and finds the linear colours between the
+ * tables' entries.
  *
  * Sources: viridis, inferno, magma and plasma by N. Smith, S. van der Walt and E. Firing (released to the
  * public domain, CC0); cividis by J. Nunez, C. Anderton and R. Renslow (2018); coolwarm by K. Moreland

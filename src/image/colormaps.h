@@ -1,4 +1,4 @@
-/* image/colormaps.h - colours of the named colormaps. */
+/* image/colormaps.h - finds colours of the named colormaps. */
 #ifndef HL_IMAGE_COLORMAPS_H
 #define HL_IMAGE_COLORMAPS_H
 

@@ -1,9 +1,10 @@
-/* image/compare.c - the differences of two pictures.
+/* image/compare.c - finds the differences of two pictures.
  *
  * In: two pictures of one size. Out: hl_image_difference. The first pass finds the sums and the greatest
- * difference. Two more passes find the percentile by counting the bits of the differences as floats, which
- * sort like the numbers: first the upper 16 bits, then the lower 16. So no buffer of the picture's size is
- * needed, and the time does not depend on the data. */
+ * difference. Two more passes find the percentile by counting the bits of the differences as floats, because
+ * the bits of floats have the order of the numbers. The first of these passes counts the upper 16 bits, and
+ * the second one the lower 16. So no buffer of the picture's size is needed, and the time does not depend on
+ * the data. */
 #include <math.h>
 #include <string.h>
 
@@ -32,7 +33,7 @@ static uint32_t difference_bits(const float a[4], const float b[4]) {
   return bits;
 }
 
-/* Finds 16 bits of a difference: the difference number *rank in rising order. If `high` is negative, finds
+/* Finds 16 bits of one difference, which has the number *rank in rising order. If `high` is negative, finds
  * the upper 16 bits among all pixels; otherwise finds the lower 16 bits among the pixels whose upper 16 bits
  * are `high`. *rank becomes the difference's rank among the pixels that have the found bits. */
 static uint32_t select_half(const hl_image *a, const hl_image *b, int64_t high, uint64_t *rank,

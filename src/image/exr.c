@@ -1,4 +1,4 @@
-/* image/exr.c - pictures as OpenEXR scanlines, through OpenEXRCore.
+/* image/exr.c - reads and writes pictures as OpenEXR scanlines, through OpenEXRCore.
  *
  * In: the bytes of a file, which may be anything. Out: a picture of the first part's data window: channels R,
  * G, B (or Y for grey) and A (1 where it is missing), from half, float or integer samples. Out to a file:
@@ -193,7 +193,7 @@ static hl_status read_chunks(exr_reading *reading) {
   return result == EXR_ERR_SUCCESS ? HL_OK : fail_exr(reading, result);
 }
 
-/* Copies grey to all three colours, and sets alpha to 1 where the file has none. */
+/* Copies grey to all three colours, and sets alpha to 1 if the file has none. */
 static void fill_missing(const exr_reading *reading) {
   bool grey = (reading->present & COLOURS) == 0, opaque = (reading->present >> 3 & 1) == 0;
   size_t count = (size_t)reading->image->width * (size_t)reading->image->height;

@@ -1,4 +1,4 @@
-/* image/exr.h - OpenEXR files of any number of named float channels. */
+/* image/exr.h - writes OpenEXR files of any number of named float channels. */
 #ifndef HL_IMAGE_EXR_H
 #define HL_IMAGE_EXR_H
 

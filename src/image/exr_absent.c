@@ -17,7 +17,7 @@ static hl_status decode(hl_context *context, const char *name, const unsigned ch
 
 static hl_image_claim claim(const unsigned char *bytes, size_t length) {
   (void)bytes;
-  /* any size will do, because decode() refuses the file */
+  /* the size has no effect, because decode() refuses the file */
   return (hl_image_claim){.known = true, .width = 1, .height = 1, .bytes = length};
 }
 

@@ -46,8 +46,8 @@ hl_status hl_image_get_format(size_t index, hl_file_format *format) {
   return HL_OK;
 }
 
-/* Two limits, in bytes: of everything in a file beside its pixels (texts, profiles, thumbnails), and of a
- * file's header. */
+/* Two limits, in bytes. The first one limits everything in a file beside its pixels: texts, profiles,
+ * thumbnails. The second one limits a file's header. */
 static const size_t extra_bytes_max = (size_t)64 << 20, header_bytes_max = (size_t)16 << 20;
 
 static const hl_image_format *format_by_name(const char *path) {

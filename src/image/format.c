@@ -1,4 +1,5 @@
-/* image/format.c - shared by the encoders of all formats: options, progress, the error of a failed write. */
+/* image/format.c - checks the options for writing pictures, reports progress, and reports failed writes, for
+ * the encoders of all formats. */
 #include "image/format.h"
 
 #include <math.h>

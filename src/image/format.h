@@ -1,5 +1,5 @@
-/* image/format.h - the interface between picture formats and hl_image_write and hl_image_read, and the
- * functions that encoders share.
+/* image/format.h - declares the interface by which hl_image_write() and hl_image_read() call the formats of
+ * pictures, and the functions that encoders share.
  *
  * The registry of formats is in files.c. */
 #ifndef HL_IMAGE_FORMAT_H

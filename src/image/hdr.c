@@ -1,11 +1,11 @@
-/* image/hdr.c - pictures in Radiance's format (.hdr, .pic), which are read but never written; most are
- * environments.
+/* image/hdr.c - reads pictures in Radiance's format (.hdr, .pic). Most of these pictures are environments.
+ * They are never written.
  *
- * In: bytes. Out: hl_image; linear, alpha 1. Ward, "Real pixels", Graphics Gems II (1991), and Radiance's
- * refman/filefmts.pdf. A header of lines, "#?RADIANCE" first, ends with an empty line; a line with the size
- * follows, "-Y 512 +X 1024" for rows from the top with pixels from the left; then rows of RGBE pixels: three
- * mantissas and an exponent. Rows are plain, or have runs of whole pixels, or runs of each of these four
- * numbers separately.
+ * In: bytes. Out: hl_image; linear, alpha 1. Sources: Ward, "Real pixels", Graphics Gems II (1991), and
+ * Radiance's refman/filefmts.pdf. A header of lines, "#?RADIANCE" first, ends with an empty line; a line with
+ * the size follows, "-Y 512 +X 1024" for rows from the top with pixels from the left; then rows of RGBE
+ * pixels: three mantissas and an exponent. Rows are plain, or have runs of whole pixels, or runs of each of
+ * these four numbers separately.
  *
  * The line EXPOSURE is not applied, as in most programs: the picture keeps its stored values. */
 #include <inttypes.h>
@@ -19,7 +19,7 @@
 
 enum { LINE_MAX_BYTES = 2048, RUN_WIDTH_MIN = 8, RUN_WIDTH_MAX = 32767, RUN_MAX = 127, EXPONENTS = 256 };
 
-/* A position in a file that is read; errors name its byte. */
+/* The position at which a file is read. Errors name the byte at this position. */
 typedef struct hdr_cursor {
   const char *name;
   const unsigned char *bytes; /* borrowed; [length]; the bytes of the file */

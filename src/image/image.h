@@ -1,4 +1,4 @@
-/* image/image.h - the inside of hl_image, and the functions by which readers make pictures. */
+/* image/image.h - defines the members of hl_image, and the functions by which readers make pictures. */
 #ifndef HL_IMAGE_IMAGE_H
 #define HL_IMAGE_IMAGE_H
 

@@ -1,9 +1,8 @@
-/* image/npy.c - pictures as NumPy arrays (NPY format), float32, C order.
+/* image/npy.c - reads and writes pictures as NumPy arrays (NPY format), float32, C order.
  *
  * In, out: hl_image and bytes. Written: version 1.0, '<f4', height x width x 4; a layer as height x width x
- * channels, or as height x width where it has one channel. Read: versions 1 to 3, '<f4' or '<f8', height x
- * width or height x width x 1, 3 or 4; grey fills R, G and B, and a missing alpha is 1. No bit of a value
- * changes.
+ * channels, or as height x width if it has one channel. Read: versions 1 to 3, '<f4' or '<f8', height x width
+ * or height x width x 1, 3 or 4; grey fills R, G and B, and a missing alpha is 1. No bit of a value changes.
  *
  * The header is a Python literal: {'descr': '<f4', 'fortran_order': False, 'shape': (2, 3, 4), } */
 #include <errno.h>
@@ -15,7 +14,7 @@
 #include "core/memory.h"
 #include "image/format.h"
 
-/* HEADER_BYTES: data starts at a multiple of 64, as in NumPy's own files. */
+/* HEADER_BYTES is a multiple of 64, because the data start at a multiple of 64 in NumPy's own files, too. */
 enum { PREAMBLE_BYTES = 10, HEADER_BYTES = 128, HEADER_BYTES_MAX = 65536 };
 
 typedef struct npy_header {
@@ -26,7 +25,7 @@ typedef struct npy_header {
   bool has_type, has_order, has_shape;
 } npy_header;
 
-/* A read position in the header's text; errors name the byte in the file. */
+/* The position at which the header's text is read. Errors name the byte in the file at this position. */
 typedef struct npy_cursor {
   const char *name;
   const unsigned char *bytes; /* borrowed; the first bytes of the file */
@@ -42,7 +41,7 @@ static void put_float(unsigned char *to, float value) {
   for (int i = 0; i < 4; i++) to[i] = (unsigned char)(bits >> 8 * i);
 }
 
-/* The array to write: [height][width][channels], or [height][width] where there is one channel. */
+/* The array to write: [height][width][channels], or [height][width] if there is one channel. */
 typedef struct npy_array {
   int height, width;
   size_t channels;
@@ -134,7 +133,8 @@ static bool take_count(npy_cursor *cursor, uint64_t *count) {
   size_t start = cursor->at;
   *count = 0;
   while (cursor->at < cursor->end && cursor->bytes[cursor->at] >= '0' && cursor->bytes[cursor->at] <= '9') {
-    if (cursor->at - start == 18) return false; /* no file has a number of bytes with so many digits */
+    /* No file has a number of bytes that takes more digits than this. */
+    if (cursor->at - start == 18) return false;
     *count = *count * 10 + (uint64_t)(cursor->bytes[cursor->at++] - '0');
   }
   return cursor->at > start;
@@ -272,7 +272,8 @@ static hl_status decode(hl_context *context, const char *name, const unsigned ch
   size_t value_bytes = header.type[2] == '8' ? 8 : 4, data = cursor.end;
   uint64_t rest = length - data, row = header.shape[1] * header.shape[2] * value_bytes;
   bool right_size = header.shape[0] <= HL_IMAGE_SIDE_MAX && header.shape[1] <= HL_IMAGE_SIDE_MAX;
-  right_size = !right_size || header.shape[0] * row == rest; /* sizes that are too great are refused below */
+  right_size = !right_size || header.shape[0] * row == rest; /* the checks below refuse sizes that are too
+                                                              * great */
   if (!right_size)
     return hl_fail_offset(error, HL_ERROR_INPUT, (int64_t)data,
                           "%s: byte %zu: %" PRIu64 " bytes of data, expected %" PRIu64 " for %" PRIu64

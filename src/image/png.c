@@ -2,7 +2,8 @@
  * scene that a picture carries.
  *
  * In: the bytes of a file, which may be anything. Out: a picture. Grey, palette, 1 to 16 bits, transparency
- * and interlacing are all expanded to RGBA; samples are taken as sRGB whatever gAMA or iCCP say.
+ * and interlacing are all expanded to RGBA; samples are taken as sRGB, and the chunks gAMA and iCCP are
+ * ignored.
  *
  * Out to a file: sRGB codes, RGB over the background or, with background_transparent, unassociated RGBA
  * (codes.c); the scene as a compressed text chunk.
@@ -53,7 +54,7 @@ typedef struct png_reading {
   hl_image *image;
   float *linear; /* owned; [maximum + 1]; the linear value of each code, which is computed when it is first
                   * needed; negative until then */
-  unsigned char *rows; /* owned; one row of RGBA samples, or all rows where the file is interlaced */
+  unsigned char *rows; /* owned; one row of RGBA samples, or all rows if the file is interlaced */
 } png_reading;
 
 static void on_read_error(png_structp png, png_const_charp message) {
@@ -411,7 +412,8 @@ typedef struct png_chunk {
   size_t length;
 } png_chunk;
 
-/* Finds the text chunk with a keyword, which is `size` bytes long with its zero. False: there is none. */
+/* Finds the text chunk with a keyword, which is `size` bytes long with its zero. Returns false if there is
+ * none. */
 static bool find_chunk(const unsigned char *bytes, size_t byte_count, const char *word, size_t size,
                        png_chunk *chunk) {
   if (byte_count < MARK_BYTES || memcmp(bytes, hl_png_format.mark, MARK_BYTES) != 0) return false;

@@ -1,6 +1,7 @@
-/* image/srgb.c - the sRGB transfer curve (IEC 61966-2-1).
+/* image/srgb.c - computes the sRGB transfer curve (IEC 61966-2-1).
  *
- * In: linear floats or whole codes. Out: codes or linear floats. Used by the PNG writer and reader. Only + -
+ * In: linear floats or whole codes. Out: codes or linear floats. The PNG writer and reader use these
+ * functions. Only + -
  * * / and comparisons are used: the C library's pow differs between machines in the last bit, but pictures
  * must be the same everywhere. */
 #include "image/srgb.h"
@@ -76,7 +77,7 @@ hl_status hl_srgb_encoder_create(hl_context *context, int maximum, hl_srgb_encod
     hl_srgb_encoder_destroy(encoder);
     return hl_fail_memory(error, thresholds * sizeof *encoder->threshold, "the sRGB curve");
   }
-  /* derived: round(maximum * encode(x)) >= k holds exactly where x >= decode((k - 0.5) / maximum) */
+  /* derived: round(maximum * encode(x)) >= k holds if and only if x >= decode((k - 0.5) / maximum) */
   for (size_t k = 0; k < thresholds; k++)
     encoder->threshold[k] = float_at_least(hl_srgb_decode(((double)k - 0.5) / maximum));
   int code = 0;

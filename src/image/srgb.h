@@ -1,4 +1,5 @@
-/* image/srgb.h - the sRGB transfer curve (IEC 61966-2-1), exact and the same on every machine. */
+/* image/srgb.h - computes the sRGB transfer curve (IEC 61966-2-1). The results are exact, and the same on
+ * every machine. */
 #ifndef HL_IMAGE_SRGB_H
 #define HL_IMAGE_SRGB_H
 

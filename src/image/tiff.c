@@ -1,7 +1,7 @@
 /* image/tiff.c - writes TIFF files with 8 or 16 bits, through libtiff.
  *
  * In: a picture. Out: one page of sRGB codes, RGB over the background or, with background_transparent,
- * unassociated RGBA (codes.c), packed by deflate; the resolution in pixels per inch where one is given. */
+ * unassociated RGBA (codes.c), packed by deflate; the resolution in pixels per inch if one is given. */
 #define _GNU_SOURCE
 #include <errno.h>
 #include <string.h>
@@ -67,8 +67,8 @@ static void set_fields(TIFF *tiff, const hl_image *image, const hl_image_write_o
   TIFFSetField(tiff, TIFFTAG_YRESOLUTION, options->pixels_per_inch);
 }
 
-/* Brings the bytes of a row into the machine's byte order, in which TIFF has samples of 16 bits. Codes have
- * the greater byte first. */
+/* Swaps the bytes of a row's 16-bit codes if needed. The codes have the greater byte first, but the samples
+ * in the TIFF file have the machine's byte order. */
 static void order_bytes(unsigned char *row, size_t samples) {
   for (size_t i = 0; i < samples; i++) {
     uint16_t code = (uint16_t)(row[2 * i] << 8 | row[2 * i + 1]);

@@ -1,4 +1,5 @@
-/* image/tiff_absent.c - in place of tiff.c in builds without libtiff: refuses to write TIFF files. */
+/* image/tiff_absent.c - refuses to write TIFF files. Builds without libtiff have this file in place of
+ * tiff.c. */
 #include "image/format.h"
 
 static hl_status encode(const hl_image *image, const hl_image_write_options *options, hl_output *output,

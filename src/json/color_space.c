@@ -1,4 +1,4 @@
-/* json/color_space.c - mixing two sRGB colours in RGB, HSV, CIELAB and Msh. */
+/* json/color_space.c - mixes two sRGB colours in RGB, HSV, CIELAB and Msh. */
 #include "json/color_space.h"
 
 #include <math.h>
@@ -72,7 +72,8 @@ static void mix_hsv(const double a[3], const double b[3], double t, bool by_arc,
 }
 
 /* A colour in the space Msh: magnitude m, saturation angle s and hue h of a CIELAB colour (Moreland 2009,
- * "Diverging color maps for scientific visualization", whose constants these are). */
+ * "Diverging color maps for scientific visualization"). The constants in the functions below are from this
+ * paper. */
 typedef struct msh {
   double m, s, h;
 } msh;

@@ -1,4 +1,4 @@
-/* json/cuts.c - the cuts of a volume or a scene from JSON. */
+/* json/cuts.c - reads the cuts of a volume or a scene from JSON. */
 #include "core/memory.h"
 #include "json/parts.h"
 #include "json/settings.h"

@@ -1,4 +1,4 @@
-/* json/file_names.h - names of files in a scene's text, relative to the folder of this text. */
+/* json/file_names.h - finds names of files relative to the folder of the scene's text that contains them. */
 #ifndef HL_JSON_FILE_NAMES_H
 #define HL_JSON_FILE_NAMES_H
 

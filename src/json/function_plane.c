@@ -1,4 +1,5 @@
-/* json/function_plane.c - a transfer function of two numbers from JSON: its boxes, polygons and image. */
+/* json/function_plane.c - reads a transfer function of two numbers from JSON: its boxes, polygons and
+ * image. */
 #include <string.h>
 
 #include "core/memory.h"

@@ -1,4 +1,4 @@
-/* json/images.c - the images that a scene's lights, sky and transfer functions name. */
+/* json/images.c - loads the images that a scene's lights, sky and transfer functions name. */
 #include <string.h>
 
 #include <halflight/image.h>
@@ -9,7 +9,7 @@
 
 /* An image that the scene `like` has loaded already. pixels is null if `like` does not have the image. */
 typedef struct known_image {
-  const float *pixels; /* [height][width][channels]; null: `like` does not have the image */
+  const float *pixels; /* [height][width][channels]; null if `like` does not have the image */
   int width, height;
 } known_image;
 
@@ -26,8 +26,8 @@ static known_image find_function_image(const hl_scene_description *like, const c
   return (known_image){NULL, 0, 0};
 }
 
-/* Finds an image that `like` has loaded from this file. Where 4 channels are needed, only images of transfer
- * functions count, because other images were loaded without alpha. */
+/* Finds an image that `like` has loaded from this file. If 4 channels are needed, only images of transfer
+ * functions are considered, because other images were loaded without alpha. */
 static known_image find_known(const hl_scene_description *like, const char *path, int channels) {
   if (channels == 4) return find_function_image(like, path);
   const hl_sky *sky = &like->sky;

@@ -1,4 +1,4 @@
-/* json/isosurfaces.c - the isosurfaces of a volume from JSON. */
+/* json/isosurfaces.c - reads the isosurfaces of a volume from JSON. */
 #include "core/memory.h"
 #include "json/parts.h"
 #include "json/settings.h"

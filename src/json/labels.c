@@ -1,4 +1,4 @@
-/* json/labels.c - the labels of a volume that is a label map, from JSON.
+/* json/labels.c - reads the labels of a volume that is a label map from JSON.
  *
  * "labels" is either true, for all labels that the voxels have, or a list of the labels that are shown. The
  * list names each label by its number or its name, and may give its colour, its opacity and whether it is
@@ -154,7 +154,8 @@ hl_status hl_json_read_label_list(hl_json_reader *reader, const json_t *object, 
     return table == NULL
                ? HL_OK
                : hl_json_fail(reader, HL_ERROR_INPUT, "label_table", "is for labels: give \"labels\"");
-  if (table != NULL && reader->like != NULL) table = NULL; /* a scene that is read again opens no file */
+  /* A reader that takes volumes from an earlier scene opens no file, and thus no label table. */
+  if (table != NULL && reader->like != NULL) table = NULL;
   known_labels known = {reader, volume->volume, NULL, false, NULL, 0};
   if (table != NULL && (known.table = hl_json_path(reader, table)) == NULL)
     return hl_fail_memory(reader->error, strlen(table) + 1, "a path");

@@ -1,4 +1,4 @@
-/* json/lights.c - lights from JSON, with the images that they project or show themselves. */
+/* json/lights.c - reads lights from JSON, with the images that they project or show on their own surface. */
 #include <stdio.h>
 #include <string.h>
 
@@ -81,8 +81,8 @@ static hl_status read_vertices(hl_json_reader *reader, const json_t *object, hl_
   return HL_OK;
 }
 
-/* Cuts the default width of a spot light's edge to the width that fits into its cone. This function is called
- * where the scene gives no width. */
+/* Reduces the width of a spot light's edge to the greatest width that fits into the light's cone, if the
+ * scene gives no width. */
 static void narrow_edge(const json_t *value, hl_light *light) {
   if (json_object_get(value, "falloff_angle_deg") == NULL &&
       light->falloff_angle_deg > light->opening_angle_deg / 2)

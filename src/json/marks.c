@@ -1,4 +1,4 @@
-/* json/marks.c - the marks of a scene from JSON and to JSON. */
+/* json/marks.c - reads the marks of a scene from JSON, and writes them as JSON. */
 #include "scene/marks.h"
 
 #include <stdio.h>

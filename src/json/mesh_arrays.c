@@ -1,4 +1,4 @@
-/* json/mesh_arrays.c - the arrays of a mesh whose elements the scene itself lists. */
+/* json/mesh_arrays.c - reads the arrays of a mesh whose elements the scene itself lists. */
 #include <string.h>
 
 #include "core/memory.h"
@@ -8,8 +8,8 @@
 const char *const hl_json_mesh_keys[] = {"vertices", "triangles",     "normals", "colors",      "face_colors",
                                          "spheres",  "sphere_colors", "lines",   "line_colors", NULL};
 
-/* The rule for an array of rows of numbers: how many numbers a row may have, and how missing numbers are
- * filled in. */
+/* The rule for an array of rows of numbers: the possible lengths of a row, and the value of missing
+ * numbers. */
 typedef struct row_kind {
   size_t least, most; /* the least and the greatest number of numbers in a row */
   double rest;        /* the value of numbers that a row lacks */

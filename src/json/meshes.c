@@ -1,4 +1,4 @@
-/* json/meshes.c - the meshes of a scene from JSON. */
+/* json/meshes.c - reads the meshes of a scene from JSON. */
 #include <string.h>
 
 #include "core/file.h"

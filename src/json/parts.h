@@ -1,4 +1,4 @@
-/* json/parts.h - readers of a scene's parts. A key that is absent keeps its default. */
+/* json/parts.h - reads the parts of a scene. A setting whose key is absent keeps its default. */
 #ifndef HL_JSON_PARTS_H
 #define HL_JSON_PARTS_H
 
@@ -37,8 +37,8 @@ hl_status hl_json_read_emission(hl_json_reader *reader, const json_t *value, boo
 /* Reads one light. Its vertices (hl_release) and images (hl_light_images_release) are owned by *light. */
 hl_status hl_json_read_light(hl_json_reader *reader, const json_t *value, hl_light *light);
 
-/* A volume that was read for the scene. It is kept so that a volume that the scene names twice is read
- * once. */
+/* A volume that was read for the scene. The volume is kept, so that a file that the scene names twice is read
+ * only once. */
 typedef struct hl_loaded_volume {
   char *source;      /* owned; the file's path, or the text of its shapes */
   const char *array; /* the options with which the file was loaded; texts are owned by the JSON tree */
@@ -49,15 +49,15 @@ typedef struct hl_loaded_volume {
   hl_volume *volume; /* owned; the volume that was read */
 } hl_loaded_volume;
 
-/* Data that the volumes of one scene share. */
+/* The data that the readers of one scene's volumes share. */
 typedef struct hl_volume_shelf {
   /* owned; [count]; the volumes that were read so far. There is room for one more volume whenever a volume is
    * read */
   hl_loaded_volume *loaded;
   size_t count;
   const json_t *groups; /* the groups of shapes in the scene; may be null */
-  json_t *stood_in;     /* owned; the volumes whose file was absent, as copies of their JSON with the keys of
-                         * their stand-ins; null if there are none */
+  json_t *stood_in;     /* owned; for each volume whose file was absent, a copy of its JSON with the keys of
+                         * its stand-in; null if no file was absent */
   hl_space space;       /* the scene's space, which is the space of the first volume that states one; later
                          * volumes are turned into it */
   bool projected;       /* whether the picture is a maximum projection */
@@ -96,11 +96,11 @@ typedef struct hl_mesh_shelf {
   hl_scene_mesh *meshes;
   double *floor_sizes; /* owned; [floor_count]; the sizes of the floors */
   size_t count;        /* number of meshes that are made */
-  size_t floor_count;  /* number of floors that are still to be made, after the camera is known, on which
-                        * their place depends; they follow the other meshes */
+  size_t floor_count;  /* number of floors. They follow the other meshes in the list. They are made when the
+                        * camera is known, because their place depends on the camera */
 } hl_mesh_shelf;
 
-/* Reads the array "meshes" of a scene. value: null if there is no such array. Of floors, only the properties
+/* Reads the array "meshes" of a scene. value: null if there is no such array. For floors, only the properties
  * are read. The shelf is released by hl_json_release_meshes(), also after a failure. */
 hl_status hl_json_read_meshes(hl_json_reader *reader, const json_t *value, hl_mesh_shelf *shelf);
 
@@ -138,7 +138,7 @@ hl_status hl_json_clear_function(hl_json_reader *reader, const hl_volume *volume
 
 /* The range of values over which a transfer function spreads. */
 typedef struct hl_json_range {
-  bool given; /* whether at least one key gives the range */
+  bool given; /* whether a key of the function gives the range */
   double ends[2];
   hl_range_scale scale;
 } hl_json_range;
@@ -148,9 +148,10 @@ typedef struct hl_json_range {
 hl_status hl_json_read_range(hl_json_reader *reader, const json_t *value, const hl_volume *volume,
                              hl_json_range *range);
 
-/* The facts on which the default of a transfer function depends: the volume, and how it is shown. */
+/* The facts on which the default of a transfer function depends: the volume, and the way in which it is
+ * shown. */
 typedef struct hl_function_subject {
-  /* the volume; null for a file that holds only a function; functions that depend on the voxels are then
+  /* the volume; null if a file holds only a function, so that functions that depend on the voxels are
    * refused */
   const hl_volume *volume;
   bool is_solid;  /* whether the volume is made of shapes; the default is then an opaque solid */
@@ -169,8 +170,8 @@ hl_status hl_json_read_plane(hl_json_reader *reader, const json_t *value, hl_fun
 
 /* Reads ParaView's colour map, an array of one object. The points are owned by *function. */
 hl_status hl_json_read_paraview(hl_json_reader *reader, const json_t *root, hl_transfer_function *function);
-/* Reads the object within ParaView's colour map: ColorSpace, HSVWrap, UseLogScale, RGBPoints and, where it
- * has opacities, Points. */
+/* Reads the object within ParaView's colour map: ColorSpace, HSVWrap, UseLogScale, RGBPoints and, if the
+ * object has opacities, Points. */
 hl_status hl_json_read_paraview_map(hl_json_reader *reader, const json_t *map,
                                     hl_transfer_function *function);
 

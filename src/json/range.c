@@ -1,5 +1,5 @@
-/* json/range.c - the range of values that a transfer function spreads over: data values or percentiles,
- * evenly or by logarithms. */
+/* json/range.c - reads the range of values over which a transfer function spreads: data values or
+ * percentiles, evenly or by logarithms. */
 #include <stdlib.h>
 #include <string.h>
 

@@ -1,4 +1,4 @@
-/* json/read.c - tools for strict readers of JSON. */
+/* json/read.c - gives tools to strict readers of JSON. */
 #include "json/read.h"
 
 #include <stdarg.h>
@@ -17,7 +17,7 @@ json_t *hl_json_copy(const json_t *value) {
   return NULL;
 }
 
-/* Advice for text that JSON does not allow but that is often written. */
+/* The advice for mistakes that are often made in JSON text. */
 static const char *mend_of_fault(const char *fault) {
   static const struct {
     const char *near, *mend;

@@ -1,9 +1,9 @@
-/* json/read.h - strict reading of JSON: values of the right type, no unknown keys, errors that name the
- * place.
+/* json/read.h - reads JSON strictly: it requires values of the right type, refuses unknown keys, and names
+ * the place of each error.
  *
- * A reader keeps its place in the text as a JSON pointer. Where a key is absent, getters do not change
- * their target: set targets to their defaults first. Every getter returns a status; stop at the first
- * error. */
+ * A reader keeps its place in the text as a JSON pointer. If a key is absent, getters do not change their
+ * target. The caller sets targets to their defaults first. Every getter returns a status, and the caller
+ * stops at the first error. */
 #ifndef HL_JSON_READ_H
 #define HL_JSON_READ_H
 
@@ -21,9 +21,9 @@ typedef struct hl_json_reader {
   const char *name;   /* the text's name in errors */
   const char *folder; /* the folder to which relative paths refer; may be null */
   hl_error *error;
-  const hl_scene_description
-      *like;       /* if it is not null, no file is opened: volumes and images are taken from this scene */
-  char place[400]; /* JSON pointer of the value that is being read */
+  const hl_scene_description *like; /* if it is not null, the reader opens no file, and takes volumes and
+                                     * images from this scene */
+  char place[400];                  /* JSON pointer of the value that is being read */
 } hl_json_reader;
 
 /* Parses a text. *root is owned by the caller (json_decref); a syntax error gives NAME:LINE:COLUMN. */

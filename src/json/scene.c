@@ -17,7 +17,7 @@
 #include "scene/scene.h"
 #include "scene/settings.h"
 
-/* Everything that is allocated while a scene is read. It is released at the end, also after a failure. */
+/* The memory that is allocated while a scene is read. It is released at the end, also after a failure. */
 typedef struct gathered {
   hl_scene_description description;
   hl_light *lights;         /* owned; [light_count]; the scene's lights */
@@ -54,8 +54,8 @@ static void release(hl_context *context, gathered *g) {
   hl_release(context, g->lights);
 }
 
-/* Checks whether settings are in their ranges. This is done early for settings on which reading the rest of
- * the scene depends. */
+/* Checks whether settings are in their ranges. This check comes early for the settings that are needed while
+ * the rest of the scene is read. */
 static hl_status check_settings(hl_json_reader *reader, hl_setting_kind kind, const void *object,
                                 const char *place) {
   hl_status status = hl_settings_check(kind, object, 0, place, reader->error);
@@ -76,7 +76,7 @@ static hl_status read_image(hl_json_reader *reader, const json_t *root, hl_scene
 
 static bool has(const json_t *object, const char *key) { return json_object_get(object, key) != NULL; }
 
-/* Refuses a key that would have no effect. */
+/* Refuses a key of the scene that would have no effect. */
 static hl_status refuse_key(hl_json_reader *reader, const json_t *object, const char *key, const char *mend) {
   return has(object, key) ? hl_json_fail(reader, HL_ERROR_INPUT, key, "%s", mend) : HL_OK;
 }

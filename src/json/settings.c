@@ -1,9 +1,8 @@
-/* json/settings.c - reading settings from JSON by the rows of their tables.
+/* json/settings.c - reads settings from JSON by the rows of their tables.
  *
  * Types and names are checked here; ranges are checked later, when a scene is created. Settings that may be a
  * whole number or a word are an exception. Their words are stored as numbers outside of the range, so that
- * the range of a number must be checked here.
- */
+ * the range of a number must be checked here. */
 #include "json/settings.h"
 
 #include <string.h>

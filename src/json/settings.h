@@ -1,4 +1,4 @@
-/* json/settings.h - reading settings from JSON by the rows of their tables. */
+/* json/settings.h - reads settings from JSON by the rows of their tables. */
 #ifndef HL_JSON_SETTINGS_H
 #define HL_JSON_SETTINGS_H
 
@@ -7,8 +7,7 @@
 #include "json/read.h"
 
 /* Checks that a value is an object whose keys are all in the table or in the null-terminated list `others`.
- * type: the type of the light or camera; only the keys of this type are allowed. -1: the keys of every type
- * are allowed. */
+ * type: the type of the light or camera, whose keys alone are allowed; -1 allows the keys of every type. */
 hl_status hl_json_settings_object(hl_json_reader *reader, const json_t *value, hl_setting_kind kind, int type,
                                   const char *const *others);
 

@@ -18,7 +18,7 @@ enum { DEFAULT_SIZE = 128, MOST_OCTAVES = 16, HIGHEST_N = 8 };
 static const char *const type_names[] = {"box",   "sphere", "cylinder", "capsule", "cone",
                                          "torus", "plane",  "orbital",  "group",   NULL};
 static const char *const operation_names[] = {"add", "subtract", "intersect", NULL};
-/* The names of the patterns, of which the first stands for HL_PATTERN_NOISE. */
+/* The names of the patterns. The first name stands for HL_PATTERN_NOISE. */
 static const char *const pattern_names[] = {"noise", "turbulence", NULL};
 
 #define PLACEMENT_KEYS "type", "name", "position", "rotate", "scale"
@@ -36,7 +36,8 @@ static const char *const keys_of_type[][16] = {
     [HL_SHAPE_GROUP] = {COMMON_KEYS, "shapes"},
 };
 
-/* The state of reading a list of shapes: the list, and the groups that contain it, the outermost first. */
+/* The state of reading a list of shapes: the list, and the groups that contain the list, beginning with the
+ * outermost group. */
 typedef struct reading {
   hl_json_reader *reader;
   const json_t *groups;

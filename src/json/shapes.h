@@ -1,4 +1,4 @@
-/* json/shapes.h - reading and writing volumes made of shapes. */
+/* json/shapes.h - reads and writes volumes that are made of shapes. */
 #ifndef HL_JSON_SHAPES_H
 #define HL_JSON_SHAPES_H
 

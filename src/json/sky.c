@@ -1,4 +1,4 @@
-/* json/sky.c - a scene's sky from JSON, with the image of an environment. */
+/* json/sky.c - reads a scene's sky from JSON, with the image of an environment. */
 #include "core/memory.h"
 #include "json/parts.h"
 #include "json/settings.h"

@@ -1,7 +1,8 @@
 /* json/text_writer.h - writes JSON text piece by piece, indented, with each member and element on a line of
  * its own.
  *
- * Numbers have as few digits as read back as the same double. A row of numbers stays on one line. */
+ * A number is written with the least number of digits from which the same double is read again. A row of
+ * numbers stays on one line. */
 #ifndef HL_JSON_TEXT_WRITER_H
 #define HL_JSON_TEXT_WRITER_H
 

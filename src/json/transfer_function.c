@@ -1,4 +1,5 @@
-/* json/transfer_function.c - a transfer function from JSON: points, a colormap, a preset or another file.
+/* json/transfer_function.c - reads a transfer function from JSON: points, a colormap, a preset or another
+ * file.
  *
  * The function starts as the named preset or file. If neither is named and no opacity is given, it starts as
  * the automatic function, or for volumes of shapes as an opaque solid. The points, the colormap and the
@@ -86,8 +87,8 @@ static hl_status read_plain_color(hl_json_reader *reader, const json_t *value,
   return hl_json_numbers(reader, value, "color", 3, point->color);
 }
 
-/* Makes the transfer function of an opaque solid. Its opacity is reached within one voxel's edge, so that
- * light enters the solid no deeper than this. */
+/* Makes the transfer function of an opaque solid. The full opacity is reached within the edge of one voxel,
+ * so that light does not enter the solid more deeply than one voxel. */
 static hl_status read_solid(hl_json_reader *reader, const hl_volume *volume, hl_transfer_function *function) {
   function->unit_distance = mat3_shortest_column(volume->index_to_world.linear);
   return set_solid_opacity(reader, solid_opacity, function);
@@ -142,8 +143,9 @@ static hl_status read_points(hl_json_reader *reader, const json_t *value, bool i
   return status;
 }
 
-/* Spreads the starting function over the range that `value` gives. Does nothing if `value` gives no range, or
- * gives a colormap, which is then spread over the range instead. */
+/* Spreads the starting function over the range that `value` gives. Does nothing if `value` gives no range.
+ * Also does nothing if `value` gives a colormap, because the colormap is then spread over the range
+ * instead. */
 static hl_status spread_start(hl_json_reader *reader, const json_t *value, hl_function_subject subject,
                               const hl_json_range *range, hl_transfer_function *function) {
   const hl_volume *volume = subject.volume;
@@ -181,7 +183,8 @@ static hl_status read_colormap(hl_json_reader *reader, const json_t *value, cons
   return status;
 }
 
-/* Takes opacity and unit_distance from the automatic function, for files that have only colours. */
+/* Takes opacity and unit_distance from the automatic function. This function is called for files that have
+ * only colours. */
 static hl_status take_automatic_opacity(hl_json_reader *reader, const hl_volume *volume,
                                         hl_transfer_function *function) {
   hl_transfer_function automatic;
@@ -278,7 +281,8 @@ hl_status hl_json_read_transfer_function(hl_json_reader *reader, const json_t *v
     if (status != HL_OK) hl_json_prefix(reader, reader->place);
     return status;
   }
-  /* in a file of its own, a function is the whole JSON text, so that errors name no key around it */
+  /* If a file holds a function alone, the function is the whole JSON text, so that errors name no key around
+   * it. */
   size_t mark = subject.volume != NULL ? hl_json_enter(reader, "transfer_function") : 0;
   hl_status status = read_members(reader, value, subject, function);
   if (status == HL_OK) hl_json_leave(reader, mark);

@@ -1,4 +1,5 @@
-/* json/volumes.c - one volume of a scene from JSON: its file, transform, material and transfer function. */
+/* json/volumes.c - reads one volume of a scene from JSON: its file, transform, material and transfer
+ * function. */
 #include <string.h>
 
 #include "core/context.h"
@@ -47,7 +48,7 @@ static const char *const volume_keys[] = {"name",
 
 #define GIVE_COMPONENT "give a number from 0 on, \"magnitude\", \"color\" or \"luminance\""
 
-/* The keys of a volume that say how its file is read. */
+/* The keys of a volume that are options for reading its file. */
 static const char *const of_file[] = {"array", "component", "time",    "channel",
                                       "level", "series",    "spacing", "smooth"};
 
@@ -63,8 +64,8 @@ static hl_status read_rotate(hl_json_reader *reader, const json_t *value, hl_set
   return status;
 }
 
-/* Reads "scale". It is one factor; for a volume it may also be three factors, along the axes of the volume's
- * own file. */
+/* Reads the key "scale". Its value is one factor. For a volume it may also be three factors, along the axes
+ * of the volume's own file. */
 static hl_status read_scale(hl_json_reader *reader, const json_t *value, hl_setting_kind kind, void *target) {
   const json_t *scale = json_object_get(value, "scale");
   bool three = kind == HL_SETTINGS_VOLUME;
@@ -121,8 +122,8 @@ static bool same_text(const char *a, const char *b) {
 }
 
 /* Finds a volume that was already made from this source; null if there is none. options: the options for
- * loading; for a file, they and the smoothing must be the same. options is null if the source is a text of
- * shapes. */
+ * loading; for a file, these options and the smoothing must be the same as for the earlier volume. options is
+ * null if the source is a text of shapes. */
 static const hl_loaded_volume *find_loaded(const hl_volume_shelf *shelf, const char *source,
                                            const hl_volume_load_options *options, double smooth) {
   for (size_t v = 0; v < shelf->count; v++) {
@@ -387,8 +388,8 @@ static bool is_solid(const hl_scene_volume *volume) {
   return volume->shapes != NULL && volume->volume->storage != HL_STORAGE_F32;
 }
 
-/* Chooses the shading where neither shading nor a transfer function is given: volumes that look like smoke
- * are shaded as media. */
+/* Chooses the shading of a volume for which neither shading nor a transfer function is given. Volumes that
+ * look like smoke are shaded as media. */
 static hl_status choose_shading(hl_json_reader *reader, const json_t *value, hl_scene_volume *volume) {
   if (json_object_get(value, "shading") != NULL || json_object_get(value, "transfer_function") != NULL ||
       volume->shapes != NULL)
@@ -406,7 +407,8 @@ static hl_status choose_shading(hl_json_reader *reader, const json_t *value, hl_
 static bool is_there(const hl_json_reader *reader, const char *file) {
   if (is_data(file) && reader->context->options.data_folder == NULL) return false;
   char *path = hl_json_path(reader, file);
-  /* if there is no memory for the path, the result is true: loading the file then reports the error */
+  /* If there is no memory for the path, the result is true, so that the load of the file reports the
+   * error. */
   bool there = path == NULL;
   for (size_t v = 0; !there && reader->like != NULL && v < reader->like->volume_count; v++)
     there = reader->like->volumes[v].file != NULL && strcmp(reader->like->volumes[v].file, path) == 0;
@@ -415,9 +417,9 @@ static bool is_there(const hl_json_reader *reader, const char *file) {
   return there;
 }
 
-/* A volume in JSON may name a stand-in for its file. Where the file is absent, *value becomes a copy of the
- * volume's JSON in which the keys of the stand-in replace those of the file. The copy is owned by the shelf.
- */
+/* A volume in JSON may name a stand-in for its file. If the file is absent, *value becomes a copy of the
+ * volume's JSON in which the keys of the stand-in replace those of the file. The copy is owned by the
+ * shelf. */
 static hl_status choose_stand_in(hl_json_reader *reader, const json_t **value, hl_volume_shelf *shelf) {
   const json_t *stand_in = json_object_get(*value, "stand_in");
   const char *file = NULL;

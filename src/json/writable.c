@@ -47,7 +47,7 @@ static hl_status check_volume(const hl_scene_volume *volume, size_t index, hl_er
                  index);
 }
 
-/* How many numbers the arrays of a mesh have. */
+/* The number of numbers in the arrays of a mesh. */
 static size_t numbers_of(const hl_mesh *mesh) {
   const hl_mesh_description *d = &mesh->description;
   return 3 * mesh->given_vertices + 3 * mesh->given_triangles + 4 * d->sphere_count + 4 * d->line_point_count;

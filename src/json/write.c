@@ -1,4 +1,4 @@
-/* json/write.c - writes a scene as JSON text that reads back as the same scene. */
+/* json/write.c - writes a scene as JSON text, from which the same scene is read again. */
 #define _GNU_SOURCE
 #include <stddef.h>
 #include <stdio.h>

@@ -44,7 +44,7 @@ static hl_status make_folder(held_scene *held, hl_error *error) {
   return status;
 }
 
-/* Adds a file that will be written in the folder. The page holds it, too. */
+/* Adds a file that will be written to the folder `held->folder`. The page will contain it, too. */
 static hl_status hold_new(held_scene *held, const char *stem, const char *ending, hl_error *error) {
   char name[HELD_NAME_BYTES];
   hl_status status = make_folder(held, error);
@@ -53,7 +53,7 @@ static hl_status hold_new(held_scene *held, const char *stem, const char *ending
   return hold(held, stem, ending, hl_path_join(held->context, held->folder, name), error);
 }
 
-/* Holds a file as it lies on the disk. */
+/* Adds a file that already lies on the disk. */
 static hl_status hold_as_it_is(held_scene *held, const char *stem, const char **file, hl_error *error) {
   if (*file == NULL || hl_file_kind(held->context, *file) != 'f')
     return hl_fail(error, HL_ERROR_INPUT, "%.200s: a page holds no folder, and no array, of colours: %s",
@@ -66,8 +66,8 @@ static hl_status hold_as_it_is(held_scene *held, const char *stem, const char **
 
 /* ---- volumes ---- */
 
-/* Writes voxels to a file, and reads the file again, so that the scene's text describes the volume as the
- * page will have it. */
+/* Writes voxels to a file, and reads the file again, so that the scene's text describes the volume that the
+ * page will have. */
 static hl_status write_voxels(held_scene *held, const char *stem, const hl_volume *voxels,
                               const hl_volume_save_options *options, hl_volume **read, const char **file,
                               hl_error *error) {

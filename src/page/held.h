@@ -1,4 +1,4 @@
-/* page/held.h - the content of a page: the scene's text, and the files that the text names. */
+/* page/held.h - collects the content of a page: the scene's text, and the files that the text names. */
 #ifndef HL_PAGE_HELD_H
 #define HL_PAGE_HELD_H
 
@@ -17,13 +17,14 @@ typedef struct held_file {
 
 typedef struct held_scene {
   hl_context *context;
-  char *folder;     /* owned; the folder for files that are written only for the page; null: not made yet */
+  char *folder;     /* owned; the folder for files that are written only for the page; null if it has not been
+                     * made yet */
   held_file *files; /* owned; [count] */
   size_t count, room;
   hl_scene_volume *volumes; /* owned; as the text has them */
   hl_light *lights;         /* owned */
-  hl_volume **made;         /* owned; [made_count]; the volumes that were written, as read again from their
-                             * new files */
+  hl_volume **made;         /* owned; [made_count]; the volumes that were written, and were then read again
+                             * from their new files */
   size_t made_count;
   char *text; /* owned; hl_text_release() */
 } held_scene;

@@ -1,5 +1,5 @@
-/* page/page.c - see halflight/page.h. The page's own script unpacks what its elements hold
- * (src/web/page/parts.js). */
+/* page/page.c - writes a page that shows a scene without a server (halflight/page.h). The page's own script
+ * unpacks the files in the page's elements (src/web/page/parts.js). */
 #define _GNU_SOURCE
 #include <halflight/page.h>
 

@@ -1,4 +1,4 @@
-/* page/seen.c - see seen.h.
+/* page/seen.c - finds the box of a volume outside which nothing is visible.
  *
  * Along each axis, planes of voxels in which nothing shows are left out at both ends. A plane shows something
  * if any value is visible between the least and the greatest voxel of the plane and its neighbours. The field
@@ -52,7 +52,8 @@ static bool shows(const hl_scene_volume *volume, double low, double high) {
 /* ---- planes of voxels ---- */
 
 typedef struct plane_range {
-  double low, high; /* the least and the greatest finite voxel; low > high: no voxel is finite */
+  double low, high; /* the least and the greatest finite value of the voxels; low > high if no voxel is
+                     * finite */
 } plane_range;
 
 static void widen(plane_range *range, double value) {
@@ -60,8 +61,8 @@ static void widen(plane_range *range, double value) {
   range->high = fmax(range->high, value);
 }
 
-/* Finds the ranges of the values in all planes: first the planes along i, then those along j and k. *bytes:
- * whether all values are whole numbers from 0 to 255. */
+/* Finds the ranges of the values in all planes: first the planes along i, then the planes along j and k.
+ * *bytes: whether all values are whole numbers from 0 to 255. */
 static hl_status find_ranges(hl_context *context, const hl_scene_volume *volume, const size_t n[3],
                              plane_range *ranges, bool *bytes, hl_error *error) {
   plane_range *of_i = ranges, *of_j = of_i + n[0], *of_k = of_j + n[1];

@@ -1,5 +1,5 @@
-/* page/seen.h - the box of a volume outside which nothing is visible, and the smallest type of voxel that
- * holds its values exactly. */
+/* page/seen.h - finds the box of a volume outside which nothing is visible, and the smallest type of voxel
+ * that holds the volume's values exactly. */
 #ifndef HL_PAGE_SEEN_H
 #define HL_PAGE_SEEN_H
 

@@ -1,4 +1,4 @@
-/* platform/byte_stream.h - a stream of the C library whose bytes go to functions of the caller. */
+/* platform/byte_stream.h - opens a stream of the C library whose bytes go to functions of the caller. */
 #ifndef HL_PLATFORM_BYTE_STREAM_H
 #define HL_PLATFORM_BYTE_STREAM_H
 
@@ -9,8 +9,8 @@
 
 typedef struct hl_byte_stream {
   void *data;
-  /* Reads or writes bytes at the stream's position, and moves the position. Returns false, with errno set, if
-   * it cannot. */
+  /* Reads or writes bytes at the stream's position, and moves the position. Returns false, with errno set, on
+   * failure. */
   bool (*write)(void *data, const char *bytes, size_t length);
   /* Moves the stream's position, as fseek() does. Returns the new position; -1 if it would lie before the
    * beginning. */

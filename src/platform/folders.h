@@ -1,4 +1,4 @@
-/* platform/folders.h - folders that a program keeps for its user. */
+/* platform/folders.h - makes folders that a program keeps for its user. */
 #ifndef HL_PLATFORM_FOLDERS_H
 #define HL_PLATFORM_FOLDERS_H
 

@@ -1,11 +1,11 @@
-/* platform/memory.h - the machine's memory, and blocks of memory at aligned addresses. */
+/* platform/memory.h - finds the size of the machine's memory, and allocates memory at aligned addresses. */
 #ifndef HL_PLATFORM_MEMORY_H
 #define HL_PLATFORM_MEMORY_H
 
 #include <stddef.h>
 #include <stdint.h>
 
-/* The number of bytes of the machine's memory; 0: unknown. */
+/* The number of bytes of the machine's memory; 0 if it is unknown. */
 uint64_t hl_machine_memory(void);
 
 /* Allocates memory whose address is a multiple of the alignment. bytes: a multiple of the alignment, which

@@ -1,4 +1,5 @@
-/* platform/nameless_file.h - files that are gone when they are closed, or when the process ends. */
+/* platform/nameless_file.h - makes files that the system deletes when they are closed, or when the process
+ * ends. */
 #ifndef HL_PLATFORM_NAMELESS_FILE_H
 #define HL_PLATFORM_NAMELESS_FILE_H
 

@@ -1,4 +1,4 @@
-/* platform/paths.h - which names of files are absolute, and the folder of temporary files. */
+/* platform/paths.h - tests whether names of files are absolute, and finds the folder of temporary files. */
 #ifndef HL_PLATFORM_PATHS_H
 #define HL_PLATFORM_PATHS_H
 

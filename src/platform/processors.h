@@ -1,4 +1,4 @@
-/* platform/processors.h - how many processors this process may use. */
+/* platform/processors.h - finds the number of processors that this process may use. */
 #ifndef HL_PLATFORM_PROCESSORS_H
 #define HL_PLATFORM_PROCESSORS_H
 
@@ -9,7 +9,7 @@
 int hl_cpu_count(void);
 
 /* The processor time that the control groups of this process allow, as a number of processors. It is read
- * from cpu.max (version 2) or cpu.cfs_quota_us (version 1). Infinite where the groups set no limit. root: a
+ * from cpu.max (version 2) or cpu.cfs_quota_us (version 1). Infinite if the groups set no limit. root: a
  * folder put before /proc and /sys; "" except in tests. */
 double hl_cpu_quota(const char *root);
 

@@ -1,4 +1,4 @@
-/* platform/program.h - what a program does before everything else. */
+/* platform/program.h - prepares the arguments and the standard streams at the start of a program. */
 #ifndef HL_PLATFORM_PROGRAM_H
 #define HL_PLATFORM_PROGRAM_H
 

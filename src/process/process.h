@@ -1,5 +1,5 @@
-/* process/process.h - runs another program as a child process: starts it without a shell, waits for it, ends
- * it. */
+/* process/process.h - runs another program as a child process. The functions start the child without a shell,
+ * wait for the child, and end it. */
 #ifndef HL_PROCESS_PROCESS_H
 #define HL_PROCESS_PROCESS_H
 
@@ -29,8 +29,8 @@ void process_limit(const process *p, uint64_t memory, uint64_t file);
 /* Waits until the child ends by itself. Returns whether the child succeeded. */
 bool process_wait(process *p);
 
-/* Finds out, without waiting, whether the child has ended. If it has, *succeeded says whether it succeeded.
- */
+/* Finds out, without waiting, whether the child has ended. If the child has ended, *succeeded says whether it
+ * succeeded. */
 bool process_has_ended(process *p, bool *succeeded);
 
 /* Copies the first line that the child wrote to standard error, or "NAME has failed" if it wrote nothing. */

@@ -15,8 +15,8 @@ enum { STREAMS = 3 };
 /* ---- the command line ---- */
 
 /* Writes a word into the command line from `at` on, in quotes. When the child's C library splits the line
- * again, two backslashes before a quote stand for one. Returns the position after the word. text: null: the
- * characters are only counted. */
+ * again, two backslashes before a quote stand for one. Returns the position after the word. text: if null,
+ * the characters are only counted. */
 static size_t append_word(wchar_t *text, size_t at, const wchar_t *word) {
   size_t slashes = 0;
 #define PUT(c) (text != NULL ? (void)(text[at] = (c)) : (void)0, at++)
@@ -46,7 +46,7 @@ static wchar_t *wide_of(const char *text) {
   return wide;
 }
 
-/* Joins the words to one text, which the caller frees; null without memory. */
+/* Joins the words to one text, which the caller frees. Returns null if memory is short. */
 static wchar_t *command_line(const char *const *words) {
   wchar_t *line = NULL;
   size_t length = 0;

@@ -15,12 +15,12 @@ enum { FETCHES = 8, REPLIES = 8 };
 
 /* A request for a part of another rank's block. */
 typedef struct block_request {
-  uint64_t id, from, tag; /* id: number of the array of blocks; from: the rank that asks; tag: the tag of the
-                           * reply */
+  uint64_t id, from, tag; /* id: number of the array of blocks; from: the rank that sends the request; tag:
+                           * the tag of the reply */
   hl_box box;             /* the wanted part, in indices of the block of the rank that is asked */
 } block_request;
 
-/* An answer that is on its way. */
+/* An answer that has been sent, and that may not have arrived yet. */
 typedef struct block_reply {
   unsigned char *bytes; /* a part of memory that the hl_blocks owns */
   mpi_handle request;
@@ -39,7 +39,7 @@ typedef struct block_fetch {
 
 struct hl_blocks {
   hl_ranks *ranks;
-  hl_blocks *next; /* next one in the server's list */
+  hl_blocks *next; /* the next array of blocks in the server's list */
   uint64_t id;     /* number of this array of blocks, the same on all ranks */
   hl_blocks_shape shape;
   hl_block_source source;
@@ -48,7 +48,8 @@ struct hl_blocks {
   block_fetch fetch[FETCHES];
   pthread_mutex_t lock;
   pthread_cond_t freed;       /* signalled when a fetch ends */
-  block_reply reply[REPLIES]; /* used in turn, by the thread that holds ranks->calling */
+  block_reply reply[REPLIES]; /* the answers, which are used in turn by the thread that holds
+                               * ranks->calling */
   int turn;
 };
 
@@ -87,10 +88,11 @@ static hl_blocks *blocks_with(const struct hl_block_server *server, uint64_t id)
   return blocks;
 }
 
-/* Sends the elements that a request asks for. The caller holds `calling`. */
+/* Sends the elements that a request wants. The caller must hold the lock ranks->calling. */
 static void answer(hl_ranks *ranks, const block_request *asked) {
   hl_blocks *blocks = blocks_with(ranks->server, asked->id);
-  if (blocks == NULL) return; /* blocks are missing only if this rank has failed: the job is about to end */
+  /* An array of blocks is missing only if this rank has failed, so that the job is about to end. */
+  if (blocks == NULL) return;
   block_reply *reply = &blocks->reply[blocks->turn++ % REPLIES];
   for (int done = !reply->sent; !done;) ranks->mpi.calls->test(&ranks->mpi, &reply->request, &done);
   blocks->source.copy(blocks->source.data, &asked->box, reply->bytes);
@@ -100,7 +102,7 @@ static void answer(hl_ranks *ranks, const block_request *asked) {
   reply->sent = true;
 }
 
-/* Answers one waiting request. Returns false if none is waiting. */
+/* Answers one waiting request. Returns false if no request is waiting. */
 static bool serve(hl_ranks *ranks) {
   int any = 0;
   block_request asked;
@@ -116,7 +118,8 @@ static bool serve(hl_ranks *ranks) {
 
 static void *run_server(void *data) {
   hl_ranks *ranks = data;
-  prctl(PR_SET_TIMERSLACK, 1000UL, 0UL, 0UL, 0UL); /* without this, each pause may last 50 us longer */
+  prctl(PR_SET_TIMERSLACK, 1000UL, 0UL, 0UL, 0UL); /* without this call, each pause may last 50 microseconds
+                                                    * longer */
   for (int asked = 0; !atomic_load(&ranks->server->stopped);) {
     asked = serve(ranks) ? 0 : asked + (asked < INT32_MAX);
     if (asked > 0) hl_ranks_pause(asked);
@@ -258,7 +261,7 @@ void hl_blocks_release(hl_blocks *blocks, bool together) {
 
 /* ---- fetching ---- */
 
-/* Takes one of the fetches for the calling thread; waits until one is free. */
+/* Reserves one of the fetches for the calling thread. Waits until one of them is free. */
 static block_fetch *begin_fetch(hl_blocks *blocks) {
   block_fetch *fetch = NULL;
   pthread_mutex_lock(&blocks->lock);

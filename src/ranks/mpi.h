@@ -1,5 +1,5 @@
-/* ranks/mpi.h - the calls of MPI that ranks need. The library, Open MPI's or MPICH's, is loaded when ranks
- * are asked for.
+/* ranks/mpi.h - declares the calls of MPI that ranks need. The library, Open MPI's or MPICH's, is loaded when
+ * ranks are asked for.
  *
  * The two libraries differ in their handles and constants. Handles of Open MPI are addresses of objects;
  * handles of MPICH, and of libraries that share its binary interface (Intel MPI, MVAPICH), are numbers. By
@@ -45,8 +45,8 @@ typedef enum mpi_function {
 
 typedef struct mpi mpi;
 
-/* The calls that take handles. Calls that set a request return at once; test() tells when the request is
- * done. */
+/* The calls of MPI that take handles. Calls that set a request return immediately, and test() finds out
+ * whether the request is done. */
 typedef struct mpi_calls {
   mpi_handle (*handle)(void *communicator); /* converts the argument of hl_ranks_join() */
   int (*abort)(const mpi *mpi, int code);
@@ -68,7 +68,7 @@ typedef struct mpi_calls {
   int (*sum_floats)(const mpi *mpi, float *values, int count, bool first, mpi_handle *request);
 } mpi_calls;
 
-/* A loaded MPI library. The library is never unloaded, as it may have threads of its own. */
+/* A loaded MPI library. The library is never unloaded, because it may have threads of its own. */
 struct mpi {
   const char *name; /* the library's name: "Open MPI" or "MPICH" */
   const mpi_calls *calls;
@@ -82,9 +82,11 @@ struct mpi {
 /* A library's properties that are known before it is loaded. */
 typedef struct mpi_library {
   const char *name;
-  const char *files[2]; /* file names of the library that the system's loader knows; the second may be null */
+  const char *files[2]; /* file names by which the system's loader finds the library; the second name may be
+                         * null */
   const mpi_calls *calls;
-  /* Sets the handles. library: the result of dlopen(). False if the file is no library of this kind. */
+  /* Sets the handles. library: the result of dlopen(). Returns false if the file is no library of this
+   * kind. */
   bool (*set_handles)(void *library, mpi *mpi);
 } mpi_library;
 

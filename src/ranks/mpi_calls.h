@@ -1,5 +1,5 @@
-/* ranks/mpi_calls.h - the calls of mpi.h, written once for both libraries; included by a file that defines
- *
+/* ranks/mpi_calls.h - implements the calls of mpi.h once for both libraries. The file that includes this
+ * header defines
  *
  *     MPI_HANDLE        the type of the library's handles
  *     HANDLE(handle)    the member of an mpi_handle with that type

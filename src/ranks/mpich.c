@@ -1,5 +1,5 @@
-/* ranks/mpich.c - MPICH's handles and constants (the header of MPICH 4.0; its binary interface is the same
- * since 3.1, and Intel MPI and MVAPICH share it). */
+/* ranks/mpich.c - defines MPICH's handles and constants. The source is the header of MPICH 4.0. Its binary
+ * interface is the same since 3.1, and Intel MPI and MVAPICH share it. */
 #define _GNU_SOURCE
 #include <dlfcn.h>
 #include <stddef.h>
@@ -13,7 +13,7 @@
 #define MPI_STATUS_IGNORE ((void *)1)
 #include "ranks/mpi_calls.h"
 
-/* libmpi.so.12 is also the name of the library of an old Open MPI, which has other handles. */
+/* The library of an old Open MPI, which has other handles, is also named libmpi.so.12. */
 static bool set_handles(void *library, mpi *mpi) {
   mpi->world.number = 0x44000000;
   mpi->byte.number = 0x4c00010d;

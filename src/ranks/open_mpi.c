@@ -1,5 +1,5 @@
-/* ranks/open_mpi.c - Open MPI's handles and constants (the header of Open MPI 4.1; 5 shares its interface).
- */
+/* ranks/open_mpi.c - defines Open MPI's handles and constants. The source is the header of Open MPI 4.1,
+ * whose interface Open MPI 5 shares. */
 #define _GNU_SOURCE
 #include <dlfcn.h>
 #include <stddef.h>

@@ -133,7 +133,7 @@ static hl_status start(hl_ranks *ranks, bool alone, hl_error *error) {
   if (!running && !alone)
     return hl_fail(error, HL_ERROR_UNSUPPORTED, "hl_ranks_join: MPI is not started: call MPI_Init_thread()");
   if (running)
-    needed = MPI_MULTIPLE; /* the caller has started MPI; it may call MPI while a thread of this library
+    needed = MPI_MULTIPLE; /* the caller has started MPI, and may call MPI while a thread of this library
                             * answers requests */
   int result = running ? hl_mpi_query_thread(mpi, &given) : hl_mpi_init_thread(mpi, needed, &given);
   if (result != 0) return hl_fail(error, HL_ERROR_UNSUPPORTED, "%s does not start", mpi->name);

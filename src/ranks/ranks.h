@@ -1,4 +1,5 @@
-/* ranks/ranks.h - the inside of hl_ranks: MPI's calls, one at a time, and the collective operations.
+/* ranks/ranks.h - defines the members of hl_ranks, makes MPI's calls one at a time, and implements the
+ * collective operations.
  *
  * Threads take turns in calling MPI (`calling`), and no call waits within MPI. A rank that waits for other
  * ranks (for the end of a collective operation, or for voxels) tests its requests again and again. Between
@@ -24,8 +25,8 @@ struct hl_ranks {
   pthread_mutex_t calling;               /* held during each call of MPI */
   struct hl_block_server *server;        /* owned (blocks.h); null if no blocks are shared */
   atomic_uint_least64_t bytes, requests; /* received from other ranks */
-  atomic_uint_least64_t nanoseconds;     /* sum of the times for which threads waited for bytes from other
-                                          * ranks */
+  atomic_uint_least64_t nanoseconds;     /* the sum of the times during which threads waited for bytes from
+                                          * other ranks */
 };
 
 /* Waits until a request is done. Other threads can call MPI meanwhile. */

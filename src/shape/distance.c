@@ -1,4 +1,5 @@
-/* shape/distance.c - signed distances of shapes and groups, and bounds of these distances over a ball.
+/* shape/distance.c - computes the signed distances of shapes and groups, and bounds of these distances over a
+ * ball.
  *
  * The distances of single shapes are exact (after I. Quilez, "Distance functions"), so that within a ball of
  * radius r the distance differs by at most r from the distance at the ball's centre. Joints are monotone in
@@ -73,7 +74,7 @@ static double solid_distance(const hl_shape *shape, vec3 p) {
   return INFINITY;
 }
 
-/* The smaller of two distances. The result is rounded where the two differ by less than k (Quilez, "Smooth
+/* The smaller of two distances. The result is rounded if the two differ by less than k (Quilez, "Smooth
  * minimum", quadratic). */
 static double smooth_minimum(double a, double b, double k) {
   double h = k > 0 ? above(k - fabs(a - b)) / k : 0;

@@ -1,4 +1,4 @@
-/* shape/elementary.h - exp, log, sine and cosine from plain arithmetic.
+/* shape/elementary.h - computes exp, log, sine and cosine by plain arithmetic.
  *
  * The C library's functions differ between machines in their last bits, but shapes must have the same bytes
  * everywhere. The functions here are accurate to a few units in the last place. */

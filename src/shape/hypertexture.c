@@ -1,4 +1,5 @@
-/* shape/hypertexture.c - hypertexture: noise that moves the surface of a shape and makes it soft.
+/* shape/hypertexture.c - computes hypertexture, which is noise that moves the surface of a shape and makes it
+ * soft.
  *
  * Derived from Perlin and Hoffert's (1989) D(x (1 + hl_turbulence(x))): the distance from the surface grows
  * by amplitude times the pattern's value, and the density then falls from 1 to 0 over the length `soft` about

@@ -1,4 +1,4 @@
-/* shape/noise.h - Perlin's gradient noise and hypertexture's functions of it. */
+/* shape/noise.h - computes Perlin's gradient noise, and the functions of noise that hypertexture needs. */
 #ifndef HL_SHAPE_NOISE_H
 #define HL_SHAPE_NOISE_H
 

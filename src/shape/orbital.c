@@ -1,4 +1,4 @@
-/* shape/orbital.c - the real wave functions of an electron about a nucleus.
+/* shape/orbital.c - computes the real wave functions of an electron about a nucleus.
  *
  * psi_nlm = e^(-rho / 2) rho^l L_(n-l-1)^(2l+1)(rho) Y_lm, rho = 2 r / (n a): hydrogen's bound states with
  * the real spherical harmonics, cosines for m >= 0 and sines for m < 0. The Bohr radius is a = radius / (n (2
@@ -32,7 +32,7 @@ static double legendre_over_sine(int l, int m, double c) {
   return value;
 }
 
-/* The real part of (x + i y)^abs(m) where m >= 0, else the imaginary part. */
+/* The real part of (x + i y)^abs(m) if m >= 0, else the imaginary part. */
 static double around_axis(int m, double x, double y) {
   double real = 1, imaginary = 0;
   for (int k = 0; k < (m < 0 ? -m : m); k++) {

@@ -1,4 +1,4 @@
-/* shape/place.c - where shapes are: their frames, the box around them, the grid that holds them. */
+/* shape/place.c - places shapes: finds their frames, the box around them, and the grid that holds them. */
 #include <math.h>
 
 #include "shape/elementary.h"
@@ -45,8 +45,8 @@ static void place(hl_shape_list *list, size_t first, size_t end, double parent_s
 
 void hl_shapes_place(hl_shape_list *list, double voxel_size) { place(list, 0, list->count, 1, voxel_size); }
 
-/* How far a disk reaches in the direction u. The disk has a given radius, and is perpendicular to the unit
- * vector `axis`. */
+/* The distance from a disk's middle to the disk's farthest point in the direction u. The disk has a given
+ * radius, and is perpendicular to the unit vector `axis`. */
 static double disk_reach(double radius, vec3 axis, vec3 u) {
   double along = vec3_dot(axis, u), square = vec3_dot(u, u) - along * along;
   return radius * sqrt(square > 0 ? square : 0);
@@ -86,8 +86,8 @@ static double reach(const hl_shape_list *list, size_t first, size_t end, vec3 u)
     vec3 local = vec3_scale(mat3_apply(shape->to_local.linear, u), shape->scale * shape->scale);
     double own = shape->type == HL_SHAPE_GROUP ? reach(list, index + 1, shape->end, local)
                                                : solid_reach(shape, local);
-    double growth = shape->blend / (4 * shape->scale); /* by this length, a rounded joint and a texture may
-                                                        * extend the shape */
+    double growth = shape->blend / (4 * shape->scale); /* a rounded joint and a texture may extend the shape
+                                                        * by this length */
     if (shape->texture.pattern != HL_PATTERN_NONE)
       growth += shape->texture.soft / 2 + fmax(-shape->texture.amplitude, 0);
     own += growth * vec3_length(local) + vec3_dot(u, vec3_of(shape->position));

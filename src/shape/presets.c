@@ -1,4 +1,5 @@
-/* shape/presets.c - ready-made shapes, each a JSON text that hl_volume_from_shapes() reads. */
+/* shape/presets.c - defines ready-made shapes. Each of them is a JSON text that hl_volume_from_shapes()
+ * reads. */
 #include <halflight/shape.h>
 
 #include <string.h>

@@ -1,4 +1,4 @@
-/* shape/sample.c - from a list of shapes to voxels.
+/* shape/sample.c - samples a list of shapes into voxels.
  *
  * Blocks of 8x8x8 voxels are sampled in parallel. Most blocks are far from every surface. Bounds of the
  * distance over a block tell this before any of its voxels is sampled. Densities are stored in 16 bits,

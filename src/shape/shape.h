@@ -1,9 +1,11 @@
-/* shape/shape.h - solids from signed distances, hypertexture and orbitals, sampled into a volume.
+/* shape/shape.h - describes solids by signed distances, hypertexture and orbitals, and samples them into a
+ * volume.
  *
- * A list of shapes is a tree in one array: a group is followed by its members. Each shape has its own frame:
- * scaled, then turned, then moved into the frame of its group, or of the volume. Solids have a density: 1
- * inside, 0 outside and 0.5 on the surface. Across the surface the density is linear in the distance, over
- * HL_SHAPE_EDGE voxels. So kernels that reproduce linear functions reconstruct a flat surface exactly. */
+ * A list of shapes is a tree in one array: a group is followed by its members. Each shape has its own frame.
+ * The shape is scaled, then turned, and then moved into the frame of its group, or into the frame of the
+ * volume. Solids have a density: 1 inside, 0 outside and 0.5 on the surface. Across the surface the density
+ * is linear in the distance, over HL_SHAPE_EDGE voxels. So kernels that reproduce linear functions
+ * reconstruct a flat surface exactly. */
 #ifndef HL_SHAPE_SHAPE_H
 #define HL_SHAPE_SHAPE_H
 
@@ -30,7 +32,7 @@ typedef enum hl_shape_type {
   HL_SHAPE_GROUP = 8
 } hl_shape_type;
 
-/* How a shape is joined to the shapes before it in its list. */
+/* The operation that joins a shape to the shapes before it in its list. */
 typedef enum hl_shape_operation {
   HL_SHAPE_ADD = 0,
   HL_SHAPE_SUBTRACT = 1,
@@ -50,26 +52,27 @@ typedef struct hl_hypertexture {
   double frequency; /* number of cells of the noise per unit of length */
   int octaves;
   double bias, gain; /* bias and gain of the pattern's value, 0 to 1 */
-  double
-      amplitude; /* depth by which the surface recedes where the pattern's value is 1; negative: it grows */
-  double soft;   /* length over which the density falls from 1 to 0; 0: HL_SHAPE_EDGE voxels */
-  int strands;   /* for fur: along a normal, the pattern has everywhere the value that it has where the normal
-                  * meets the surface */
+  double amplitude;  /* depth by which the surface recedes at places where the pattern's value is 1; a
+                      * negative depth moves the surface outwards */
+  double soft;       /* length over which the density falls from 1 to 0; 0 stands for HL_SHAPE_EDGE voxels */
+  int strands;       /* whether the texture is fur: the pattern then has the same value along the whole of a
+                      * normal, which is its value at the point where the normal meets the surface */
   hl_noise noise;
 } hl_hypertexture;
 
 typedef struct hl_shape {
   hl_shape_type type;
   hl_shape_operation operation;
-  double blend; /* length over which the joint with the earlier shapes is rounded; 0: the joint is sharp */
+  double blend; /* length over which the joint with the earlier shapes is rounded; 0 for a sharp joint */
   double position[3];
   double rotate_axis[3];
   double rotate_angle_deg;
   double scale;
   double size[3];        /* for a box: its full edges; for a plane: x, y and thickness */
   double from[3], to[3]; /* for a cylinder, a capsule and a cone: the ends of the axis */
-  double radius;         /* radius of a sphere; of a torus, to the tube's middle; of an orbital, where it is
-                          * cut off; of a cone, at `from` */
+  double radius;         /* the radius of a sphere; for a torus, the radius of the circle in the tube's
+                          * middle; for an orbital, the radius at which it is cut off; for a cone, the radius
+                          * at `from` */
   double end_radius;     /* for a cone: the radius at `to` */
   double tube_radius;    /* for a torus: the radius of the tube */
   double rounding;       /* for a box, a plane and a cylinder: the radius of the rounded edges; the size
@@ -113,8 +116,8 @@ typedef struct hl_interval {
 } hl_interval;
 
 /* The signed distance of p, a point of the volume's frame, from the surface of all shapes: negative inside,
- * clamped to half of `edge` both ways. live: [count], from hl_shapes_bounds(): the shapes that count; null:
- * all shapes count. */
+ * clamped to half of `edge` both ways. live: [count], from hl_shapes_bounds(): for each shape, whether it can
+ * affect the distance; if null, all shapes are used. */
 double hl_shapes_distance(const hl_shape_list *list, const unsigned char *live, vec3 p);
 
 /* Finds bounds of hl_shapes_distance() for all points within `radius` of p. live: [count]; receives whether

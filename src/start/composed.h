@@ -1,4 +1,4 @@
-/* start/composed.h - a scene that a page has sent, with the choices that it asks for by name. */
+/* start/composed.h - applies the choices that a page has made by name to the scene that the page has sent. */
 #ifndef HL_START_COMPOSED_H
 #define HL_START_COMPOSED_H
 

@@ -13,7 +13,8 @@ hl_status frame_anew(hl_scene_description *description, hl_error *error) {
   return status == HL_OK ? hl_camera_frame_view(description, &view, 1, &description->camera, error) : status;
 }
 
-/* Gives meshes with the first standard colour, which is that of volumes and their surfaces, a grey blue. */
+/* Gives a grey blue to meshes that have the first standard colour, because volumes and their surfaces have
+ * that colour. */
 static void set_apart(hl_scene_mesh *meshes, size_t count) {
   static const double grey_blue[3] = {0.24, 0.33, 0.45};
   double first[3];
@@ -78,7 +79,7 @@ hl_status join_meshes(hl_context *context, const hl_scene_mesh *added, size_t co
 
 /* ---- scenes ---- */
 
-/* Adds meshes to a scene. A mesh with the first standard colour gets the one that belongs to its place in the
+/* Adds meshes to a scene. A mesh with the first standard colour gets the standard colour of its place in the
  * list instead. */
 static hl_status join_colored(hl_context *context, const hl_scene_mesh *meshes, size_t count,
                               hl_scene **scene, hl_error *error) {

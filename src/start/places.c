@@ -22,7 +22,7 @@ static bool fits_floats(const double *values, size_t count) {
   return true;
 }
 
-/* Turns doubles into floats, and moves the floats together at the front of the same memory. */
+/* Converts doubles to floats, which are stored one after the other at the beginning of the same memory. */
 static void pack_floats(double *values, size_t count) {
   unsigned char *bytes = (unsigned char *)values;
   for (size_t n = 0; n < count; n++) {

@@ -1,4 +1,4 @@
-/* start/start.c - the text that a page loads first: the scene, its volumes, and lists of presets and
+/* start/start.c - writes the text that a page loads first: the scene, its volumes, and lists of presets and
  * colormaps. */
 #define _GNU_SOURCE
 #include "start.h"
@@ -65,8 +65,8 @@ static void put_histogram(FILE *out, const hl_volume_info *info) {
   fputc(']', out);
 }
 
-/* Writes the range and the histogram of the values before they were smoothed, which slices show; null if the
- * volume's values are these. */
+/* Writes the range and the histogram of the values before smoothing, which slices show. Writes null if the
+ * volume was not smoothed. */
 static void put_unsmoothed(FILE *out, const hl_volume *volume) {
   hl_volume_info info = {.struct_size = sizeof info};
   fputs(",\"unsmoothed\":", out);
@@ -79,7 +79,8 @@ static void put_unsmoothed(FILE *out, const hl_volume *volume) {
   fputc('}', out);
 }
 
-/* Writes how many chunks of the volume and of its mask a server lacks, and how many there are. */
+/* Writes two numbers about the chunks of the volume and of its mask: the number of chunks that the server
+ * lacks, and the number of all chunks. */
 static void put_absence(FILE *out, const hl_scene_volume *volume) {
   size_t chunks = 0, of_mask = 0;
   size_t absent = hl_volume_absent_chunks(volume->volume, &chunks);

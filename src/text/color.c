@@ -1,9 +1,8 @@
-/* text/color.c - colours as text.
+/* text/color.c - reads colours from text.
  *
  * Numbers are linear RGB, as in scene files. #rgb, #rrggbb and the names of CSS (CSS Color Module Level 4,
- * section 6.1) are sRGB: they are decoded (IEC 61966-2-1), so that a .png shows the very colour that was
- * named.
- */
+ * section 6.1) are sRGB: they are decoded (IEC 61966-2-1), so that a .png file has exactly the colour that
+ * was named. */
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>

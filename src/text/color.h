@@ -1,4 +1,4 @@
-/* text/color.h - colours as text: numbers, #rrggbb and the names of CSS. */
+/* text/color.h - reads colours from text: numbers, #rrggbb and the names of CSS. */
 #ifndef HL_TEXT_COLOR_H
 #define HL_TEXT_COLOR_H
 

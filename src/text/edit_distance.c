@@ -1,4 +1,5 @@
-/* text/edit_distance.c - optimal string alignment distance (Damerau 1964, each part edited once). */
+/* text/edit_distance.c - computes the optimal string alignment distance (Damerau 1964), in which each part of
+ * a text is edited at most once. */
 #define _GNU_SOURCE /* for strnlen() */
 #include "text/edit_distance.h"
 
@@ -58,7 +59,8 @@ const char *hl_nearest_candidate(const char *text, const char *(*candidate)(cons
                                  const void *data) {
   size_t length = strlen(text);
   const char *best = NULL, *name;
-  size_t best_distance = 2 + length / 4; /* farther names are not suggested, as they would only confuse */
+  size_t best_distance = 2 + length / 4; /* names at greater distances are not suggested, because they would
+                                          * only confuse */
   if (length > HL_EDIT_LONGEST) return NULL;
   for (size_t i = 0; (name = candidate(data, i)) != NULL; i++) {
     bool part_of_it = length >= 3 && strstr(name, text) != NULL;

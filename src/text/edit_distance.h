@@ -1,4 +1,4 @@
-/* text/edit_distance.h - how far apart two names are, for suggestions about mistyped ones. */
+/* text/edit_distance.h - computes the distance between two names, for suggestions about mistyped names. */
 #ifndef HL_TEXT_EDIT_DISTANCE_H
 #define HL_TEXT_EDIT_DISTANCE_H
 

@@ -1,4 +1,5 @@
-/* text/hash.h - FNV-1a of 64 bits (Fowler, Noll, Vo), byte by byte: the same number on every machine. */
+/* text/hash.h - computes the hash FNV-1a of 64 bits (Fowler, Noll, Vo), byte by byte. The number is the same
+ * on every machine. */
 #ifndef HL_TEXT_HASH_H
 #define HL_TEXT_HASH_H
 

@@ -1,4 +1,4 @@
-/* text/json_value.c - numbers and texts as JSON (RFC 8259) writes them. */
+/* text/json_value.c - writes numbers and texts in the form of JSON (RFC 8259). */
 #include "text/json_value.h"
 #include "text/plain.h"
 

@@ -1,4 +1,4 @@
-/* text/json_value.h - numbers and texts as JSON writes them. */
+/* text/json_value.h - writes numbers and texts in the form of JSON. */
 #ifndef HL_TEXT_JSON_VALUE_H
 #define HL_TEXT_JSON_VALUE_H
 
@@ -6,8 +6,8 @@
 
 enum { HL_JSON_NUMBER_BYTES = 64, HL_JSON_PIECE_BYTES = 8 };
 
-/* Writes a finite number with 15, 16 or 17 digits: as few as read back as the same number. The decimal point
- * is "." in every locale. */
+/* Writes a finite number with 15, 16 or 17 digits. The number of digits is the least one from which the same
+ * number is read again. The decimal point is "." in every locale. */
 void hl_json_number_text(double number, char text[HL_JSON_NUMBER_BYTES]);
 
 /* The length in bytes of the well-formed UTF-8 sequence that begins at c; 0 if there is no such sequence (RFC

@@ -1,5 +1,6 @@
-/* text/plain.h - reading and writing of numbers and names in the locale "C", whatever locale the host has
- * set; and which texts are URLs. In that locale "1.5" is a number, and 'I' and 'i' are the same letter. */
+/* text/plain.h - reads and writes numbers and names in the locale "C", independently of the locale that the
+ * host has set. Also tells which texts are URLs. In that locale "1.5" is a number, and 'I' and 'i' are the
+ * same letter. */
 #ifndef HL_TEXT_PLAIN_H
 #define HL_TEXT_PLAIN_H
 

@@ -1,5 +1,5 @@
-/* text/plain_json.h - jansson's readers and writers in the locale "C": jansson itself uses the decimal point
- * of the host's locale, and cannot handle one that is longer than a byte. */
+/* text/plain_json.h - calls jansson's readers and writers in the locale "C". Without this, jansson uses the
+ * decimal point of the host's locale, and cannot handle a decimal point that is longer than a byte. */
 #ifndef HL_TEXT_PLAIN_JSON_H
 #define HL_TEXT_PLAIN_JSON_H
 

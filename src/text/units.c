@@ -1,4 +1,4 @@
-/* text/units.c - units of length: their names, and the choice of a unit for a length. */
+/* text/units.c - defines the units of length and their names, and chooses a unit for a length. */
 #include "text/units.h"
 
 #include <math.h>

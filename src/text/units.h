@@ -11,11 +11,11 @@ typedef struct hl_unit {
   int chosen; /* whether hl_unit_for() may choose this unit */
 } hl_unit;
 
-/* The unit of length that has a given name; null: no known unit has this name. */
+/* The unit of length that has a given name; null if no known unit has this name. */
 const hl_unit *hl_unit_find(const char *name);
 
 /* Chooses the unit for a length: the unit in which the length is a number from 1 to 1000. If there is no such
- * unit, it is the unit in which the number comes closest to that range. */
+ * unit, the result is the unit in which the number comes closest to that range. */
 const hl_unit *hl_unit_for(double metres);
 
 /* The greatest number of the form 1, 2 or 5 times a power of ten that is at most `most`. */

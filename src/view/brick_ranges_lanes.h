@@ -1,5 +1,5 @@
 /* view/brick_ranges_lanes.h - finds the tiles and sheets that sixteen bricks touch. It does the work of
- * hl_brick_bounds() and hl_footprint_bounds() in floats, rounded outwards. */
+ * hl_brick_bounds() and hl_footprint_bounds() with floats, whose results are rounded outwards. */
 #ifndef HL_VIEW_BRICK_RANGES_LANES_H
 #define HL_VIEW_BRICK_RANGES_LANES_H
 

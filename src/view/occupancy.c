@@ -67,8 +67,8 @@ static void number_patches(occupancy *o, int grid_count) {
   o->first_patch[(size_t)o->tiles_x * (size_t)o->tiles_y] = patch;
 }
 
-/* Rounds the row of an affine function of points to floats. Returns a bound of the rounding error: a sum,
- * times a small multiple of 2^-24. The sum is the greatest sum, within the grid, of the magnitudes of the
+/* Rounds the row of an affine function of points to floats. Returns a bound of the rounding error. The bound
+ * is a small multiple of 2^-24, times the greatest value within the grid of the sum of the magnitudes of the
  * function's terms. */
 static float set_row(const double row[4], const double middle[3], const double half[3], double scale,
                      float rounded[4]) {
@@ -222,7 +222,8 @@ static footprint_map map_of_grid(const occupancy_source *source, int g) {
   return map;
 }
 
-/* Counts the patches of all grids. If the rectangles have memory, also sets the rectangles. */
+/* Counts the patches of all grids. If memory for the rectangles has been allocated, also sets the
+ * rectangles. */
 static void place_rectangles(const occupancy_source *source, occupancy *o) {
   o->patch_count = 0;
   for (int g = 0; g < source->grid_count; g++) {

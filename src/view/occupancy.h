@@ -1,7 +1,7 @@
-/* view/occupancy.h - which tiles of which sheets may show something, for one view.
+/* view/occupancy.h - finds the tiles of each sheet that may show something, for one view.
  *
- * Each relevant brick marks the tiles and sheets that it can touch, one bit each. A sheet then visits its
- * marked tiles only: empty space costs nothing. */
+ * Each relevant brick marks the tiles and sheets that it can touch, one bit each. The renderer then visits
+ * only the marked tiles of a sheet, so that empty space takes no time. */
 #ifndef HL_VIEW_OCCUPANCY_H
 #define HL_VIEW_OCCUPANCY_H
 
@@ -18,7 +18,7 @@ typedef struct tile_rectangle {
 } tile_rectangle;
 
 typedef struct sheet_range {
-  int32_t first, last; /* numbers of the first and the last sheet; there are none if first > last */
+  int32_t first, last; /* numbers of the first and the last sheet; if first > last, there are no sheets */
 } sheet_range;
 
 /* Patches: a patch is one grid in one tile. The patches of a tile follow each other, in the order of the
@@ -109,8 +109,8 @@ static inline int hl_occupancy_has(const occupancy *occupancy, size_t patch, int
   return (int)(bits[sheet / 64] >> (sheet % 64) & 1);
 }
 
-/* Returns whether a slab may touch a tile: whether the sheet at its end or the sheet at its beginning touches
- * the tile. */
+/* Returns whether a slab may touch a tile. This is the case if the sheet at the slab's end or the sheet at
+ * its beginning touches the tile. */
 static inline bool hl_occupancy_touches(const occupancy *occupancy, size_t tile, int sheet) {
   const uint64_t *after = occupancy->by_sheet + (size_t)sheet * (size_t)occupancy->tile_words;
   const uint64_t *before = after - occupancy->tile_words;

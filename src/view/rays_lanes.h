@@ -1,5 +1,5 @@
-/* view/rays_lanes.h - finds where the rays of a 4x4 block of pixels meet a sheet, and where they enter and
- * leave a volume's box. */
+/* view/rays_lanes.h - finds the points at which the rays of a 4x4 block of pixels meet a sheet, and at which
+ * they enter and leave a volume's box. */
 #ifndef HL_VIEW_RAYS_LANES_H
 #define HL_VIEW_RAYS_LANES_H
 
@@ -50,7 +50,8 @@ LANES_INLINE lanes3 rays_linear(const float at[3], const float by_u[3], const fl
                   linear_in_view(at[2], by_u[2], by_v[2], u, v)};
 }
 
-/* The climb H = h.W: how much a perspective view's rays rise along the sheets' normal h. */
+/* The climb H = h.W: the height along the sheets' normal h by which a perspective view's ray rises over its
+ * direction vector W. */
 LANES_INLINE lanes rays_climb(const sheet_rays *rays, lanes u, lanes v) {
   return linear_in_view(rays->h0, rays->hu, rays->hv, u, v);
 }

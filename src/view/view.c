@@ -1,4 +1,5 @@
-/* view/view.c - rays of pixels, where they meet sheets and boxes, and projection back to pixels. */
+/* view/view.c - finds the rays of pixels and the points at which the rays meet sheets and boxes, and projects
+ * points to pixels. */
 #include "view/view.h"
 
 bool hl_view_finish(view *view) {

@@ -1,4 +1,5 @@
-/* view/view.h - how the pixels of the eye or of a light see the sheets.
+/* view/view.h - describes the rays by which the pixels of the eye's picture, or of a light's buffer, see the
+ * sheets.
  *
  * A view is a bundle of rays, one for each pixel. The rays come from one point (perspective camera, point
  * light) or are parallel (orthographic camera, directional light). The picture plane may have any tilt: a

@@ -20,10 +20,11 @@ enum { MOST_PIXELS = 64 << 20 };
 
 static struct {
   hl_context *context, *sealed;           /* owned; `sealed` opens no file */
-  hl_scene *scene;                        /* owned; what is open */
-  hl_preview *preview;                    /* owned; null: not yet made */
-  hl_renderer *renderer, *quick, *picker; /* owned; null: not yet made. `quick` makes frames while
-                                           * something moves; `picker` finds depths by tiny pictures */
+  hl_scene *scene;                        /* owned; the scene that is open */
+  hl_preview *preview;                    /* owned; null if not made yet */
+  hl_renderer *renderer, *quick, *picker; /* owned; null if not made yet. `renderer` makes pictures, `quick`
+                                           * makes frames while something moves, and `picker` finds depths by
+                                           * tiny pictures */
   int threads;                            /* the greatest number of threads that make a picture */
   char *text;                             /* owned; from the page */
   unsigned char *answer;                  /* owned; from malloc */
@@ -63,7 +64,8 @@ char *web_text(size_t bytes) {
 /* ---- the beginning ---- */
 
 int web_fuses(void) {
-  /* (1 + 2^-12)^2 - 1 needs 25 bits: an engine that rounds the product before the sum loses the term 2^-24 */
+  /* (1 + 2^-12)^2 - 1 needs 25 bits: an engine that rounds the product before the addition loses the term
+   * 2^-24 */
   volatile float factor = 1.0f + 0x1p-12f, addend = -1.0f;
   lanes sum = lanes_fma(lanes_set(factor), lanes_set(factor), lanes_set(addend));
   for (int lane = 0; lane < LANES; lane++)
@@ -152,7 +154,7 @@ static hl_status load(const char *path, hl_scene **scene, hl_error *error) {
   return load_alone(path, scene, error);
 }
 
-/* Makes a scene the open one, in place of the previous one, and answers with its start.json. */
+/* Replaces the open scene by another scene, and answers with the start.json of the new scene. */
 static int show(hl_scene *scene, const char *title) {
   forget_renderers();
   hl_preview_destroy(web.preview);
@@ -248,7 +250,7 @@ static hl_status encode_file(const hl_scene *scene, const hl_image *image, const
   return status;
 }
 
-/* Makes the scene that is rendered while something moves; it may be the scene itself. */
+/* Makes the scene that is rendered while something moves. The result may be the given scene itself. */
 static hl_status make_quick(hl_scene *scene, hl_scene **quick, hl_error *error) {
   if (web.preview == NULL && hl_preview_create(web.context, web.scene, &web.preview, NULL) != HL_OK)
     return HL_OK;

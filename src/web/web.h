@@ -1,5 +1,5 @@
-/* web/web.h - the library for a page without a server: the functions of the WebAssembly file that the
- * page's worker calls (page/engine.js).
+/* web/web.h - declares the functions of the library's WebAssembly file for a page without a server. The
+ * page's worker calls them (page/engine.js).
  *
  * One scene is open at a time. A call that can fail returns an hl_status; web_answer() is then its result, or
  * the error's line. Text and answers lie in the WebAssembly file's memory. */
@@ -9,12 +9,12 @@
 #include <stddef.h>
 #include <stdint.h>
 
-/* Returns whether this engine rounds a product and a sum only once, as pictures need. 1: it does; 0: it
- * rounds twice, as engines may choose with relaxed SIMD. */
+/* Returns whether this engine rounds a product and a sum only once, as pictures need. The result is 1 if it
+ * does, and 0 if it rounds twice, as engines may choose with relaxed SIMD. */
 int web_fuses(void);
 
-/* Makes the context; must be called first. mebibytes: the most memory; threads: the most threads of a
- * picture. */
+/* Makes the context. The page must call this function first. mebibytes: the most memory; threads: the most
+ * threads of a picture. */
 int web_begin(uint32_t mebibytes, int threads);
 
 /* These functions are for a WebAssembly file that is linked for several threads. web_helper_arrive(): a
@@ -23,12 +23,12 @@ int web_begin(uint32_t mebibytes, int threads);
 int web_helper_arrive(int number);
 void web_helper_serve(int number);
 
-/* Allocates memory for the page, such as a helper's stack; null: there is no memory. */
+/* Allocates memory for the page, such as a helper's stack. Returns null if memory is short. */
 void *web_room(size_t bytes);
 void web_release(void *room);
 
-/* Gives memory into which the caller writes a text. It is valid until the next call of this function; null:
- * there is no memory. */
+/* Gives memory into which the caller writes a text. The memory is valid until the next call of this function.
+ * Returns null if memory is short. */
 char *web_text(size_t bytes);
 
 /* Opens a file, folder or scene, whose path is the text, in place of the open scene, if it can be opened.
@@ -42,12 +42,12 @@ int web_join(size_t length, const char *path_and_title);
 
 /* Answer: the text's scene, whose volumes are those of the open scene, with all defaults written out.
  * look_and_rig: the names of a look and of a light rig that are applied first, as two texts, each with a zero
- * at its end; "": none is applied. */
+ * at its end; "" if none is applied. */
 int web_complete(size_t length, const char *look_and_rig);
 
 /* Renders the text's scene, whose volumes are those of the open scene. format: "png", "npy", or "rgba" (bytes
- * of opaque sRGB, top row first). depth: bits of a PNG's channels. metadata: 0: a PNG does not carry the
- * scene's text. moving: not 0: a quick picture, with coarser volumes if the sheets are far apart
+ * of opaque sRGB, top row first). depth: bits of a PNG's channels. metadata: whether a PNG carries the
+ * scene's text. moving: whether to make a quick picture, with coarser volumes if the sheets are far apart
  * (halflight/preview.h). */
 int web_frame(size_t length, const char *format, int depth, int metadata, int moving);
 
@@ -56,8 +56,8 @@ int web_frame(size_t length, const char *format, int depth, int metadata, int mo
  * in the open scene; source: a slice_source; blend: an hl_blend; interpolate: 0 or 1. */
 int web_slice(int number, int source, int blend, int interpolate);
 
-/* Answer: the depth of what the middle pixel shows in a picture of the text's scene, as middle_depth() writes
- * it. */
+/* Answer: the depth of the surface that the middle pixel of a picture of the text's scene shows, as
+ * middle_depth() writes it. */
 int web_depth(size_t length);
 
 /* The bytes of the last answer. The library owns them. They are valid until the next call of a function that
@@ -69,7 +69,7 @@ size_t web_answer_bytes(void);
 double web_memory_held(void);
 
 /* Functions that the page provides. web_cancelled() says whether the running call is not wanted any more.
- * web_progress() gets the fraction of a file that has been read. */
+ * web_progress() receives the fraction of a file that has been read. */
 __attribute__((import_module("page"), import_name("cancelled"))) int web_cancelled(void);
 __attribute__((import_module("page"), import_name("progress"))) void web_progress(double fraction);
 

@@ -11,8 +11,8 @@
 
 #define PIECES 16 /* number of straight pieces that a curved segment becomes */
 
-/* How far a function has gone from this node's number to the next node's number, as a fraction from 0 to 1.
- * The place is the fraction t of the distance between the nodes (vtkPiecewiseFunction). */
+/* The weight, from 0 to 1, of the next node's number between a node and the next node (vtkPiecewiseFunction).
+ * t: the place between the two nodes, as a fraction of their distance. */
 static double ease(double t, const hl_foreign_node *n) {
   if (n->midpoint == 0.5 && n->sharpness < 0.01) return t;
   t = t < n->midpoint ? 0.5 * t / n->midpoint : 0.5 + 0.5 * (t - n->midpoint) / (1 - n->midpoint);

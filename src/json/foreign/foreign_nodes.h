@@ -1,4 +1,4 @@
-/* json/foreign/foreign_nodes.h - points of transfer functions as VTK, ParaView and Slicer have them. */
+/* json/foreign/foreign_nodes.h - converts points of transfer functions of VTK, ParaView and Slicer. */
 #ifndef HL_JSON_FOREIGN_FOREIGN_NODES_H
 #define HL_JSON_FOREIGN_FOREIGN_NODES_H
 

@@ -1,4 +1,5 @@
-/* json/foreign/paraview.c - transfer functions as ParaView saves them: its colour maps. */
+/* json/foreign/paraview.c - reads ParaView's colour maps, which are the files in which ParaView saves
+ * transfer functions. */
 #include <string.h>
 
 #include "core/memory.h"

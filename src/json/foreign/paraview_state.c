@@ -1,18 +1,18 @@
-/* json/foreign/paraview_state.c - the transfer function of the volume that a ParaView state (.pvsm, XML)
- * shows.
+/* json/foreign/paraview_state.c - reads the transfer function of the volume that a ParaView state (.pvsm,
+ * XML) shows.
  *
  * In: proxies of representations that show volumes, and the proxies that these representations name: a lookup
  * table and a function of opacity, or a TransferFunction2D with the properties Boxes (x, y, width, height,
  * sRGB, alpha) and Range. Out: colours and opacities, or Halflight's boxes.
  *
- * A proxy with a group is defined where it stands. A proxy without a group, within a property, names another
- * proxy by its id. Lookup tables and functions of opacity are kept as JSON objects whose keys are the names
- * of their properties. ParaView uses the same names in its colour maps, which are JSON.
+ * A tag Proxy with a group defines a proxy. A tag Proxy without a group stands within a property, and names
+ * another proxy by its id. Lookup tables and functions of opacity are kept as JSON objects whose keys are the
+ * names of their properties. ParaView uses the same names in its colour maps, which are JSON.
  *
- * ParaView's boxes are Gaussians that are cut off at their sides (vtkPVTransferFunction2DBox). Where the
- * Gaussian has the value g, the opacity is alpha g. Halflight's boxes multiply extinction instead, which is
- * -log(1 - alpha g) = sum over k of (alpha g)^k / k. Each term of this sum becomes a box, as g^k is a
- * Gaussian, too (derived). */
+ * ParaView's boxes are Gaussians that are cut off at their sides (vtkPVTransferFunction2DBox). At a place at
+ * which the Gaussian has the value g, the opacity is alpha g. Halflight's boxes multiply extinction instead.
+ * The extinction is -log(1 - alpha g) = sum over k of (alpha g)^k / k. Each term of this sum becomes a box,
+ * because g^k is a Gaussian, too (derived). */
 #include <math.h>
 #include <stdio.h>
 #include <string.h>
@@ -41,7 +41,7 @@ typedef struct shown_volume {
   char colors[ID_BYTES], opacities[ID_BYTES]; /* ids of the lookup table and of the opacity function */
 } shown_volume;
 
-/* What has been read of a state so far. */
+/* The parts of a state that have been read so far. */
 typedef struct state {
   double boxes[MOST_BOXES * BOX_NUMBERS], range[4];
   size_t box_numbers, range_numbers;
@@ -53,7 +53,8 @@ typedef struct state {
                            * that has an array of numbers for each property */
 } state;
 
-/* What has been read of the proxy that the current tags are in. */
+/* The parts of the current proxy that have been read so far. The current proxy is the one whose tag encloses
+ * the tags that are being read. */
 typedef struct proxy {
   bool is_function; /* whether the proxy is a function of two numbers */
   /* is_representation: whether the proxy shows a volume; is_other: whether the proxy is a representation of
@@ -61,7 +62,8 @@ typedef struct proxy {
   bool is_representation, is_other;
   bool is_named_volume, is_visible;
   shown_volume shown;
-  json_t *kept; /* borrowed from the state; collects the proxy's properties; null if they are not needed */
+  json_t *kept; /* borrowed from the state; collects the proxy's properties; null if the properties are not
+                 * needed */
   double range[4];
   size_t box_numbers, range_numbers;
   char property[32];

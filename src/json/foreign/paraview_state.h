@@ -1,4 +1,4 @@
-/* json/foreign/paraview_state.h - the transfer function of a ParaView state. */
+/* json/foreign/paraview_state.h - reads the transfer function of a ParaView state. */
 #ifndef HL_JSON_FOREIGN_PARAVIEW_STATE_H
 #define HL_JSON_FOREIGN_PARAVIEW_STATE_H
 

@@ -1,6 +1,6 @@
-/* json/foreign/slicer.c - volume properties as 3D Slicer saves them in JSON (.vp.json): opacity by value and
- * by gradient, and colour, of each component of the voxels. Shade and lighting are ignored, as the scene has
- * its own. */
+/* json/foreign/slicer.c - reads volume properties that 3D Slicer has saved in JSON (.vp.json): for each
+ * component of the voxels, the opacity by value, the opacity by gradient, and the colour. Shade and lighting
+ * are ignored, because the scene has its own light. */
 #include "json/foreign/slicer.h"
 
 #include <stdio.h>

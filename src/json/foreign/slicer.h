@@ -1,5 +1,5 @@
-/* json/foreign/slicer.h - volume properties of 3D Slicer. The content is owned by *function, also after a
- * failure. */
+/* json/foreign/slicer.h - reads volume properties of 3D Slicer as transfer functions. *function owns the
+ * content that was read, also after a failure. */
 #ifndef HL_JSON_FOREIGN_SLICER_H
 #define HL_JSON_FOREIGN_SLICER_H
 

@@ -1,9 +1,9 @@
-/* json/foreign/slicer_text.c - volume properties as 3D Slicer writes them in text: a preset of its
+/* json/foreign/slicer_text.c - reads volume properties that 3D Slicer has written as text: a preset of its
  * presets.xml, and its older .vp files.
  *
- * A function is a line "N x y x y ..." or "N x r g b ...", where N numbers follow. An x that is less than the
- * x before counts as equal to it (vtkMRMLVolumePropertyNode). Shade and lighting are ignored, as the scene
- * has its own. */
+ * A function is a line "N x y x y ..." or "N x r g b ...". N is the number of numbers that follow. An x that
+ * is less than the x before it counts as equal to that x (vtkMRMLVolumePropertyNode). Shade and lighting are
+ * ignored, because the scene has its own light. */
 #include <math.h>
 #include <stdio.h>
 #include <string.h>
@@ -101,7 +101,7 @@ bool hl_slicer_is_text(const char *path) {
   return hl_text_ends(path, ".vp") || hl_text_ends(path, ".xml") || preset_name(path) != NULL;
 }
 
-/* The names of a file's presets, for errors. */
+/* The names of the presets in a file, which errors list. */
 typedef struct preset_list {
   char names[MOST_PRESETS][NAME_BYTES];
   const char *known[MOST_PRESETS + 1]; /* [count + 1]; pointers to the names; null ends the list */

@@ -1,4 +1,5 @@
-/* platform/gnu/strings.c - functions of GNU's <string.h>, for systems whose C library lacks them. */
+/* platform/gnu/strings.c - implements functions of GNU's <string.h> for systems whose C library lacks
+ * them. */
 #include <stdbool.h>
 #include <stddef.h>
 
@@ -23,8 +24,8 @@ static size_t digits_at(const char *text) {
 /* Compares names, and numbers within names as numbers. Numbers that begin with zeros count as fractions and
  * come before all other numbers: 000, 00, 01, 010, 09, 0, 1, 9, 10. */
 int strverscmp(const char *a, const char *b) {
-  size_t same = 0, begin = 0; /* `same` is the index of the first character that differs, and `begin` the
-                               * index at which the number begins that this character belongs to */
+  size_t same = 0, begin = 0; /* `same` is the index of the first character that differs, and `begin` is the
+                               * index of the first digit of the number to which this character belongs */
   bool zeros = true;          /* whether the characters from `begin` to `same` - 1 are all '0' */
   for (; a[same] == b[same]; same++) {
     if (a[same] == '\0') return 0;

@@ -1,5 +1,6 @@
-/* platform/linux/processors.c - how many processors this process may use: the processors on which it may run,
- * limited by the processor time that its control groups (of containers and batch jobs) allow. */
+/* platform/linux/processors.c - finds the number of processors that this process may use. It is the number of
+ * processors on which the process may run, limited by the processor time that its control groups (of
+ * containers and batch jobs) allow. */
 #define _GNU_SOURCE /* sched_getaffinity */
 #include "platform/processors.h"
 
@@ -12,7 +13,7 @@
 
 #include "text/plain.h"
 
-/* The greatest number of processors that an affinity mask is read for. */
+/* The greatest number of processors for which an affinity mask is read. */
 enum { MOST_PROCESSORS = 1 << 16 };
 
 static int count_of_affinity(void) {
@@ -39,7 +40,7 @@ static bool take_number(const char **text, double *number) {
   return true;
 }
 
-/* Reads the first two numbers of a file; "max" counts as -1. Returns how many numbers the file has. */
+/* Reads the first two numbers of a file; "max" counts as -1. Returns the number of numbers that were read. */
 static int read_numbers(const char *folder, const char *name, double number[2]) {
   char path[PATH_BYTES + 64], text[64] = "";
   snprintf(path, sizeof path, "%s/%s", folder, name);
@@ -58,7 +59,8 @@ static int read_numbers(const char *folder, const char *name, double number[2]) 
   return take_number(&rest, &number[1]) ? 2 : 1;
 }
 
-/* The number of processors' worth of time that one group may use; infinite if it has no limit. */
+/* The processor time that one group may use, as a number of processors; infinite if the group has no
+ * limit. */
 static double quota_of_group(const char *folder, bool unified) {
   double of_quota[2] = {-1, 100000}, of_period[2];
   if (unified) {
@@ -71,8 +73,8 @@ static double quota_of_group(const char *folder, bool unified) {
 }
 
 /* The least quota of a group and of all groups above it. path: the group's folder, "/...", below the folder
- * of the hierarchy. The folder may be missing. A process in a container may be told a path outside the
- * container, in which its own group is the top of the hierarchy. */
+ * of the hierarchy. The folder may be missing. In a container, the system may report a path that exists only
+ * outside the container. In the container, the process's own group is then the top of the hierarchy. */
 static double quota_of_path(const char *hierarchy, const char *path, bool unified) {
   char folder[PATH_BYTES];
   int length = snprintf(folder, sizeof folder, "%s%s", hierarchy, path);

@@ -1,5 +1,5 @@
-/* platform/macos/system.c - the functions of Linux that macOS lacks: see the headers in
- * platform/macos/include. */
+/* platform/macos/system.c - implements the functions of Linux that macOS lacks. The headers in
+ * platform/macos/include declare them. */
 #include <errno.h>
 #include <fcntl.h>
 #include <math.h>

@@ -6,7 +6,7 @@
 #include <sys/mman.h>
 #include <unistd.h>
 
-/* The size of a large page, and the least size of the blocks for which large pages are asked. With small
+/* The size of a large page, and the least size of blocks for which large pages are requested. With small
  * pages, every row of a tile would lie in a page of its own, and translating the pages' addresses would take
  * longer than reading the rows. */
 enum { LARGE_PAGE = 1 << 21, LARGE_BLOCK = 1 << 22 };

@@ -1,5 +1,5 @@
-/* platform/posix/program.c - see platform/program.h. Nothing must be done here, because arguments and streams
- * are bytes already. */
+/* platform/posix/program.c - prepares the arguments and the standard streams. On POSIX systems nothing must
+ * be done, because arguments and streams are bytes already. */
 #include "platform/program.h"
 
 void hl_program_begin(int *count, char ***arguments) { (void)count, (void)arguments; }

@@ -1,6 +1,6 @@
-/* platform/wasi/threads.c - see threads.h. Implements POSIX threads by WebAssembly's atomic waits, because
- * the C library's functions neither start threads nor wait for them. Puts a lock around the C library's
- * allocator, which serves only one thread.
+/* platform/wasi/threads.c - implements POSIX threads by WebAssembly's atomic waits, because the C library's
+ * functions neither start threads nor wait for them. Puts a lock around the C library's allocator, which
+ * serves only one thread.
  *
  * A mutex is Drepper's second one ("Futexes are tricky", 2011): 0 is open, 1 held, 2 held while another
  * thread waits. A condition variable is a count of its signals: a waiting thread reads the count before it

@@ -1,8 +1,8 @@
-/* platform/wasi/threads.h - the threads of a page. WebAssembly's system interface has no threads. A page
- * therefore starts web workers, called helpers, before the library asks for threads. Helpers share the
- * library's memory, and wait until they are needed; each thread of the library runs on one helper.
+/* platform/wasi/threads.h - runs the library's threads in a page. WebAssembly's system interface has no
+ * threads. A page therefore starts web workers, called helpers, before the library asks for threads. Helpers
+ * share the library's memory, and wait until they are needed; each thread of the library runs on one helper.
  *
- * Helpers cannot use files. While a caller opens files, it allows one thread alone. */
+ * Helpers cannot use files. While a caller opens files, it allows only one thread. */
 #ifndef HL_PLATFORM_WASI_THREADS_H
 #define HL_PLATFORM_WASI_THREADS_H
 

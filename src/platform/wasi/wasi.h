@@ -2,8 +2,8 @@
  * is included before each source of a build for WebAssembly.
  *
  * A page has one user. There are no signals, no libraries that are loaded later, and no disk for scratch
- * files. The functions for these things fail, as on a system that has run out of them. This header includes
- * no other, because each source chooses which names the system's headers declare. */
+ * files. The functions for these things fail, as on a system that has no more of them. This header includes
+ * no other header, because each source chooses which names the system's headers declare. */
 #ifndef HL_PLATFORM_WASI_WASI_H
 #define HL_PLATFORM_WASI_WASI_H
 

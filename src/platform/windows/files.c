@@ -1,5 +1,5 @@
-/* platform/windows/files.c - functions on open files: descriptors, reading and writing at an offset, size and
- * kind. */
+/* platform/windows/files.c - implements functions on open files: descriptors, reading and writing at an
+ * offset, size and kind. */
 #include <windows.h>
 
 #include <winternl.h>
@@ -74,7 +74,7 @@ int hl_posix_open(const char *path, int flags, ...) {
   return handle != INVALID_HANDLE_VALUE ? descriptor_of(handle, flags) : hl_system_error(error);
 }
 
-/* Opens a file below the folder of a handle. If `name` is empty, it is the folder itself. */
+/* Opens a file below the folder of a handle. If `name` is empty, opens the folder itself. */
 static HANDLE open_below(HANDLE folder, wchar_t *name, int flags) {
   size_t bytes = wcslen(name) * sizeof *name;
   UNICODE_STRING text = {.Length = (USHORT)bytes, .MaximumLength = (USHORT)bytes, .Buffer = name};
@@ -96,7 +96,9 @@ static HANDLE open_below(HANDLE folder, wchar_t *name, int flags) {
 
 int hl_posix_openat(int folder, const char *path, int flags, ...) {
   if (path[0] == '/' || strpbrk(path, ":\\") != NULL || (flags & FOR_CREATION) != 0) {
-    errno = (flags & FOR_CREATION) != 0 ? EINVAL : ENOENT; /* a drive, or a second stream of a file */
+    /* Absolute names, names on a drive, names of a second stream of a file (':'), and flags that create a
+     * file are refused. */
+    errno = (flags & FOR_CREATION) != 0 ? EINVAL : ENOENT;
     return -1;
   }
   wchar_t *name = hl_wide_text(strcmp(path, ".") == 0 ? "" : path);
@@ -236,8 +238,9 @@ int hl_posix_stat(const char *path, struct stat *about) {
   return stat_opened(hl_posix_open(path, O_PATH | O_CLOEXEC), about);
 }
 
-/* If AT_SYMLINK_NOFOLLOW is set, tells about a link itself. The link is then opened, and descriptor_of() does
- * not refuse it, because its flags do not have O_NOFOLLOW. */
+/* Describes a file below a folder. If AT_SYMLINK_NOFOLLOW is set and the file is a link, describes the link
+ * itself. The link is then opened, and descriptor_of() does not refuse it, because its flags do not have
+ * O_NOFOLLOW. */
 int hl_posix_fstatat(int folder, const char *path, struct stat *about, int flags) {
   wchar_t *name = strpbrk(path, ":\\") == NULL ? hl_wide_text(path) : NULL;
   if (name == NULL) return errno = ENOENT, -1;

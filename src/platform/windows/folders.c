@@ -1,5 +1,5 @@
-/* platform/windows/folders.c - the names in a folder, by its handle: see platform/windows/include/dirent.h.
- */
+/* platform/windows/folders.c - lists the names in a folder, by the folder's handle
+ * (platform/windows/include/dirent.h). */
 #include <windows.h>
 
 #include <dirent.h>
@@ -33,7 +33,7 @@ DIR *opendir(const char *path) {
   return folder;
 }
 
-/* Reads the next entries. Returns false after the last. */
+/* Reads the next entries. Returns false if there are no more entries. */
 static bool fetch(DIR *folder) {
   HANDLE handle = (HANDLE)_get_osfhandle(folder->descriptor);
   FILE_INFO_BY_HANDLE_CLASS how = folder->begun ? FileIdBothDirectoryInfo : FileIdBothDirectoryRestartInfo;

@@ -1,4 +1,4 @@
-/* platform/windows/locale.c - the locale "C" for a thread: see platform/windows/include/locale.h. */
+/* platform/windows/locale.c - sets the locale "C" for a thread (platform/windows/include/locale.h). */
 #include <locale.h>
 #include <stdlib.h>
 #include <string.h>
@@ -10,9 +10,9 @@ typedef struct kept_locale {
   char name[];
 } kept_locale;
 
-static char the_locale; /* its address stands for the locale "C" */
-/* What uselocale() returns if it changed nothing, because the thread had the locale "C" already or memory was
- * short. */
+static char the_locale; /* the address of this variable stands for the locale "C" */
+/* uselocale() returns the address of this variable if it changed nothing, because the thread had the locale
+ * "C" already, or because memory was short. */
 static char no_change;
 
 locale_t newlocale(int mask, const char *name, locale_t base) {

@@ -1,5 +1,5 @@
-/* platform/windows/mapping.c - mapped files and memory: see platform/windows/include/sys/mman.h and
- * platform/memory.h. */
+/* platform/windows/mapping.c - maps files into memory (platform/windows/include/sys/mman.h), and allocates
+ * memory (platform/memory.h). */
 #include <windows.h>
 
 #include <errno.h>

@@ -15,10 +15,10 @@ wchar_t *hl_wide_name(const char *path);
 /* The same text in UTF-16, with '\' for '/' and without a prefix. */
 wchar_t *hl_wide_text(const char *text);
 
-/* Writes UTF-16 of `length` characters as UTF-8, with '/' for '\'. Returns false if it does not fit. */
+/* Writes UTF-16 of `length` characters as UTF-8, with '/' for '\'. Returns false if the text does not fit. */
 bool hl_narrow_name(const wchar_t *wide, size_t length, char *text, size_t size);
 
-/* Replaces the last six characters of a name by random letters. False, with errno set, on failure. */
+/* Replaces the last six characters of a name by random letters. Returns false, with errno set, on failure. */
 bool hl_choose_name(char *path);
 
 /* Sets errno for an error number of the system, as GetLastError() returns it. Returns -1. */

@@ -1,4 +1,5 @@
-/* platform/windows/paths.c - calls on names: opening streams, renaming, removing, the current folder. */
+/* platform/windows/paths.c - implements calls that take names of files: they open streams, rename and remove
+ * files, and find the current folder. */
 #include <windows.h>
 
 #include <direct.h>

@@ -1,4 +1,4 @@
-/* platform/windows/patterns.c - files by a pattern: see platform/windows/include/glob.h. */
+/* platform/windows/patterns.c - finds files by a pattern (platform/windows/include/glob.h). */
 #include <dirent.h>
 #include <glob.h>
 #include <limits.h>
@@ -8,8 +8,8 @@
 #include <string.h>
 #include <unistd.h>
 
-/* Moves past "[...]" in a pattern; *fits: whether the set contains the character. Returns null if the set has
- * no closing bracket. */
+/* Moves past "[...]" in a pattern; *fits: set to whether the set of characters in the brackets contains the
+ * character. Returns null if the set has no closing bracket. */
 static const char *match_set(const char *set, char c, bool *fits) {
   bool other = set[1] == '!' || set[1] == '^', in = false;
   const char *at = set + 1 + other;

@@ -1,5 +1,5 @@
-/* platform/windows/program.c - see platform/program.h. Standard streams carry bytes; the console's text is
- * UTF-8. */
+/* platform/windows/program.c - prepares the arguments and the standard streams. Afterwards the streams carry
+ * bytes, and the console's text is UTF-8. */
 #include "platform/program.h"
 
 #include <windows.h>
@@ -41,7 +41,8 @@ void hl_program_begin(int *count, char ***arguments) {
   wchar_t **wide = CommandLineToArgvW(GetCommandLineW(), &wide_count);
   char **made = wide != NULL ? calloc((size_t)wide_count + 1, sizeof *made) : NULL;
   for (int n = 0; made != NULL && n < wide_count; n++) {
-    if ((made[n] = narrow_text(wide[n])) == NULL) return; /* no memory: the C library's arguments stay */
+    /* If memory is short, the arguments of the C library are kept. */
+    if ((made[n] = narrow_text(wide[n])) == NULL) return;
     turn_slashes(made[n]);
   }
   if (made == NULL) return;

@@ -1,5 +1,5 @@
-/* platform/windows/system.c - the machine and the process: processors, memory, signals, libraries, random
- * numbers. */
+/* platform/windows/system.c - implements functions that concern the machine and the process: processors,
+ * memory, signals, libraries, random numbers. */
 #include <windows.h>
 
 #include <psapi.h>
@@ -69,14 +69,15 @@ ssize_t getrandom(void *bytes, size_t count, unsigned flags) {
 
 /* ---- the environment ---- */
 
-/* The value, in UTF-8, of an environment variable that was asked for. Values are kept here, because the C
- * library has them only in the system's code page. */
+/* The value, in UTF-8, of an environment variable that a caller has asked for. Values are kept here, because
+ * the C library has them only in the system's code page. */
 typedef struct kept_value {
   struct kept_value *next;
   char text[];
 } kept_value;
 
-/* Keeps a value, unless it is kept already. Returns null if memory is short. */
+/* Stores a value in the list of kept values, unless the list has it already. Returns null if memory is
+ * short. */
 static char *keep(const wchar_t *wide) {
   static kept_value *first;
   static SRWLOCK lock = SRWLOCK_INIT;

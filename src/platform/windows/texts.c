@@ -1,4 +1,4 @@
-/* platform/windows/texts.c - BSD's strsep(). */
+/* platform/windows/texts.c - implements BSD's function strsep(). */
 #include <string.h>
 
 char *strsep(char **text, const char *separators) {
