@@ -79,8 +79,8 @@ HL_API HL_WARN_UNUSED hl_status hl_options_check(const hl_option *options, size_
 
 /* Makes a scene of a label map's layers, each of which becomes a volume. The options "label-table" and "show"
  * say how the labels are named and which of them show; labels of "show" that the map lacks are passed over.
- * path: the label map's file; reading: the options for reading it, as for hl_volume_load_with(); null: the
- * defaults. */
+ * path: the label map's file; reading: the options for reading it, as for hl_volume_load_with(); null stands
+ * for the defaults. */
 HL_API HL_WARN_UNUSED hl_status hl_scene_for_label_map(hl_context *context, const char *path,
                                                        const hl_volume_load_options *reading,
                                                        const hl_option *options, size_t option_count,

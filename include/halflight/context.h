@@ -82,7 +82,7 @@ typedef enum hl_mpi {
 typedef struct hl_fetch_range {
   uint64_t begin; /* the position of the first wanted byte in the file; UINT64_MAX: the last `count` bytes are
                    * wanted, or all bytes if the file is shorter */
-  uint64_t count; /* the number of wanted bytes; 0: the whole file is wanted */
+  uint64_t count; /* the number of wanted bytes; if 0, the whole file is wanted */
 } hl_fetch_range;
 
 /* Bytes of a file on a server, as the callback `fetch` brings them. */
@@ -93,7 +93,7 @@ typedef struct hl_fetched_file {
   uint64_t begin; /* the position of the first of the brought bytes in the server's file */
   uint64_t whole; /* the size of the whole file on the server, in bytes */
   uint64_t state; /* a number that stands for the version of the server's file: different versions have
-                   * different numbers; 0: the server names no version */
+                   * different numbers; if 0, the server names no version */
 } hl_fetched_file;
 
 /* Callbacks and limits of a context. All callbacks may be null, in which case a default is used, and receive
@@ -116,12 +116,12 @@ typedef struct hl_context_options {
    * HL_ERROR_CANCELLED soon: within a tenth of a second, for pictures up to 4096 x 4096 pixels and volumes up
    * to 512^3 voxels. */
   int (*cancelled)(void *user_data);
-  uint64_t memory_limit;              /* the greatest number of bytes that the context may hold at once; 0: no
-                                       * limit */
+  uint64_t memory_limit;              /* the greatest number of bytes that the context may hold at once; 0 if
+                                       * there is no limit */
   hl_instruction_set instruction_set; /* the instructions that the library uses; hl_context_create() refuses a
                                        * set that the processor lacks */
   const char *data_folder; /* the folder in which a scene's file names of the form "data:..." begin; copied;
-                            * null: there is no such folder */
+                            * null if there is no such folder */
   /* Called with the path of every file that is opened for reading: scenes, volumes, the data files that their
    * headers name, transfer functions, pictures. A program can remember the paths, so that it does not write
    * over one of these files. */
@@ -136,8 +136,8 @@ typedef struct hl_context_options {
   void (*converted)(void *user_data, const void *bytes, size_t byte_count);
   /* Called where a volume's file is the URL of a Zarr store on a server ("http://..." or "https://..."). The
    * callback brings bytes of `count` files of the store, whose names are relative to the store ("0/c/1/2/3").
-   * ranges: [count], the bytes that are wanted; null: whole files are wanted. If the server sends no ranges,
-   * the callback brings the whole file. The callback brings at most `most` bytes of each file. files:
+   * ranges: [count], the bytes that are wanted; if null, whole files are wanted. If the server sends no
+   * ranges, the callback brings the whole file. The callback brings at most `most` bytes of each file. files:
    * [count], whose descriptors the library closes, also after a failure. The store may lack some files: for
    * these, the callback sets the descriptor to -1. Every other fault must be an error; so must bytes that are
    * not the wanted ones. The callback decides which URLs may be asked, because a scene's text can name any
@@ -181,7 +181,7 @@ HL_API HL_WARN_UNUSED hl_status hl_context_create(const hl_context_options *opti
                                                   hl_error *error);
 
 /* Changes the context's `memory_limit` and `scratch_folder`. Volumes that were loaded before stay in memory
- * or in their scratch file. scratch_folder: copied; null: there is none. Call this function only while no
+ * or in their scratch file. scratch_folder: copied; null if there is none. Call this function only while no
  * other call with the context runs. */
 HL_API HL_WARN_UNUSED hl_status hl_context_limit_memory(hl_context *context, uint64_t memory_limit,
                                                         const char *scratch_folder, hl_error *error);
@@ -190,7 +190,7 @@ HL_API HL_WARN_UNUSED hl_status hl_context_limit_memory(hl_context *context, uin
  * `folder`. All names of files are relative to `folder`; this also holds for the names that are stored in
  * files. Absolute names, URLs, "data:..." and names that lead out of the folder by ".." or by a link are
  * refused, with the same message as for files that do not exist. folder: a path, relative to the folder of
- * `context` if that context is confined; null: every file is refused. Only reading is confined: files are
+ * `context` if that context is confined; if null, every file is refused. Only reading is confined: files are
  * written where the caller says. The confined context shares the memory, the memory limit and the callbacks
  * of `context`, but does not call `reads`. *confined is owned by the caller. The caller may destroy it before
  * the objects that were made with it; `context` must outlive these objects. */

@@ -43,16 +43,17 @@ typedef struct hl_annotation {
 typedef struct hl_overlay {
   size_t struct_size;
   int scale_bar;              /* non-zero: a scale bar is drawn at the lower left, with its length as text */
-  double scale_bar_length;    /* the scale bar's length in scale_bar_unit; 0: a length is chosen that is 1, 2
-                               * or 5 times a power of ten and at most a quarter of the picture's width */
-  const char *scale_bar_unit; /* the unit of the scale bar's length and text; null: world_unit, or another
+  double scale_bar_length;    /* the scale bar's length in scale_bar_unit; if 0, a length is chosen that is 1,
+                               * 2 or 5 times a power of ten and at most a quarter of the picture's width */
+  const char *scale_bar_unit; /* the unit of the scale bar's length and text; if null, world_unit, or another
                                * unit that makes the number short */
   const char *world_unit;     /* the unit of length of the scene's world: "m", "mm", "um", "nm", "A", ..., or
-                               * any other text, which is written as it is; null: the unit that the volumes'
-                               * files tell. If the files tell no unit either, the scale bar is refused */
+                               * any other text, which is written as it is; null stands for the unit that the
+                               * volumes' files tell. If the files tell no unit either, the scale bar is
+                               * refused */
   double scale_bar_depth; /* the distance from the eye, in the scene's units, at which the scale bar is right,
                            * or HL_DEPTH_OF_TARGET. A perspective camera needs it, because its scale changes
-                           * with depth; 0: the scale bar is refused for such a camera */
+                           * with depth; if 0, the scale bar is refused for such a camera */
   int legend; /* non-zero: a legend is drawn at the right. It shows the colours and opacity of each visible
                * volume over the volume's values, the colours of its isosurfaces, or the names of its
                * labels */
@@ -75,13 +76,13 @@ HL_API void hl_overlay_defaults(hl_overlay *overlay);
 
 /* A picture on the page. */
 typedef struct hl_figure_panel {
-  /* Borrowed; the picture; null: the panel shows the overlay alone. On a transparent page, an overlay without
-   * an image has the colours that suit the scene's picture, so that somebody can lay the overlay over the
-   * picture. */
+  /* Borrowed; the picture; if null, the panel shows the overlay alone. On a transparent page, an overlay
+   * without an image has the colours that suit the scene's picture, so that somebody can lay the overlay over
+   * the picture. */
   const hl_image *image;
   const hl_scene *scene;           /* borrowed; the scene that the picture shows, from which the overlay takes
-                                    * background, exposure, camera and volumes; null: the overlay may hold only a
-                                    * letter, and annotations whose places are fractions */
+                                    * background, exposure, camera and volumes; if null, the overlay may hold
+                                    * only a letter, and annotations whose places are fractions */
   double left, top, width, height; /* the place and size of the panel on the page, in millimetres; left and
                                     * top are measured from the page's upper left corner */
   int frame;                       /* non-zero: a thin line is drawn around the panel, as around an inset */
@@ -104,9 +105,9 @@ typedef struct hl_figure {
 HL_API void hl_figure_defaults(hl_figure *figure);
 
 /* Describes a page that one picture fills: sets the size of the figure, the size of the panel, and
- * figure->panels. width: the page's width in millimetres; 0: a width is chosen at which letters of 7 points
- * are as high as a 36th of the page's width, and at least 9 pixels high. Before the call, figure and panel
- * must have their defaults. */
+ * figure->panels. width: the page's width in millimetres; if 0, a width is chosen at which letters of 7
+ * points are as high as a 36th of the page's width, and at least 9 pixels high. Before the call, figure and
+ * panel must have their defaults. */
 HL_API void hl_figure_of_picture(const hl_image *image, const hl_scene *scene, double width,
                                  hl_figure *figure, hl_figure_panel *panel);
 

@@ -37,7 +37,7 @@ typedef enum hl_falloff { HL_FALLOFF_NONE = 0, HL_FALLOFF_INVERSE_SQUARE = 1 } h
  * between the middles of its pixels. */
 typedef struct hl_light_texture {
   const char *file;    /* the file that the pixels came from, which hl_scene_to_json writes; may be null */
-  const float *pixels; /* [height][width][3]: linear RGB, top row first; null: the light has no texture */
+  const float *pixels; /* [height][width][3]: linear RGB, top row first; null if the light has no texture */
   int width, height;
   double screen_center[3];
   double screen_right[3]; /* the vector from the screen's centre to the middle of the image's right edge */
@@ -53,7 +53,7 @@ typedef struct hl_light_texture {
  * interpolated bilinearly between the middles of its pixels. */
 typedef struct hl_light_emission {
   const char *file;    /* the file that the pixels came from, which hl_scene_to_json writes; may be null */
-  const float *pixels; /* [height][width][3]: linear RGB, top row first; null: all points of the light have
+  const float *pixels; /* [height][width][3]: linear RGB, top row first; if null, all points of the light have
                         * the light's own colour */
   int width, height;
   double up[3]; /* the direction of the image's top, for all lights but rects; if it is parallel to the

@@ -17,22 +17,24 @@ typedef struct hl_mesh hl_mesh;
 typedef struct hl_mesh_description {
   size_t struct_size;          /* set by hl_mesh_description_defaults() */
   const float (*positions)[3]; /* [vertex_count]; world units */
-  const float (*normals)[3];   /* [vertex_count]; normals of any length; null: the mesh has none */
-  const float (*colors)[4];    /* [vertex_count]; linear RGB and opacity, 0 to 1; null: the vertices have no
+  const float (*normals)[3];   /* [vertex_count]; normals of any length; null if the mesh has none */
+  const float (*colors)[4];    /* [vertex_count]; linear RGB and opacity, 0 to 1; null if the vertices have no
                                 * colours */
   size_t vertex_count;
   const uint32_t (*triangles)[3]; /* [triangle_count]; the indices of each triangle's three vertices */
   size_t triangle_count;
   const float (*face_colors)[4];   /* [triangle_count]; linear RGB and opacity of the triangles, which replace
-                                    * `colors`; null: the triangles have no colours */
+                                    * `colors`; null if the triangles have no colours */
   const float (*spheres)[4];       /* [sphere_count]; x, y, z of the centre, and the radius; world units */
-  const float (*sphere_colors)[4]; /* [sphere_count]; linear RGB and opacity, 0 to 1; null: white */
+  const float (*sphere_colors)[4]; /* [sphere_count]; linear RGB and opacity, 0 to 1; null stands for white
+                                    * everywhere */
   size_t sphere_count;
   /* Lines are drawn as tubes. line_points has all points of the first line, then all points of the second
    * line, and so on. */
   const float (*line_points)[4]; /* [line_point_count]; x, y, z of the point, and the tube's radius at the
                                   * point; world units */
-  const float (*line_colors)[4]; /* [line_point_count]; linear RGB and opacity, 0 to 1; null: white */
+  const float (*line_colors)[4]; /* [line_point_count]; linear RGB and opacity, 0 to 1; null stands for white
+                                  * everywhere */
   size_t line_point_count;
   const uint32_t *line_lengths; /* [line_count]; the number of points of each line; the sum of these numbers
                                  * is line_point_count */

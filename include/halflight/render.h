@@ -90,13 +90,13 @@ HL_API HL_WARN_UNUSED hl_status hl_renderer_share(hl_renderer *renderer, int par
  * the sky, so that each process computes only a part of this light, too. The bands run along the direction of
  * the brightest light with shadows of any kind, and a part may have two or three bands. From now on rendering
  * is collective: every rank renders the same scenes, in the same order. ranks: borrowed while the renderer
- * renders; null: whole pictures. */
+ * renders; null stands for whole pictures. */
 HL_API HL_WARN_UNUSED hl_status hl_renderer_share_over_ranks(hl_renderer *renderer, hl_ranks *ranks,
                                                              hl_error *error);
 
 /* Chooses the device that makes the renderer's next frames, in place of the device that the context names.
- * device: a text as in hl_context_options.device; copied; null: the context's device again. The pictures'
- * bytes do not depend on the device. */
+ * device: a text as in hl_context_options.device; copied; null stands for the device that the context names.
+ * The pictures' bytes do not depend on the device. */
 HL_API HL_WARN_UNUSED hl_status hl_renderer_use_device(hl_renderer *renderer, const char *device,
                                                        hl_error *error);
 
@@ -135,8 +135,9 @@ typedef struct hl_reference_options {
                        * 1024 */
   double step;        /* the longest marching step, in units of the shortest voxel edge; default 0.25 */
   int threads;        /* 0: one per processor */
-  int rays;  /* number of rays along each side of a pixel, from 1 to 8, that are averaged; default 1. 0: the
-              * renderer's number of rays, which is greater than 1 where voxels are smaller than pixels */
+  int rays;  /* number of rays along each side of a pixel, from 1 to 8, that are averaged; default 1. 0 stands
+              * for the renderer's number of rays, which is greater than 1 where voxels are smaller than
+              * pixels */
   int paths; /* number of paths from each pixel, from 1 to 2^24, for the estimate of light that media scatter
               * more than once; default 64 */
   float *error; /* the caller's; [height][width][3]: receives the standard error of the estimated light that

@@ -98,7 +98,7 @@ typedef struct hl_label {
  * HL_CUT_SHADING_FACE lights these faces by the normals of the labels' borders. */
 typedef struct hl_mask {
   hl_volume *volume;      /* the label map, in the world of the volume's file; its grid may differ from the
-                           * volume's. The scene retains the label map; null: there is no mask */
+                           * volume's. The scene retains the label map; null if there is no mask */
   const char *file;       /* the file that the label map came from, which hl_scene_to_json writes; may be
                            * null */
   int component;          /* the component of the file that the label map was read from, which
@@ -166,8 +166,8 @@ typedef struct hl_scene_volume {
  * colours. */
 typedef struct hl_scene_mesh {
   const char *name; /* may be null */
-  const char *file; /* the file that the mesh came from, which hl_scene_to_json writes; null: hl_scene_to_json
-                     * writes the mesh's arrays */
+  const char *file; /* the file that the mesh came from, which hl_scene_to_json writes; if null,
+                     * hl_scene_to_json writes the mesh's arrays */
   hl_mesh *mesh;    /* retained by the scene */
   double scale;     /* the mesh is scaled, then rotated about the origin, then translated */
   double rotate_axis[3];
@@ -232,12 +232,12 @@ typedef struct hl_render_settings {
   hl_reconstruction reconstruction;
   hl_slicing slicing;
   hl_shadow_lookup shadow_lookup;
-  int shadow_resolution; /* number of pixels along the longer side of a shadow buffer; 0: the renderer chooses
-                          * it */
-  int threads;           /* number of threads; 0: one for each processor */
+  int shadow_resolution; /* number of pixels along the longer side of a shadow buffer; if 0, the renderer
+                          * chooses it */
+  int threads;           /* number of threads; 0 stands for one thread for each processor */
   hl_compositing compositing;
   int slabs_at_once; /* the number of slabs after which the threads wait for each other. The picture does not
-                      * depend on it; 0: the renderer chooses the number */
+                      * depend on it; if 0, the renderer chooses the number */
 } hl_render_settings;
 
 /* The kinds of marks: the length between two points (ruler), the angle of three points at the second of them,
@@ -320,7 +320,7 @@ HL_API HL_WARN_UNUSED hl_status hl_scene_load(hl_context *context, const char *p
                                               hl_error *error);
 
 /* Reads a scene from JSON text. text: UTF-8, length bytes. base_folder: the folder to which relative paths in
- * the text are relative; null: the current folder. name: the text's name in errors. */
+ * the text are relative; null stands for the current folder. name: the text's name in errors. */
 HL_API HL_WARN_UNUSED hl_status hl_scene_from_json(hl_context *context, const char *text, size_t length,
                                                    const char *base_folder, const char *name,
                                                    hl_scene **scene, hl_error *error);
@@ -340,7 +340,7 @@ HL_API HL_WARN_UNUSED hl_status hl_scene_to_json(hl_context *context, const hl_s
                                                  hl_error *error);
 /* Writes the scene as JSON text that will be stored in `folder`, or in a picture in this folder. Files in the
  * folder or below it are named relative to it. All other files are named as by hl_scene_to_json(). folder: ""
- * is the current folder; null: all files are named as by hl_scene_to_json(). */
+ * is the current folder; if null, all files are named as by hl_scene_to_json(). */
 HL_API HL_WARN_UNUSED hl_status hl_scene_to_json_beside(hl_context *context, const hl_scene *scene,
                                                         const char *folder, char **text, hl_error *error);
 HL_API void hl_text_release(hl_context *context, char *text);
@@ -454,10 +454,10 @@ HL_API void hl_scene_release(hl_scene *scene); /* null is allowed */
 /* Lists the labels that a volume's voxels have, except 0, in rising order. All labels are visible and solid.
  * Names and colours come from the table, or else from the volume's file (.seg.nrrd). A label to which neither
  * gives a colour gets a colour that differs from the others. table: the path of a colour table of FreeSurfer
- * or Slicer, of ITK-SNAP's label descriptions or of a CSV file; null: none. *labels is owned by the caller
- * (hl_labels_release). HL_ERROR_INPUT: a value is no whole number. HL_ERROR_UNSUPPORTED: the map lies in a
- * scratch file or in bricks. Where a map lies over ranks (ranks.h), the first call is collective: each rank
- * gets a copy of the whole map, which the map keeps. */
+ * or Slicer, of ITK-SNAP's label descriptions or of a CSV file; null if there is none. *labels is owned by
+ * the caller (hl_labels_release). HL_ERROR_INPUT: a value is no whole number. HL_ERROR_UNSUPPORTED: the map
+ * lies in a scratch file or in bricks. Where a map lies over ranks (ranks.h), the first call is collective:
+ * each rank gets a copy of the whole map, which the map keeps. */
 HL_API HL_WARN_UNUSED hl_status hl_labels_of_volume(hl_context *context, const hl_volume *map,
                                                     const char *table, hl_label **labels, size_t *count,
                                                     hl_error *error);

@@ -40,7 +40,7 @@ typedef struct hl_function_box {
   double low[2], high[2]; /* the corners with the least and the greatest numbers; both belong to the box */
   double color[3];        /* linear RGB */
   double opacity;         /* per unit_distance */
-  double edge[2];         /* the width of the edge along both axes; 0: the weight is 1 up to the border; at
+  double edge[2];         /* the width of the edge along both axes; if 0, the weight is 1 up to the border; at
                            * most half of the box's side */
   double sigma; /* above 0: the weight is a Gaussian around the box's middle, and `edge` is not used. The
                  * Gaussian's standard deviation is this fraction of the box's sides, and it is cut off at the
@@ -64,7 +64,7 @@ typedef struct hl_function_polygon {
 typedef struct hl_function_image {
   const char *file;    /* the file that the pixels came from, which hl_scene_to_json writes; may be null */
   const float *pixels; /* [height][width][4]: linear RGB times opacity, and opacity per unit_distance. The top
-                        * row has the greatest second numbers; null: there is no image */
+                        * row has the greatest second numbers; null if there is no image */
   int width, height;
   double low[2], high[2]; /* the least and the greatest numbers that the image covers: its outermost pixels
                            * end there */

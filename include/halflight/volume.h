@@ -136,8 +136,9 @@ enum { HL_INDEX_DEFAULT = -1 };
 
 typedef struct hl_volume_load_options {
   size_t struct_size; /* set by hl_volume_load_options_defaults() */
-  const char *array;  /* the name of the array that is read, for a file with several arrays; null: the array
-                       * that the file calls active, else the first scalar array, else the first array */
+  const char *array;  /* the name of the array that is read, for a file with several arrays; null stands for
+                       * the array that the file calls active, else the first scalar array, else the first
+                       * array */
   int component;      /* the component that is read: its number, from 0, or an HL_COMPONENT_ value; default
                        * HL_COMPONENT_DEFAULT. In a file with a series of volumes over time, each volume of
                        * the series counts as a component */
@@ -147,8 +148,8 @@ typedef struct hl_volume_load_options {
                        * is only a name. Default null */
   size_t byte_count;
   const char *series; /* the series that is read from an input with several series. DICOM: a series' number,
-                       * UID or description; null: the largest series. OME-Zarr: an image's number, path or
-                       * name; null: the first image */
+                       * UID or description; null stands for the largest series. OME-Zarr: an image's number,
+                       * path or name; null stands for the first image */
   hl_space space;     /* the anatomical space into which the volume's world is turned, if the file tells the
                        * space of its own world; default HL_SPACE_UNKNOWN: the world is not turned */
   int time, channel, level; /* the numbers, from 0, of the time step, the channel and the resolution (0: the
@@ -268,7 +269,7 @@ typedef struct hl_volume_array {
   size_t struct_size; /* set by the caller */
   const char *name;   /* the array's name, which belongs to the volume; "" if the format has no names */
   size_t components;  /* number of values of each voxel, or number of volumes of a series */
-  hl_voxel_type type; /* the type of the values; 0: this type cannot be read */
+  hl_voxel_type type; /* the type of the values; if 0, this type cannot be read */
   int of_cells;       /* non-zero: VTK's values are those of cells, which lie between the points */
   int chosen;         /* non-zero: the volume was read from this array */
   int component;      /* only for the array that was read: the number of the component that was read, or an

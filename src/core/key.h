@@ -10,7 +10,7 @@
 #include "core/vector.h"
 
 typedef struct hl_key {
-  unsigned char *bytes; /* owned; the bytes of the key; null: the bytes are only counted */
+  unsigned char *bytes; /* owned; the bytes of the key; if null, the bytes are only counted */
   size_t count;
 } hl_key;
 

@@ -32,7 +32,8 @@ typedef struct light_exchange {
   void (*look)(void *data, const light_post *post);
   void (*receive)(void *data, const light_post *post);
   size_t post_bytes; /* number of bytes of a post's `memory` */
-  /* the approximate number of bytes that a post should receive from all parts together; 0: some megabytes */
+  /* the approximate number of bytes that a post should receive from all parts together; 0 stands for some
+   * megabytes */
   size_t most_posted;
 } light_exchange;
 

@@ -79,7 +79,7 @@ void hl_reserve_release(hl_reserve *reserve);
  * are allocated are given back (hl_layout_give_back): `most` is then the peak. */
 
 typedef struct hl_layout {
-  unsigned char *base; /* the block from which arrays are taken, aligned to 64 bytes; null: bytes are only
+  unsigned char *base; /* the block from which arrays are taken, aligned to 64 bytes; if null, bytes are only
                         * counted */
   size_t bytes;        /* number of bytes that are taken at present; SIZE_MAX: overflow */
   size_t most;         /* the greatest number of bytes that were taken at one time */

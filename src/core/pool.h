@@ -15,9 +15,9 @@
 
 typedef struct hl_pool hl_pool;
 
-/* Makes a team of threads. threads: the number of threads, including the caller; 0: one for each processor.
- * If the system refuses to start some of the threads, the team is smaller and a warning says so. The threads
- * block all signals, so that signals reach the program's own threads. */
+/* Makes a team of threads. threads: the number of threads, including the caller; 0 stands for one thread for
+ * each processor. If the system refuses to start some of the threads, the team is smaller and a warning says
+ * so. The threads block all signals, so that signals reach the program's own threads. */
 hl_status hl_pool_create(hl_context *context, int threads, hl_pool **pool, hl_error *error);
 void hl_pool_destroy(hl_pool *pool); /* `pool` may be null */
 

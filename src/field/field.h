@@ -55,7 +55,7 @@ typedef struct field_matter {
   const classifier *classifier;
   float to_index[3][4];  /* maps frame space to the volume's index space */
   float low[3], high[3]; /* the volume's box; index space */
-  float cast;            /* the extinction for lights divided by the extinction for the eye; 0: the volume
+  float cast;            /* the extinction for lights divided by the extinction for the eye; if 0, the volume
                           * casts no shadow */
   int visible;
   int smooth; /* whether the voxels are coefficients of the interpolating kernel */
@@ -139,10 +139,10 @@ typedef struct sky_slice {
   size_t across, down; /* numbers of floats from a cell to the next cell in its row, and to the cell in the
                         * next row */
   int passing; /* index, among a cell's floats, of the mean of the cell's transmittances along three axes. The
-                * sweep adds a third of the transmittance along the slices' axis to this mean; 0: the sweep
+                * sweep adds a third of the transmittance along the slices' axis to this mean; if 0, the sweep
                 * adds nothing */
   /* [rows][stride / FIELD_LANES]; for each block of cells, whether surfaces cut its links: LINKS_BEFORE and
-   * LINKS_AFTER; null: there are no surfaces */
+   * LINKS_AFTER; null if there are no surfaces */
   const unsigned char *cut;
   unsigned char cut_here; /* LINKS_BEFORE or LINKS_AFTER: the side from which the light comes through
                            * links */

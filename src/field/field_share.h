@@ -9,7 +9,7 @@
 #include "core/memory.h"
 
 typedef struct field_share {
-  const light_exchange *with; /* the exchange with the other processes; borrowed; null: this process finds
+  const light_exchange *with; /* the exchange with the other processes; borrowed; if null, this process finds
                                * all slabs */
   size_t piece;               /* the greatest number of bytes that each process gives in one exchange */
   unsigned char *own, *all;   /* own: [piece], bytes of this process; all: [parts][piece], bytes of all
@@ -20,7 +20,7 @@ typedef struct field_share {
                                * hl_field_share_ranges() */
 } field_share;
 
-/* Takes the share's arrays from a layout. with: the exchange with the other processes; null: no arrays are
+/* Takes the share's arrays from a layout. with: the exchange with the other processes; null if no arrays are
  * needed. */
 void hl_field_share_lay_out(const light_exchange *with, size_t slabs, field_share *share, hl_layout *layout);
 

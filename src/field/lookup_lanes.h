@@ -222,8 +222,8 @@ LANES_INLINE void add_cells(const sky_light *sky, const sky_cells *cells, const 
 }
 
 /* Looks up the light between the eight cells around the position of each active lane. surface: 1 on surfaces
- * of a volume's matter, 0 in media and on meshes. whole: false: only the mean over all directions is
- * needed. */
+ * of a volume's matter, 0 in media and on meshes. whole: Returns false if only the mean over all directions
+ * is needed. */
 LANES_INLINE void look_up_sky(const sky_light *sky, lanes3 position, lanes surface, uint32_t active,
                               bool whole, sky_rows *found) {
   const sky_steps steps = steps_of_sky(sky);

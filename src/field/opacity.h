@@ -11,7 +11,7 @@
 typedef struct field_content {
   const field_matter *matter; /* [count]; the matter of the volumes */
   int count;
-  const surfaces *surfaces; /* the surfaces of meshes; null: there are no meshes */
+  const surfaces *surfaces; /* the surfaces of meshes; null if there are no meshes */
   double voxel;             /* the smallest edge of a voxel; frame units */
 } field_content;
 

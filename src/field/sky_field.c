@@ -216,7 +216,7 @@ static void set_links(const surface_links *links, const field_slices *s, size_t 
 }
 
 /* Sweeps the light of one end of an axis through all slices. moving: memory for the light of two slices.
- * links: the links along the end's axis; null: there are no surfaces. */
+ * links: the links along the end's axis; null if there are no surfaces. */
 static void sweep_end(const sky_content *content, const opacity_field *opacity, const surface_links *links,
                       const moving_light *moving, const sky_target *target, int end_index, int first,
                       int channels, const field_functions *functions, hl_pool *pool, sky_progress *progress) {

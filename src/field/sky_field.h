@@ -14,7 +14,7 @@
 typedef struct sky_light {
   /* [z][y][x][SKY_CELL]; a row has row_numbers numbers. A cell has FIELD_HARMONICS x channels harmonics at
    * the indices of SKY_PLACE(), the channels of a harmonic beside each other. It is zero where nothing
-   * visible is near. Null: there is no sky. */
+   * visible is near. Null if there is no sky. */
   const int16_t *cells;
   uint64_t version;   /* the version of `cells`; a number that rises each time the field is made */
   size_t row_numbers; /* number of 16-bit numbers from one row of cells to the next */
@@ -49,7 +49,7 @@ typedef struct sky_content {
   int channels; /* number of channels: 3 if the light of the channels comes from different directions, or if
                  * matter attenuates the channels differently; else 1 */
   const light_exchange
-      *exchange; /* exchange with processes that each find a part of the field; null: there are none */
+      *exchange; /* exchange with processes that each find a part of the field; null if there are none */
 } sky_content;
 
 /* Counts the memory that hl_sky_make() takes in addition to the memory of `held`, the field of the frame

@@ -13,7 +13,7 @@
 typedef struct fill_source {
   const grid *grid;
   const kernel *kernel;
-  const classifier *classifier; /* tells which blocks show nothing; null: all blocks may show something */
+  const classifier *classifier; /* tells which blocks show nothing; if null, all blocks may show something */
   sheet_rays rays;              /* map pixels of the view to the grid's index space */
   const voxel_lists *lists;     /* the sorted voxels; only splatting reads them */
   int sheet;

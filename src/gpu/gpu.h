@@ -15,16 +15,16 @@
 typedef struct hl_gpu hl_gpu;
 
 /* Calls `found` for each device of the system, until `found` returns false. driver: name of the driver whose
- * devices are listed; null: the devices of all drivers are listed. problem: [GPU_PROBLEM_BYTES]; says why a
- * driver offers no device. */
+ * devices are listed; if null, the devices of all drivers are listed. problem: [GPU_PROBLEM_BYTES]; says why
+ * a driver offers no device. */
 typedef bool gpu_found(void *data, const gpu_driver *driver, void *library, int index,
                        const gpu_device_info *info);
 void hl_gpu_find(const char *driver, gpu_found *found, void *data, char *problem);
 
 /* Opens a device. wanted: "gpu" or "auto" mean the first device that is no processor; "cuda" or "opencl" mean
  * the first device of this driver; any other text means the first device with this text in its name; upper
- * and lower case are the same. cache_folder: folder of compiled kernels; borrowed; null: compiled kernels are
- * not kept. Returns null after a failure, and `problem`, [GPU_PROBLEM_BYTES], says why. */
+ * and lower case are the same. cache_folder: folder of compiled kernels; borrowed; null if compiled kernels
+ * are not kept. Returns null after a failure, and `problem`, [GPU_PROBLEM_BYTES], says why. */
 hl_gpu *hl_gpu_open(hl_context *context, const char *wanted, const char *cache_folder, char *problem);
 void hl_gpu_close(hl_gpu *gpu); /* gpu may be null */
 
@@ -50,22 +50,22 @@ typedef struct gpu_volume {
    * null. */
   void (*load_row)(const void *pages, size_t y, size_t z, void *row);
   const void *pages;
-  const plan_brick *directory;  /* [z][y][x]; the directory of the field in bricks; null: the volume is not a
-                                 * field in bricks */
+  const plan_brick *directory;  /* [z][y][x]; the directory of the field in bricks; null if the volume is not
+                                 * a field in bricks */
   const size_t *directory_size; /* number of entries along x, y, z */
-  const unsigned char *colors;  /* [z][y][x][4]; null: the voxels have no colours */
+  const unsigned char *colors;  /* [z][y][x][4]; null if the voxels have no colours */
   size_t color_bytes;
   size_t slots, brick_width; /* slots: number of bricks that have coefficients; brick_width: number of a
                               * brick's coefficients along an axis */
   int storage;               /* as in plan_variant */
   const int32_t *dimension, *brick_count;
   const unsigned char *relevant;           /* [bricks] */
-  const uint64_t *cell_bits;               /* [bricks]; null: there are no bits */
+  const uint64_t *cell_bits;               /* [bricks]; null if there are no bits */
   const float *sums, *color, *shown;       /* [PLAN_TABLE_ROWS][4] */
   const float *outside, *bent, *steepness; /* [PLAN_TABLE_ROWS]; bent and steepness may be null: there is no
                                             * such table */
   gpu_mask mask;                           /* it belongs to tables_version */
-  const float *plane_sums, *plane_color;   /* [PLAN_PLANE_FLOATS]; null: the function is not one of two
+  const float *plane_sums, *plane_color;   /* [PLAN_PLANE_FLOATS]; null if the function is not one of two
                                             * numbers */
 } gpu_volume;
 
@@ -94,10 +94,10 @@ struct gpu_sweep {
   const device_sweep *plan;
   plan_variant variant;
   const plan_rays *rays; /* [2 + 2 lights][sheets] (gpu/kernels/sweep.h) */
-  const plan_cut *cuts;  /* [cut_count]; the cuts of all views, the eye's first; null: none */
+  const plan_cut *cuts;  /* [cut_count]; the cuts of all views, the eye's first; null if there is none */
   size_t cut_count;
   const int32_t *shown_from; /* [tiles][16 blocks]; the first visible slab of each block, if slabs are
-                              * composited from back to front; null: slab 1 for all blocks */
+                              * composited from back to front; null stands for slab 1 for all blocks */
   gpu_sky sky;
   size_t plane_floats; /* number of floats of the planes of all lights together */
   int slabs;           /* the greatest number of slabs of a run */
@@ -122,7 +122,7 @@ typedef struct gpu_passes {
 } gpu_passes;
 bool hl_gpu_pass(hl_gpu *gpu, const gpu_sweep *sweep, const gpu_passes *passes);
 /* Waits for the slabs that were started so far. Finds, for each tile of a light, the last chunk whose slabs
- * absorbed light in the tile; 0: no chunk. chunks: [light->tiles]. */
+ * absorbed light in the tile; 0 if there is no chunk. chunks: [light->tiles]. */
 bool hl_gpu_touched(hl_gpu *gpu, const plan_light *light, int32_t *chunks);
 
 /* The time and the work that one sweep took on a device. */

@@ -52,7 +52,7 @@ struct hl_gpu {
   const char *cache_folder;
   gpu_buffer buffers[BUFFERS];
   uint64_t version, tables_version, sky_version; /* versions of the voxels, of the tables and of the sky's
-                                                  * cells on the device; 0: there are none */
+                                                  * cells on the device; 0 if there are none */
   known_program programs[MOST_VARIANTS];
   int program_count, launches;
   int32_t brick_count[3];

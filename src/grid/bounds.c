@@ -106,7 +106,7 @@ static void bound_layer_of_bricks(void *data, size_t index, int worker) {
                     job->copies + (size_t)worker * WINDOW * WINDOW * job->copy_bytes);
 }
 
-/* The bounds of bricks that were found while the volume's voxels were stored; null: there are no such
+/* The bounds of bricks that were found while the volume's voxels were stored; null if there are no such
  * bounds. */
 static void *stored_bounds(const grid *grid) {
   const hl_brick_bounds *bricks = grid->pages != NULL ? grid->pages->bricks : NULL;

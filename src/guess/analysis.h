@@ -36,7 +36,7 @@ typedef struct hl_data_analysis {
   double dense_share; /* fraction of the voxels beyond solid that lie beyond dense */
   double top;         /* distance that almost no voxel exceeds */
   double mean;        /* mean distance of the voxels beyond faint */
-  double vessels;     /* distance beyond which matter is vessels within other matter; 0: there are none */
+  double vessels;     /* distance beyond which matter is vessels within other matter; 0 if there are none */
   double depth;       /* voxel edges across the objects: cube root of their number of voxels */
   double common;      /* fraction of the voxels whose value lies within two fifths of lower and upper around
                        * the middle */
@@ -55,7 +55,7 @@ typedef struct hl_data_analysis {
   double labels[HL_FEW_LABELS]; /* ascending data values, without the background */
   size_t label_count;
   double valleys[HL_MOST_MATERIALS - 1]; /* distances that divide materials, rising; [material_count - 1] */
-  int material_count; /* number of materials of scanned objects; 0: they were not looked for */
+  int material_count; /* number of materials of scanned objects; 0 if they were not looked for */
 } hl_data_analysis;
 
 /* Analyses a volume's voxels. This is done once, and the volume keeps the result. Fails for lack of memory,
@@ -69,7 +69,7 @@ hl_status hl_data_keep(const hl_volume *volume, const hl_data_analysis *analysis
 void hl_data_find_materials(const hl_volume *volume, hl_data_analysis *analysis);
 
 /* Finds whether the brightest matter of scanned objects is vessels: tubes within other matter. Returns the
- * distance from the background beyond which matter is vessels; 0: the brightest matter is not vessels. All
+ * distance from the background beyond which matter is vessels; 0 if the brightest matter is not vessels. All
  * distances are relative, as the sample's values are. distances: [sample->count]; the distances of the
  * sample, ascending. */
 double hl_data_find_vessels(const hl_volume *volume, const hl_sample *sample, const float *distances,

@@ -97,7 +97,7 @@ static void add_share(const hl_volume *volume, const size_t at[3], int axis, dou
   made->count++;
 }
 
-/* The mean share of the steps at which the values pass a level; 0: they pass it nowhere. */
+/* The mean share of the steps at which the values pass a level; if 0, they pass it nowhere. */
 static double share_of_steps(const hl_volume *volume, const hl_sample *sample, double level) {
   const size_t *n = volume->dimension;
   step_shares made = {0, 0};
@@ -108,8 +108,8 @@ static double share_of_steps(const hl_volume *volume, const hl_sample *sample, d
   return made.count > 0 ? made.sum / (double)made.count : 0;
 }
 
-/* The mean slope, per voxel edge, of the values at the places where they pass a level; 0: they pass the level
- * nowhere. Derived: a slope g in any direction is a difference g cos(t) along an axis, and a pair of
+/* The mean slope, per voxel edge, of the values at the places where they pass a level; if 0, they pass the
+ * level nowhere. Derived: a slope g in any direction is a difference g cos(t) along an axis, and a pair of
  * neighbours lies on both sides of the level with a probability in proportion to |cos(t)|. So the mean
  * difference of such pairs is g <cos^2> / <|cos|> = g (1/3) / (1/2) over all directions. */
 static double slope_at(const hl_volume *volume, const hl_sample *sample, double level) {

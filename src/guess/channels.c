@@ -125,8 +125,8 @@ hl_status hl_scene_join(hl_context *context, hl_scene *const *scenes, size_t cou
 
 /* ---- colours ---- */
 
-/* Finds the colour that a volume's file gives the channel from which the volume was read. False: it gives
- * none. */
+/* Finds the colour that a volume's file gives the channel from which the volume was read. Returns false if it
+ * gives none. */
 static bool told_color(const hl_volume *volume, double srgb[3]) {
   if (volume == NULL || volume->channels == NULL) return false;
   const hl_channel *channel = &volume->channels[volume->selection.channel];

@@ -174,7 +174,7 @@ static hl_status leave_holders_out(hl_context *context, const hl_look *base, con
 
 /* Gives a label map its labels, with the names and colours in its file. A volume whose values turn out not to
  * be labels, or that is larger than memory, gets no labels. It is drawn by its values, and a log line says
- * so. *labels: owned by the caller; null: none. */
+ * so. *labels: owned by the caller; null if there is none. */
 static hl_status find_labels(hl_context *context, hl_scene_volume *volume, hl_label **labels,
                              hl_error *error) {
   int is_label_map = 0;
@@ -190,8 +190,8 @@ static hl_status find_labels(hl_context *context, hl_scene_volume *volume, hl_la
   return status;
 }
 
-/* Makes a scene of a volume in one look. style: the look that was asked for; null: the look that suits the
- * volume. The look that suits a label map draws its labels. */
+/* Makes a scene of a volume in one look. style: the look that was asked for; null stands for the look that
+ * suits the volume. The look that suits a label map draws its labels. */
 static hl_status make_scene_of(hl_context *context, hl_volume *volume, const char *file, const hl_look *style,
                                hl_scene **scene, hl_error *error) {
   hl_data_analysis analysis;

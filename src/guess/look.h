@@ -12,8 +12,8 @@ typedef struct hl_look {
   double key, fill, sky; /* intensities of the light with shadows, of the light without shadows, and of the
                           * sky */
   double left;      /* for hl_scene_exposure(): the light of the sky, and of lights with shadows, that reaches
-                     * media in spite of shadows, as a fraction; 0: the lights' strengths are not scaled by an
-                     * exposure */
+                     * media in spite of shadows, as a fraction; 0 if the lights' strengths are not scaled by
+                     * an exposure */
   bool on_black;    /* whether a bare volume gets a black background */
   const char *next; /* the name of the style to try next for such data */
 } hl_look;

@@ -15,7 +15,7 @@ bool hl_is_body(const hl_volume *volume, const char *file, const hl_data_analysi
 void hl_look_material(const hl_look *look, hl_scene_volume *volume);
 
 /* Makes the transfer function of a look; *function owns its points. style: the style (styles.h) whose
- * opacities take the place of the look's; null: none. */
+ * opacities take the place of the look's; null if there is none. */
 hl_status hl_look_write(const hl_look *look, const hl_look *style, hl_context *context,
                         const hl_volume *volume, const hl_data_analysis *analysis,
                         hl_transfer_function *function, hl_error *error);

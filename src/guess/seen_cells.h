@@ -44,16 +44,18 @@ typedef struct hl_seen {
 hl_status hl_seen_find(const hl_scene_volume *volume, hl_seen *seen, bool *any, hl_error *error);
 void hl_seen_release(hl_seen *seen);
 
-/* The first and the last voxel that counts in the row (j, k); false: there is none. */
+/* The first and the last voxel that counts in the row (j, k). Returns false if there is none. */
 bool hl_seen_row(const hl_seen *seen, ptrdiff_t j, ptrdiff_t k, ptrdiff_t *first, ptrdiff_t *last);
 
 /* ---- bodies: marked places of a lattice that are connected by their faces ---- */
 
 typedef struct hl_bodies {
-  uint32_t *body;   /* owned; [size[2]][size[1]][size[0]]; number of the body, from 1 to count; 0: none */
+  uint32_t *body;   /* owned; [size[2]][size[1]][size[0]]; number of the body, from 1 to count; 0 if there is
+                     * none */
   uint32_t *places; /* owned; [count + 1]; each body's number of places */
   uint32_t count;
-  uint32_t largest; /* the body with the most places; of equally large bodies, the first; 0: there is none */
+  uint32_t largest; /* the body with the most places; of equally large bodies, the first; 0 if there is
+                     * none */
 } hl_bodies;
 
 /* Finds the bodies. marked: not 0 where a place belongs to a body. Fails only for lack of memory; release the

@@ -4,8 +4,8 @@
 
 #include "guess/analysis.h"
 
-/* The standard deviation, in voxels, of the Gaussian that smooths a bare volume of a file by default; 0: the
- * volume is not smoothed. */
+/* The standard deviation, in voxels, of the Gaussian that smooths a bare volume of a file by default; 0 if
+ * the volume is not smoothed. */
 double hl_smoothing_for(const hl_volume *volume, const char *file, const hl_data_analysis *analysis);
 
 #endif

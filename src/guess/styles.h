@@ -5,7 +5,7 @@
 
 #include "guess/look.h"
 
-/* A style of looks, by number or by name; null: there is no such style. */
+/* A style of looks, by number or by name; null if there is no such style. */
 const hl_look *hl_style(size_t index);
 const hl_look *hl_style_find(const char *name);
 

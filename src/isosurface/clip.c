@@ -12,7 +12,7 @@ typedef struct cutting {
   hl_context *context;
   iso_triangles *made;
   double normal[3], offset;
-  const affine3 *sphere; /* maps index space to the coordinates q of a sphere; null: the kept side is a
+  const affine3 *sphere; /* maps index space to the coordinates q of a sphere; if null, the kept side is a
                           * half space */
   bool both;             /* whether the triangles on both sides of the face are kept, cut apart from each
                           * other */

@@ -57,7 +57,7 @@ static inline double hl_lattice_position(const lattice *lattice, int axis, int32
                                           : i - 1.0;
 }
 
-/* The brick of the lattice that has given coordinates; null: this brick is not kept. */
+/* The brick of the lattice that has given coordinates; null if this brick is not kept. */
 const lattice_brick *hl_lattice_brick(const lattice *lattice, const int32_t at[3]);
 
 #endif

@@ -11,8 +11,8 @@
  * hl_label_occupancy() makes the others; the boxes that hold the labels are found in one pass over the map.
  * labels: [count]; data values, rising. made: [count]; retained for the caller; an element is null if no
  * voxel has the label; all are null after a failure. threads: 0 for one per processor. work: the voxels of
- * all these labels' boxes are reported to it; null: progress is reported for these labels alone. Any thread
- * may call this function. */
+ * all these labels' boxes are reported to it; if null, progress is reported for these labels alone. Any
+ * thread may call this function. */
 hl_status hl_label_occupancies(hl_context *context, int threads, hl_volume *map, const int64_t *labels,
                                size_t count, hl_label_work *work, hl_volume **made, hl_error *error);
 

@@ -24,7 +24,7 @@ typedef struct light_cap {
 } light_cap;
 
 typedef struct light_caps {
-  int count; /* number of parts; 0: the light is parallel or a point, and is not divided into parts */
+  int count; /* number of parts; if 0, the light is parallel or a point, and is not divided into parts */
   light_cap cap[MOST_CAPS];
 } light_caps;
 

@@ -33,7 +33,7 @@ light_sectors hl_light_sectors(vec3 eye_direction, double widest);
 /* The fraction of a ray's light that belongs to sector i. It is max(0, cos_i - least)^2, divided by the sum
  * of these numbers over all sectors. cos_i is the cosine of the angle between the ray and axis i. */
 typedef struct sector_fraction {
-  int count; /* number of sectors; 0: the fraction belongs to a whole light */
+  int count; /* number of sectors; if 0, the fraction belongs to a whole light */
   int sector;
   float axis[LIGHT_SECTORS][3];
   float least;
@@ -44,8 +44,8 @@ sector_fraction hl_sector_fraction(const light_sectors *sectors, int sector);
 
 /* A picture that a light projects, or that is on the light's surface. */
 typedef struct light_picture {
-  const float
-      *pixels; /* borrowed from the scene; [height][width][3]: linear RGB, top row first; null: none */
+  const float *pixels; /* borrowed from the scene; [height][width][3]: linear RGB, top row first; null if
+                        * there is none */
   int width, height;
 } light_picture;
 
@@ -95,7 +95,7 @@ typedef struct light_cone {
   float axis[3]; /* unit vector along which light travels in the middle of the cone; frame space */
   float outer;   /* cosine of the angle at which the cone's light begins */
   float scale;   /* 1 / (inner - outer), where `inner` is the cosine of the angle within which brightness is
-                  * full; 0: the light has no cone */
+                  * full; 0 if the light has no cone */
 } light_cone;
 
 /* Makes the cone of a light. content: the middle of the lit content. pixel: edge of a picture's pixel at this

@@ -26,7 +26,7 @@ typedef struct texture_level {
 enum { TEXTURE_LEVELS = 24 };
 
 typedef struct light_texture {
-  const float *pixels; /* [height][width][3], linear RGB; the averaged image; null: the light has no
+  const float *pixels; /* [height][width][3], linear RGB; the averaged image; null if the light has no
                         * texture */
   int width, height;
   /* maps frame space to (w, w u, w v), where u and v are pixels from the image's top left corner. If w <= 0,
@@ -42,7 +42,7 @@ typedef struct light_texture {
   float first;
   float edge[2];   /* along u and v: the width, in pixels of the image, of a box that has the same variance as
                     * the blur at the distance 1 */
-  int level_count; /* number of levels; 0: the light's extent does not blur the image */
+  int level_count; /* number of levels; 0 if the light's extent does not blur the image */
   texture_level level[TEXTURE_LEVELS];
   float *memory; /* owned; the memory of the averaged image and the blurred levels; null if neither is
                   * needed */

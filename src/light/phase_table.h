@@ -37,7 +37,7 @@ typedef struct phase_tables {
   void *memory;        /* owned; the memory of `tables` and `numbers` */
   size_t bytes;        /* bytes of `memory` */
   phase_table *tables; /* [count]; in `memory` */
-  size_t count;        /* number of tables; 0: no medium of the scene needs a table */
+  size_t count;        /* number of tables; 0 if no medium of the scene needs a table */
   float *numbers;      /* the numbers of all tables, one table after the other; in `memory` */
   hl_key key;
 } phase_tables;

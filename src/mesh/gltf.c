@@ -127,8 +127,8 @@ static void add_vertices(gltf_reader *reader, const gltf_accessor *positions, co
   }
 }
 
-/* Adds the triangles that `count` corners make. indices: the vertex of each corner; null: corner n is vertex
- * n. flipped: whether the node's transform is a mirror, which turns triangles over. */
+/* Adds the triangles that `count` corners make. indices: the vertex of each corner; if null, corner n is
+ * vertex n. flipped: whether the node's transform is a mirror, which turns triangles over. */
 static hl_status add_faces(gltf_reader *reader, const gltf_accessor *indices, size_t count, size_t vertices,
                            size_t mode, bool flipped) {
   mesh_parts *parts = reader->parts;

@@ -35,7 +35,7 @@ struct hl_mesh {
   bool closed;            /* whether the mesh encloses an inside and its fronts face outwards: each edge has
                            * triangles on both sides, or several parts enclose an inside together */
   int8_t *insides; /* owned; [triangle_count]; the side of a triangle on which the inside of its closed part
-                    * lies: -1 is the triangle's back, 1 its front; 0: the part is open */
+                    * lies: -1 is the triangle's back, 1 its front; if 0, the part is open */
   bool opaque;     /* whether no triangle's colour lets light through */
   bool is_cut;     /* whether the scene's cuts were applied already when the mesh was made, as for an
                     * isosurface */

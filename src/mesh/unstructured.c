@@ -16,7 +16,7 @@ enum { FACES_MOST = 6, FACE_CORNERS = 4, TYPES = 43 };
 typedef struct cell_type {
   signed char kind;    /* a kind of PolyData's cells; VOLUME: the type encloses a volume; NONE: the type is
                         * not shown */
-  signed char corners; /* number of corners; 0: the number differs between cells of the type */
+  signed char corners; /* number of corners; if 0, the number differs between cells of the type */
   signed char faces[FACES_MOST][FACE_CORNERS];
 } cell_type;
 

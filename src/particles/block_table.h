@@ -15,7 +15,7 @@ typedef struct hl_block_table {
   size_t count;        /* number of blocks */
   int32_t (*place)[3]; /* owned; [count]; coordinates x, y, z of each block, by its number */
   size_t room;         /* number of blocks for which `place` has room */
-  uint32_t *entries;   /* owned; [size]; a block's number plus 1; 0: free */
+  uint32_t *entries;   /* owned; [size]; a block's number plus 1; 0 if the entry is free */
   size_t size;         /* a power of two, or 0 */
 } hl_block_table;
 

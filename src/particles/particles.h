@@ -79,10 +79,10 @@ hl_status hl_particles_find_lengths(hl_context *context, hl_pool *pool, const ch
 
 /* Limits of a lattice. */
 typedef struct hl_particle_limits {
-  double spacing; /* world units; the wanted spacing of the finest level. 0: half of a smoothing length,
-                   * chosen so that one particle in fifty has a shorter one */
+  double spacing; /* world units; the wanted spacing of the finest level. 0 stands for half of a smoothing
+                   * length. This length is chosen so that one particle in fifty has a shorter one */
   size_t points;  /* the most points of level 0 */
-  size_t side;    /* the greatest number of cells of level 0 along an axis; 0: no limit */
+  size_t side;    /* the greatest number of cells of level 0 along an axis; 0 if there is no limit */
 } hl_particle_limits;
 
 /* Chooses a lattice around the particles and their kernels. A wanted spacing is kept; along a periodic axis
@@ -104,7 +104,7 @@ typedef struct hl_particle_plan {
   hl_particle_lattice lattice;
   uint8_t *level_of; /* owned; [set->count]; the level on which each particle is spread */
   hl_block_table blocks[HL_PARTICLE_LEVELS];
-  hl_bricks_leaf *leaves; /* owned; null: the field becomes an array of all points */
+  hl_bricks_leaf *leaves; /* owned; if null, the field becomes an array of all points */
   size_t leaf_count;
 } hl_particle_plan;
 
@@ -128,8 +128,8 @@ typedef struct hl_particle_field {
 } hl_particle_field;
 
 /* Makes the field of the particles' weights: weight per volume, in world units. weights: [set->count], in the
- * set's order; null: each weight is 1. The sum of all coefficients of level 0, times the volume of a cell, is
- * the sum of the weights, except for the rounding of floats. The field borrows the plan. *field must be
+ * set's order; if null, each weight is 1. The sum of all coefficients of level 0, times the volume of a cell,
+ * is the sum of the weights, except for the rounding of floats. The field borrows the plan. *field must be
  * released also after a failure. */
 hl_status hl_particles_spread(hl_context *context, hl_pool *pool, const hl_particle_set *set,
                               const float *weights, const hl_particle_plan *plan, const char *subject,

@@ -24,7 +24,7 @@ void hl_particle_probes_release(hl_context *context, hl_particle_probes *probes)
 
 /* Adds up, at each place, weight W(r / h) / (pi h^3) over all particles, with the kernel W of kernel.h, the
  * distance r to the particle and the particle's own smoothing length h. weights: [set->count], in the set's
- * order; null: each weight is 1. sums: [count]; the same with any number of threads. */
+ * order; if null, each weight is 1. sums: [count]; the same with any number of threads. */
 hl_status hl_particle_probes_sum(hl_context *context, hl_pool *pool, const hl_particle_set *set,
                                  const float *weights, const hl_particle_plan *plan,
                                  const hl_particle_probes *probes, const char *subject, double *sums,

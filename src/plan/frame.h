@@ -34,7 +34,7 @@ typedef struct frame {
   light_sectors sectors; /* the directions of the sectors into which lights within the content are divided */
   light_source *lights;  /* [light_count]; owned by the caller; the sectors of one light follow each other */
   int light_count;
-  const surfaces *surfaces;    /* surfaces of the scene's meshes; null: the scene has no meshes */
+  const surfaces *surfaces;    /* surfaces of the scene's meshes; null if the scene has no meshes */
   const surface_tree *contact; /* the tree of the surfaces close behind which the light is corrected
                                 * (render/late/) */
 } frame;

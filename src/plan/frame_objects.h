@@ -22,10 +22,10 @@ typedef struct volume_look {
 
 /* A volume of the frame. Its grid is the plan's grid with the same index. */
 typedef struct frame_volume {
-  const char *name;                 /* the volume's name; borrowed; null: it has none */
+  const char *name;                 /* the volume's name; borrowed; null if it has none */
   const hl_volume *volume;          /* the volume; borrowed for its own colours and for the range of its
                                      * values */
-  const hl_volume *tints;           /* the mask whose colours tint the volume; borrowed; null: there is
+  const hl_volume *tints;           /* the mask whose colours tint the volume; borrowed; null if there is
                                      * none */
   const classifier *classifier;     /* borrowed; the transfer function's tables */
   double empty;                     /* the data value of the space beyond the volume */
@@ -59,7 +59,7 @@ typedef struct frame_light {
 /* A mesh of the frame, or an isosurface of a volume. Its primitives are those of the mesh with the same index
  * in the frame's surfaces. */
 typedef struct frame_mesh {
-  const char *name; /* the mesh's name; borrowed; null: it has none */
+  const char *name; /* the mesh's name; borrowed; null if it has none */
   int object;       /* the mesh's number in the layer of objects; an isosurface has the number of its
                      * volume */
   surface_look look;

@@ -25,7 +25,7 @@ typedef struct plan_picture {
   int tiles_x;             /* number of the frame's tiles in a row of tiles */
   size_t tiles;            /* number of the frame's tiles */
   picture_share share;     /* the division of the picture into parts, and the part that this renderer makes */
-  const hl_layers *layers; /* borrowed; the layers that are wanted; null: none */
+  const hl_layers *layers; /* borrowed; the layers that are wanted; null if there is none */
 } plan_picture;
 
 /* The volumes of a frame, and how their samples are made. */
@@ -42,16 +42,16 @@ typedef struct plan_volumes {
 /* Light that does not travel from sheet to sheet, because it is found on grids of its own. */
 typedef struct plan_fields {
   bool scatters;                  /* whether media scatter light more than once */
-  const scatter_field *scattered; /* borrowed; the light that media scatter more than once; null: the frame
+  const scatter_field *scattered; /* borrowed; the light that media scatter more than once; null if the frame
                                    * has no such light */
-  const sky_light *sky;           /* borrowed; the light of the sky; null: there is no sky */
+  const sky_light *sky;           /* borrowed; the light of the sky; null if there is no sky */
   const phase_tables *phases;     /* borrowed; the means of phase functions over wide lights */
 } plan_fields;
 
 /* A light of a sweep. */
 typedef struct light_plan {
   const light_source *source;
-  light_emission *emission; /* owned; the picture on the light's own surface; null: none */
+  light_emission *emission; /* owned; the picture on the light's own surface; null if there is none */
   light_shadow shadow;      /* the shadow as it was planned; a back end works on a copy of it
                              * (hl_light_shadow_begin) */
   shadow_layouts memory;    /* the memory that the shadow's method takes */

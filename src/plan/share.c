@@ -67,7 +67,7 @@ static bool is_divided(const picture_share *share, const light_source *source) {
   return method->divides || (method->exchanges && share->exchange != NULL);
 }
 
-/* The brightest light whose shadows are divided among the parts; null: no light has such shadows. */
+/* The brightest light whose shadows are divided among the parts; null if no light has such shadows. */
 static const light_source *brightest(const share_content *content, const picture_share *share) {
   const frame *frame = content->frame;
   const light_source *found = NULL;

@@ -20,11 +20,11 @@
  * high, so it has as many pixels of the picture as a tile has of the frame. */
 typedef struct picture_share {
   int part, parts;                /* part: number of this renderer's part; parts: number of parts */
-  const light_exchange *exchange; /* borrowed; exchanges light with the other parts; null: light is not
+  const light_exchange *exchange; /* borrowed; exchanges light with the other parts; null if light is not
                                    * exchanged */
   int cells_x, cells_y;           /* number of cells of the whole picture */
   int oversampling;               /* number of the frame's tiles along each side of a cell */
-  unsigned char *memory;          /* owned; holds part_of; null: the picture is not shared */
+  unsigned char *memory;          /* owned; holds part_of; null if the picture is not shared */
   int32_t *part_of;               /* [cells_y][cells_x]; the part to which each cell belongs */
 } picture_share;
 

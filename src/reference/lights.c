@@ -329,7 +329,7 @@ void hl_reference_light_arrive(const reference_light *light, vec3 point, arrival
 /* Finds the colour that the light's images give to the ray from a point of the light to `point`. An image is
  * the texture that the light projects, or the emission image on its surface. Returns false if the colour is
  * black. light_point: the point of the light; for a directional light, a direction. plane: the plane of the
- * emission image; null: each point of the light has the image's mean colour. */
+ * emission image; if null, each point of the light has the image's mean colour. */
 static bool find_pattern(const reference_light *light, const emission_plane *plane, vec3 light_point,
                          vec3 point, double pattern[3]) {
   pattern[0] = pattern[1] = pattern[2] = 1;

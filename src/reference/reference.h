@@ -200,7 +200,7 @@ typedef struct march {
 /* A receiver of light: either a point, or the outside of the volume's surface that the point belongs to. */
 typedef struct reference_receiver {
   vec3 point;                         /* world */
-  const reference_volume *surface_of; /* the volume whose surface's outside receives the light; null: the
+  const reference_volume *surface_of; /* the volume whose surface's outside receives the light; if null, the
                                        * point itself receives it */
   double value;                       /* the value of surface_of at the point */
 } reference_receiver;

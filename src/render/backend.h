@@ -18,7 +18,7 @@ typedef struct backend {
   /* Makes one sweep of the plan. It is called once for each sweep, in the order of the sweeps. */
   hl_status (*run)(hl_renderer *renderer, const frame_plan *plan, int sweep, frame_target *target,
                    hl_render_statistics *statistics, hl_error *error);
-  /* Brings all pixels of the picture to the target after the last sweep. Null: the sweeps themselves bring
+  /* Brings all pixels of the picture to the target after the last sweep. If null, the sweeps themselves bring
    * the pixels to the target. */
   hl_status (*read)(hl_renderer *renderer, const frame_plan *plan, frame_target *target,
                     hl_render_statistics *statistics, hl_error *error);

@@ -28,8 +28,8 @@ typedef struct near_pixels {
 typedef struct seen_light {
   lanes3 towards;          /* unit direction to the light */
   lanes path;              /* length of the light's way through the slab */
-  const near_pixels *near; /* the four pixels of the light's buffer around the sample; null: no face of a box
-                            * is near, or look-ups read only the nearest pixel */
+  const near_pixels *near; /* the four pixels of the light's buffer around the sample; null if no face of a
+                            * box is near, or look-ups read only the nearest pixel */
 } seen_light;
 
 /* The square root of 1/6. Derived: the weights of bilinear look-ups, averaged over all positions between

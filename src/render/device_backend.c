@@ -27,7 +27,7 @@ static void give_up(hl_renderer *renderer, const char *reason) {
   snprintf(renderer->device.problem, sizeof renderer->device.problem, "%.390s", reason);
 }
 
-/* The name of the device that should make the renderer's frames. Null: the processors make them. */
+/* The name of the device that should make the renderer's frames. Returns null if the processors make them. */
 static const char *wanted_device(const hl_renderer *renderer) {
   return renderer->device.wanted[0] != '\0' ? renderer->device.wanted : renderer->context->options.device;
 }

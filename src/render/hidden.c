@@ -22,8 +22,8 @@ static int32_t first_shown(const sweep *sweep, int slab) { return sweep->geometr
 
 /* The data of the function that the search calls for each tile. */
 typedef struct hidden_search {
-  int32_t *shown_from; /* [tiles][16]; the number of the first visible slab of each block; 0: no opaque matter
-                        * covers the block yet */
+  int32_t *shown_from; /* [tiles][16]; the number of the first visible slab of each block; 0 if no opaque
+                        * matter covers the block yet */
   bool trying; /* whether blocks stay open after they are opaque, so that the pixels that opaque matter covers
                 * are counted */
 } hidden_search;

@@ -32,7 +32,7 @@ typedef struct light_pixels {
 enum { COLORS = 4 }; /* R G B A */
 
 typedef struct layer_pixels {
-  const hl_layers *wanted;         /* the caller's; null: none */
+  const hl_layers *wanted;         /* the caller's; null if there is none */
   float *ambient, *emission, *sky; /* R G B A */
   float *sky_reaching, *sky_open;  /* R G B A; two pictures of white volumes: lit by the sky, and lit by a sky
                                     * that  nothing hides */

@@ -36,8 +36,8 @@ typedef struct read_buffer {
   int32_t *until;    /* [tiles_y][tiles_x] */
   int tiles_x, tiles_y;
   const struct read_buffer *moves; /* the buffer whose pixels are the unit in which look-ups at surfaces are
-                                    * moved away from the surfaces: the light's first buffer. Null: there are
-                                    * no surfaces. */
+                                    * moved away from the surfaces: the light's first buffer. Null if there
+                                    * are no surfaces. */
 } read_buffer;
 
 /* The position of a point in a buffer, as homogeneous coordinates (w, w u, w v). */
@@ -266,7 +266,7 @@ void hl_light_reads_count(sweep *sweep, hl_layout *layout) {
 
 /* ---- owners ---- */
 
-/* The last slab in which bricks or surfaces touch a tile; 0: nothing touches the tile. */
+/* The last slab in which bricks or surfaces touch a tile; 0 if nothing touches the tile. */
 static int32_t last_touched(const occupancy *occupancy, size_t tile) {
   for (int slab = occupancy->sheets - 1; slab > 0; slab--)
     if (hl_occupancy_touches(occupancy, tile, slab)) return slab;

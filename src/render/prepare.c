@@ -177,7 +177,7 @@ static bool hold_mask(const preparation *with, prepared_volume *prepared, const 
   return now->factors == before.factors && now->rest == before.rest;
 }
 
-/* The volume whose values are the second number of a function of two numbers; null: there is no such
+/* The volume whose values are the second number of a function of two numbers; null if there is no such
  * volume. */
 static const hl_scene_volume *second_of(const hl_scene_description *all, const hl_scene_volume *scene) {
   const hl_function_plane *plane = &scene->transfer_function.plane;

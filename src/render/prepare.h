@@ -14,7 +14,7 @@ typedef struct prepared_iso {
   double value;
   double axis_scale[3]; /* the volume's axes */
   uint8_t capped;       /* the faces of the volume's box that have caps (hl_iso_capped_faces) */
-  hl_mesh *mesh;        /* owned; null: the surface is empty */
+  hl_mesh *mesh;        /* owned; if null, the surface is empty */
 } prepared_iso;
 
 /* A prepared volume. It is kept between frames while its voxels, kernel, clip box and transfer function stay
@@ -22,8 +22,9 @@ typedef struct prepared_iso {
 typedef struct prepared_volume {
   const hl_scene_volume *scene; /* the volume in the frame's scene */
   hl_volume *volume;            /* retained */
-  hl_volume *mask;              /* retained: the lattice of the volume's mask; null: the volume has no mask */
-  hl_volume *second;            /* retained: the other volume of a transfer function of two numbers; null:
+  hl_volume *mask;              /* retained: the lattice of the volume's mask; null if the volume has no
+                                 * mask */
+  hl_volume *second;            /* retained: the other volume of a transfer function of two numbers; null if
                                  * there is none */
   double second_empty;          /* the second volume's empty value */
   grid grid;
@@ -32,8 +33,8 @@ typedef struct prepared_volume {
   hl_kernel kernel;              /* the kernel for which bounds of the grid's cells were found */
   hl_transfer_function function; /* the transfer function from which the classifier was made; its points are
                                   * owned */
-  uint64_t plane_mark; /* a number that identifies the content of a transfer function of two numbers; 0: the
-                        * function depends on the value alone */
+  uint64_t plane_mark; /* a number that identifies the content of a transfer function of two numbers; if 0,
+                        * the function depends on the value alone */
   double clip[6];
   int clipped;
   uint64_t version, tables_version; /* versions of the grid's voxels, and of everything that follows from the

@@ -30,7 +30,7 @@ typedef struct frame_cache {
 
 /* The device that makes a renderer's frames. */
 typedef struct renderer_device {
-  struct hl_gpu *gpu; /* owned; null: the processors make the frames */
+  struct hl_gpu *gpu; /* owned; if null, the processors make the frames */
   char wanted[128];   /* name of the wanted device; empty: the device that the context names is wanted */
   bool tried;         /* the device was looked for */
   char problem[400];  /* the reason why the device makes no frames */

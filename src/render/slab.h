@@ -21,7 +21,7 @@ struct surface_samples;
 /* The colours of a volume's voxels, or of its mask. */
 typedef struct voxel_colors {
   const unsigned char *voxels; /* owned by the volume or mask; [k][j][i][4]; the colours of voxels
-                                * (volume/colors.h, label/mask.h); null: there are no colours */
+                                * (volume/colors.h, label/mask.h); null if there are no colours */
   int32_t last[3];             /* the greatest index along i, j, k */
   int32_t step_bytes[3];       /* number of bytes from one voxel to the next along i, j, k */
   const float *decode;         /* [256]: the linear values of codes */
@@ -39,7 +39,7 @@ typedef struct shade_volume {
   float ambient, diffuse, specular, shininess; /* ka kd ks n */
   float emission;                              /* the emission ke; 1 for a volume that is shaded flat */
   float cast[HL_CHANNELS];                     /* the extinction for lights divided by the extinction for the
-                                                * eye, in each channel; 0: the volume casts no shadow */
+                                                * eye, in each channel; if 0, the volume casts no shadow */
   float to_index[3][4], low[3], high[3];       /* maps frame space to index space; also the volume's box in
                                                 * index space */
   int32_t face_cuts[3][2]; /* [axis][low, high]: -1 for a face of the volume's box that cuts visible matter,
@@ -76,7 +76,7 @@ typedef struct shade_patch {
   const float *before, *current; /* [256], block-major; densities on sheet k-1 and on sheet k */
   uint32_t blocks;               /* the blocks that have density on either sheet */
   const float *enter, *leave; /* [256], block-major; for each pixel, the heights at which its ray enters and
-                               * leaves the volume's box; null: the box cuts nothing visible */
+                               * leaves the volume's box; if null, the box cuts nothing visible */
   int uncut;                  /* whether the box cuts neither the slab in this tile nor the ways of light
                                * through the box to the slab */
 } shade_patch;
@@ -130,12 +130,12 @@ typedef struct shade_job {
   float emission;                 /* 1 in the first sweep, 0 in the others, so that the volumes' emission is
                                    * added only once */
   int channels;                   /* number of channels of light attenuation: 1 or 3 */
-  const scatter_field *scattered; /* the light that media scatter more than once; set in the first sweep;
-                                   * null: the scene has no such light */
-  const sky_light *sky;           /* the field of the sky's light; null: there is no sky, or its light is
+  const scatter_field *scattered; /* the light that media scatter more than once; set in the first sweep; null
+                                   * if the scene has no such light */
+  const sky_light *sky;           /* the field of the sky's light; null if there is no sky, or its light is
                                    * added in another sweep */
   /* [lights of the sweep][channels]; for one tile, row by row: the fraction of light that the surfaces close
-   * before the samples let pass (late/); null: all light passes. */
+   * before the samples let pass (late/); if null, all light passes. */
   const float (*near_passing)[TILE_PIXELS];
   float near_u, near_v; /* the tile's first pixel */
 } shade_job;
@@ -186,7 +186,7 @@ enum {
 enum { MAXIMUM_GREATEST, MAXIMUM_BEFORE, MAXIMUM_SHEET, MAXIMUM_ROWS };
 
 typedef struct maximum_values {
-  float *values; /* owned; [tiles][volumes][MAXIMUM_ROWS][256]; null: the frame is no maximum projection */
+  float *values; /* owned; [tiles][volumes][MAXIMUM_ROWS][256]; if null, the frame is no maximum projection */
   size_t volume_count; /* number of visible volumes */
   size_t tiles;
 } maximum_values;

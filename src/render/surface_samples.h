@@ -23,7 +23,7 @@ typedef struct surface_samples {
                     * the surface */
   int receives_shadow;
   /* [lights of the sweep][channels]; the fraction of light that passes the surfaces close before the samples
-   * (late/); null: all light passes. */
+   * (late/); if null, all light passes. */
   const float (*contact)[SURFACE_SAMPLES];
 } surface_samples;
 

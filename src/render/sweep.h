@@ -24,12 +24,12 @@ typedef struct sweep_light {
   view_sheets sheets;       /* the sheets of the shadow buffer's view */
   light_texture texture;    /* the picture that the light projects */
   void *reads;              /* owned; holds the next three arrays (light_reads.h) */
-  int32_t *needed_until;    /* [tiles of the buffer]; the last slab that needs each tile; 0: no slab needs it.
-                             * Null: all slabs need all tiles */
+  int32_t *needed_until;    /* [tiles of the buffer]; the last slab that needs each tile; 0 if no slab needs
+                             * it. If null, all slabs need all tiles */
   int32_t *sublights_until; /* the same numbers as in needed_until, for the tiles of the sub-lights' buffers;
                              * see light_shadow.sublights_until */
   unsigned char *owned; /* [tiles of the buffer]; 1 for tiles whose light this part of a shared picture sends
-                         * to the other parts; null: this part sends no light */
+                         * to the other parts; if null, this part sends no light */
 } sweep_light;
 
 static inline bool hl_light_needs(const sweep_light *light, size_t tile, int slab) {
@@ -155,9 +155,9 @@ typedef struct sweep_loop {
 /* The pixels that a sweep makes. */
 typedef struct sweep_target {
   float *pixels;                 /* [tiles][16][4][16]; the sweep's own */
-  const int32_t *shown_from;     /* [tiles][16]; the first visible slab of each block; null: opaque matter
+  const int32_t *shown_from;     /* [tiles][16]; the first visible slab of each block; if null, opaque matter
                                   * hides nothing */
-  const layer_pixels *layers;    /* the pixels of the layers; null: no layers are wanted */
+  const layer_pixels *layers;    /* the pixels of the layers; null if no layers are wanted */
   const maximum_values *maximum; /* values of a maximum projection; null, or a struct whose `values` is null:
                                   * the picture shows lit matter */
 } sweep_target;

@@ -21,7 +21,7 @@ void hl_sweep_constants_lay_out(const frame_plan *plan, sweep_constants *constan
 
 /* ---- the volumes ---- */
 
-/* Sets the place of the colours of a volume's voxels in memory. volume: null: there are no colours. 32 bits
+/* Sets the place of the colours of a volume's voxels in memory. volume: null if there are no colours. 32 bits
  * hold the indices of colours, because a volume with colours has at most 2^29 voxels. */
 static voxel_colors colors_of(const hl_volume *volume, const float *decode) {
   voxel_colors colors = {.decode = decode};

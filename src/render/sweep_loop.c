@@ -39,7 +39,7 @@ static uint64_t carried_tiles(const shadow_buffer *buffer, slab_stretch stretch,
   return bits;
 }
 
-/* Lists the tiles of a view that a stretch needs. light: the light to which the view belongs; null: the
+/* Lists the tiles of a view that a stretch needs. light: the light to which the view belongs; if null, the
  * view is the picture's. */
 static int list_tiles(const occupancy *occupancy, const sweep_light *light, slab_stretch stretch,
                       uint32_t *list) {

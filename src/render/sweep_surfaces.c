@@ -10,7 +10,7 @@
 
 /* ---- begin and end ---- */
 
-/* Makes the fragments of a view. light: the light whose view it is; null: the view is the eye's. */
+/* Makes the fragments of a view. light: the light whose view it is; if null, the view is the eye's. */
 static hl_status make_fragments(sweep *sweep, const view *view, const sweep_light *light,
                                 const occupancy *occupancy, fragments *made, hl_error *error) {
   const light_shadow *shadow = light != NULL ? &light->shadow : NULL;

@@ -176,7 +176,7 @@ static void write_key(const void *data, hl_key *key) {
 /* The arrays of one colour channel. */
 typedef struct channel {
   const float *extinction, *scattering, *own, *direct;
-  const scatter_inflow *inflow; /* the sky's light that enters the grid; null: there is no sky */
+  const scatter_inflow *inflow; /* the sky's light that enters the grid; null if there is no sky */
   float *light, *flux;
 } channel;
 

@@ -125,9 +125,9 @@ void hl_scatter_enter(hl_pool *pool, const scatter_nodes *nodes, const float *ex
                       float *flux);
 
 /* Finds the light of one colour channel at the nodes. direct: the lights' unscattered light. inflow: the
- * sky's light that enters the grid; null: there is none. light: receives the mean over all directions of two
- * kinds of light: scattered light, and the sky's light that was not scattered. flux: [3][nodes]; receives the
- * mean of this light times its direction of travel; null: not wanted. */
+ * sky's light that enters the grid; null if there is none. light: receives the mean over all directions of
+ * two kinds of light: scattered light, and the sky's light that was not scattered. flux: [3][nodes]; receives
+ * the mean of this light times its direction of travel; null if it is not wanted. */
 void hl_scatter_solve(hl_pool *pool, const scatter_nodes *nodes, const float *extinction,
                       const float *scattering, const float *direct, const scatter_inflow *inflow,
                       scatter_work *work, float *light, float *flux);

@@ -42,7 +42,7 @@ typedef struct scatter_scene {
   const double *sun_parts;           /* [scene->light_count]; for each light, `of_sky` of its light_source */
   const scatter_volume *volumes;     /* [scene->volume_count]; the scene's volumes */
   uint64_t sky_mark;                 /* identifies the pixels of the sky's image */
-  const surfaces *surfaces;          /* the scene's meshes, which absorb light; null: there are none */
+  const surfaces *surfaces;          /* the scene's meshes, which absorb light; null if there are none */
 } scatter_scene;
 
 /* The places of the nodes, in frame space: node (x, y, z) lies at origin + spacing * (x, y, z). */
@@ -55,7 +55,7 @@ typedef struct scatter_field {
   scatter_nodes nodes;
   /* owned; [channels][count z][count y][count x]: the mean over all directions of scattered light, and of
    * that part of the sky's light that the sky's field does not give to samples (parts.h). The units are those
-   * of a light's color. Null: there is no field. */
+   * of a light's color. Null if there is no field. */
   float *light;
   float *flux;  /* in the block of `light`; [channels][3][count z][count y][count x]: the mean over all
                  * directions of the light times its direction of travel; null if all matter scatters

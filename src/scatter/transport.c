@@ -63,7 +63,7 @@ const int *hl_scatter_step(int line) { return ways[line]; }
 typedef struct lines_job {
   const scatter_nodes *nodes;
   const float *extinction;
-  const scatter_inflow *inflow; /* the light that enters the grid at the ends of its lines; null: no light
+  const scatter_inflow *inflow; /* the light that enters the grid at the ends of its lines; null if no light
                                  * enters */
   const float *sent; /* [nodes]; the energy that a node sends out in all directions, per unit of length */
   scatter_work *work;

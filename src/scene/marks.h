@@ -18,7 +18,7 @@ typedef struct hl_mark_rule {
   size_t least, most; /* the least and the greatest number of points */
 } hl_mark_rule;
 
-/* The rule of a kind of mark; null: there is no such kind. */
+/* The rule of a kind of mark; null if there is no such kind. */
 const hl_mark_rule *hl_mark_rule_of(int kind);
 
 /* Checks the marks of a description. Errors name the field ("/marks/0/points"). */

@@ -147,7 +147,7 @@ typedef struct sort_kind {
   const void *items;
   size_t count, size;
   hl_key_write *write;
-  /* a function that compares two objects whose keys are equal; null: the keys contain everything that
+  /* a function that compares two objects whose keys are equal; if null, the keys contain everything that
    * matters */
   int (*compare)(const void *a, const void *b);
 } sort_kind;

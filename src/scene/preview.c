@@ -142,7 +142,7 @@ static double edge_of(const hl_scene_volume *volume, hl_volume *map) {
 }
 
 /* The coarsest copy of a volume, or of its mask, whose voxels are not much longer than the distance between
- * sheets; null: no copy is used. */
+ * sheets; null if no copy is used. */
 static hl_volume *copy_for(const hl_preview *preview, const hl_scene_volume *volume, const hl_volume *map,
                            hl_coarser_kind kind, double apart) {
   const levels *l = levels_of(preview, map, kind);

@@ -270,9 +270,9 @@ void hl_light_images_release(hl_context *context, hl_light *light) {
 
 /* The image of a light's texture or emission, or of a sky. */
 typedef struct light_picture {
-  const float *pixels; /* [height][width][3]; linear RGB; null: there is no image */
+  const float *pixels; /* [height][width][3]; linear RGB; null if there is no image */
   int width, height;
-  const char *file; /* name of the image's file; null: there is none */
+  const char *file; /* name of the image's file; null if there is none */
 } light_picture;
 
 static hl_status copy_picture(hl_context *context, light_picture from, const float **pixels,

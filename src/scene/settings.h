@@ -29,7 +29,7 @@ void hl_settings_defaults(hl_setting_kind kind, void *object);
 /* Adds the fields of all settings that objects of a type have to a key, in the order of the rows. */
 void hl_settings_key_add(hl_setting_kind kind, const void *object, int type, hl_key *key);
 
-/* The name of one of a setting's choices; null: no choice has this value. */
+/* The name of one of a setting's choices; null if no choice has this value. */
 const char *hl_setting_choice_name(const hl_setting *setting, int value);
 
 /* Writes the advice `mend` of a setting, with the setting's range filled in. */

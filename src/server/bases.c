@@ -34,8 +34,8 @@ void base_keep(server *s, server_page *page, const frame_request *request) {
 
 static json_t *changed(json_t *from, json_t *part);
 
-/* Applies a difference to one member of an object, or to one element of an array. False: there is no such
- * element, or the difference is malformed. */
+/* Applies a difference to one member of an object, or to one element of an array. Returns false if there is
+ * no such element, or the difference is malformed. */
 static bool change_element(json_t *whole, const char *key, json_t *part) {
   if (json_is_array(whole)) {
     char *end;
@@ -47,7 +47,7 @@ static bool change_element(json_t *whole, const char *key, json_t *part) {
   return json_object_set_new(whole, key, changed(json_object_get(whole, key), part)) == 0;
 }
 
-/* Applies a difference to a value. Returns a reference that the caller owns; null: the difference is
+/* Applies a difference to a value. Returns a reference that the caller owns; if null, the difference is
  * malformed. `from` may be changed, and may be null. */
 static json_t *changed(json_t *from, json_t *part) {
   json_t *to = json_object_get(part, "to"), *in = json_object_get(part, "in"), *inner;

@@ -56,7 +56,7 @@ static connection_place *least_missed(connection_table *table) {
   return best;
 }
 
-/* Takes a place for a new connection; null: there is none. *crowded: a waiting connection had to end. */
+/* Takes a place for a new connection; null if there is none. *crowded: a waiting connection had to end. */
 static connection_place *let_in(connection_table *table, int socket, bool *crowded) {
   connection_place *taken = NULL;
   int waiting = 0;

@@ -20,7 +20,7 @@ enum {
 /* A connection of a browser, or of anybody else on this machine. */
 typedef struct connection_place {
   int socket;
-  int state;         /* one of the states in connections.c; 0: this place is free */
+  int state;         /* one of the states in connections.c; if 0, this place is free */
   double since;      /* time at which the state began, by server_seconds() */
   uint64_t received; /* number of bytes of the body that have arrived */
 } connection_place;

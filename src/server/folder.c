@@ -54,8 +54,8 @@ static bool is_folder(const char *path) {
   return stat(path, &about) == 0 && S_ISDIR(about.st_mode);
 }
 
-/* Finds the absolute path of a file or folder below the server's folder. False: it does not lie there, after
- * links were followed. */
+/* Finds the absolute path of a file or folder below the server's folder. Returns false if it does not lie
+ * there, after links were followed. */
 static bool folder_resolve(const server *s, const char *inside, char path[PATH_BYTES]) {
   char asked[PATH_BYTES];
   const char *folder = s->options.folder;
@@ -83,7 +83,7 @@ bool folder_find(const server *s, const char *inside, char path[PATH_BYTES], ser
   return hl_context_confine(s->below, slash > below ? below : "", &file->confined, NULL) == HL_OK;
 }
 
-/* How a folder's list shows an entry. 'd': as a folder; 'f': as a file that can be opened; 0: it does not
+/* How a folder's list shows an entry. 'd': as a folder; 'f': as a file that can be opened; 0 if it does not
  * list the entry. */
 static char kind_of(const server *s, const char *at, const char *name, off_t *bytes) {
   char inside[PATH_BYTES], path[PATH_BYTES];

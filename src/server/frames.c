@@ -21,7 +21,8 @@ static _Thread_local struct {
   int socket;        /* socket of the client that has asked for the frame */
   server_page *page; /* null: there is no page */
   unsigned long long number;
-  const server_opened *opened; /* the open scene that this thread prepares; null: it prepares none */
+  const server_opened *opened; /* the open scene that this thread prepares; null if the thread prepares
+                                * none */
   bool opening;                /* a file is being opened */
 } current;
 
@@ -94,8 +95,8 @@ void pages_end(server *s) {
 
 /* ---- pages ---- */
 
-/* Finds the page with this name. If there is none, returns an idle page, whose place the new page can take;
- * null: all pages are busy. */
+/* Finds the page with this name. If there is none, returns an idle page, whose place the new page can take.
+ * Returns null if all pages are busy. */
 static server_page *find_page(server *s, const char *name) {
   server_page *best = NULL;
   for (int p = 0; p < MOST_PAGES; p++) {
@@ -118,8 +119,8 @@ static void release_page(server *s, server_page *page) {
   atomic_store(&page->newest, 0);
 }
 
-/* Finds the page with this name, or makes it in a free place, and holds it until leave_page(). Null: all
- * pages are busy. */
+/* Finds the page with this name, or makes it in a free place, and holds it until leave_page(). Returns null
+ * if all pages are busy. */
 static server_page *enter_page(server *s, const char *name, unsigned long long number) {
   pthread_mutex_lock(&s->pages_lock);
   server_page *page = find_page(s, name);
@@ -372,7 +373,8 @@ static hl_status make_frame(server *s, server_page *page, const frame_request *r
 }
 
 /* If a request's text is a difference, replaces it by the text of the whole scene. If it is a whole scene, it
- * becomes the page's base. False: the request is refused. *text: owned by the caller (free()), or null. */
+ * becomes the page's base. Returns false if the request is refused. *text: owned by the caller (free()), or
+ * null. */
 static bool complete_request(server *s, server_page *page, frame_request *request, char **text,
                              server_answer *answer) {
   *text = NULL;

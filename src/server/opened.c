@@ -86,7 +86,7 @@ static bool is_coarse(const hl_scene *scene) {
   return false;
 }
 
-/* Makes a state of a scene, which is retained; null: there is no memory. */
+/* Makes a state of a scene, which is retained; null if there is no memory. */
 static opened_state *make_state(const server *s, hl_scene *scene, const char *title, long long number,
                                 int refined) {
   const start_about about = {title, number, s->below != NULL, refined,
@@ -204,8 +204,8 @@ static void wait_for_preparations(server *s) {
   while (atomic_load(&s->preparing) > 0) nanosleep(&moment, NULL);
 }
 
-/* Finds a place for another scene. If necessary, closes the scene that was used longest ago. Null: requests
- * hold all scenes. */
+/* Finds a place for another scene. If necessary, closes the scene that was used longest ago. Returns null if
+ * requests hold all scenes. */
 static server_opened *make_room(server *s) {
   server_opened *best = NULL;
   for (int o = 0; o < MOST_OPENED; o++) {

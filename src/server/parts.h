@@ -50,7 +50,7 @@ extern const size_t server_asset_count;
 /* A renderer for frames while something moves, for volumes at one of the coarser resolutions. There is one
  * for each resolution, because a renderer prepares a volume anew when the volume changes. */
 typedef struct quick_renderer {
-  hl_renderer *renderer;       /* owned; null: not made yet */
+  hl_renderer *renderer;       /* owned; null if it is not made yet */
   const hl_volume *volume;     /* borrowed; the first volume of the scenes that the renderer renders; only its
                                 * address is compared */
   unsigned long long last_use; /* by server_page's quick_uses */
@@ -63,7 +63,7 @@ typedef enum frame_stage { STAGE_PICTURE = 0, STAGE_LABELS = 1, STAGE_SKY = 2 } 
 typedef struct server_page {
   char name[PAGE_NAME_LENGTH + 1];       /* "": the place is free */
   pthread_mutex_t rendering;             /* held while a frame of the page is rendered */
-  hl_renderer *renderer;                 /* owned; guarded by `rendering`; null: not made yet */
+  hl_renderer *renderer;                 /* owned; guarded by `rendering`; null if it is not made yet */
   quick_renderer quick[QUICK_RENDERERS]; /* guarded by `rendering` */
   unsigned long long quick_uses;         /* guarded by `rendering` */
   atomic_ullong newest;                  /* the highest number of a requested frame */
@@ -98,8 +98,8 @@ struct opened_state {
 
 /* A scene that is open. */
 typedef struct server_opened {
-  long long number; /* the number by which pages name the scene; 0: the scene is the program's input */
-  _Atomic(opened_state *) state; /* owned; null: the place is free. A state that was loaded stays while the
+  long long number; /* the number by which pages name the scene; if 0, the scene is the program's input */
+  _Atomic(opened_state *) state; /* owned; if null, the place is free. A state that was loaded stays while the
                                   * scene is entered */
   char *title;                   /* owned */
   atomic_bool refining;          /* finer resolutions are still to be read */
@@ -113,7 +113,7 @@ typedef struct server_opened {
 typedef struct server {
   server_options options;
   hl_context *sealed; /* owned; opens no files; for the scenes that pages send */
-  hl_context *below;  /* owned; opens files below the server's folder; null: there is no such folder */
+  hl_context *below;  /* owned; opens files below the server's folder; null if there is no such folder */
   char token[TOKEN_DIGITS + 1];
   server_opened opened[MOST_OPENED];
   long long next_opened; /* guarded by pages_lock */
@@ -157,7 +157,8 @@ typedef struct frame_request {
   int metadata;       /* 1: a PNG carries its scene; 0: it does not */
   int scale_bar, legend, marks; /* 1: drawn over a PNG of 8 bits */
   int axes;                     /* an hl_axes; axes are drawn over a PNG of 8 bits, too */
-  const char *unit; /* unit of lengths, used where the scene's files tell none; null: there is no such unit */
+  const char *unit; /* unit of lengths, used where the scene's files tell none; null if there is no such
+                     * unit */
   int moving;     /* 1: a quick frame, of coarser volumes where the sheets are wide; 0: the scene as it is */
   int coarse;     /* 1: the volumes are taken as they were read so far; 0: the frame waits for the finest
                    * resolutions that are to be read, and fails where they cannot be read */
@@ -220,12 +221,12 @@ int page_progress(server *s, const char *name, frame_stage *stage, int *others);
 /* Answers with a frame. film: null for a picture. */
 void answer_frame(server *s, const frame_request *request, const film_request *film, server_answer *answer);
 /* Answers with the scene, its defaults written out and the page's choices applied. film: the scene is that of
- * this frame of the film; null: there is no film. */
+ * this frame of the film; null if there is no film. */
 void answer_scene(server *s, const frame_request *request, const composed_choices *choices,
                   const film_request *film, int frame, server_answer *answer);
 /* Makes the page's frames with lower numbers than this one outdated. */
 void cancel_frames(server *s, const char *page, unsigned long long number);
-/* The progress of the page's film; false: it has none. */
+/* The progress of the page's film. Returns false if it has none. */
 bool film_progress(server *s, const char *page, int *done, int *frames);
 /* Opens a file, and answers with its start.json. */
 void answer_open(server *s, const server_file *file, const char *title, server_answer *answer);
@@ -243,7 +244,7 @@ void refuse_line(server_answer *answer, unsigned status, const char *line);
  * the lock. */
 void base_keep(server *s, server_page *page, const frame_request *request);
 void base_forget(server_page *page);
-/* Applies the request's difference to the page's base. Returns the text of the whole scene (free()); null:
+/* Applies the request's difference to the page's base. Returns the text of the whole scene (free()); if null,
  * the request is refused, with status 409 if the page has another base. */
 char *base_changed(server *s, server_page *page, const frame_request *request, server_answer *answer);
 
@@ -271,19 +272,20 @@ hl_status render_film(server *s, server_page *page, const hl_scene *scene, const
 /* Replaces a scene by the scene at a frame of its film. */
 hl_status turn_to_frame(server *s, hl_scene **scene, const film_request *film, int frame, hl_error *error);
 
-/* opened.c: open scenes. opened_enter() holds a scene until opened_leave(). Null: the scene is not open any
- * more. */
+/* opened.c: open scenes. opened_enter() holds a scene until opened_leave(). Returns null if the scene is not
+ * open any more. */
 server_opened *opened_enter(server *s, long long number);
 static inline const opened_state *opened_now(const server_opened *opened) {
   return atomic_load(&opened->state);
 }
-/* JSON of how far an open scene was read: {"refined": N, "refining": BOOL, "problem": TEXT} (free()); null:
- * no memory. */
+/* JSON of how far an open scene was read: {"refined": N, "refining": BOOL, "problem": TEXT} (free()); null if
+ * there is no memory. */
 char *describe_refinement(const server_opened *opened);
 void opened_leave(server *s, server_opened *opened);
 /* Closes a scene that a page has opened, as soon as no request holds it. */
 void opened_close(server *s, long long number);
-/* Adds a scene, retains it, and holds it as opened_enter() does. Null: there is no memory or no room. */
+/* Adds a scene, retains it, and holds it as opened_enter() does. Returns null if there is no memory or no
+ * room. */
 server_opened *opened_add(server *s, hl_scene *scene, const char *title);
 int opened_count(server *s);
 void opened_end(server *s);
@@ -292,9 +294,9 @@ void opened_end(server *s);
 bool folder_can_open(const char *name); /* judges by the extension */
 /* Finds a file below the server's folder. It may be a folder that holds a volume as slices, DICOM or Zarr.
  * The caller owns file->confined. path: set to the absolute path; file->name and file->folder point into it.
- * False: the file does not lie there, after links were followed, or cannot be opened. */
+ * Returns false if the file does not lie there, after links were followed, or cannot be opened. */
 bool folder_find(const server *s, const char *inside, char path[PATH_BYTES], server_file *file);
-/* Lists, as JSON (free()), everything that can be opened in a folder below the server's folder; null: there
+/* Lists, as JSON (free()), everything that can be opened in a folder below the server's folder; null if there
  * is no such folder. */
 char *describe_folder(const server *s, const char *at);
 bool upload_folder(const char *name, server_upload *upload); /* makes the folder only */

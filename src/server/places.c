@@ -28,8 +28,8 @@ void answer_slice(server *s, const slice_request *request, server_answer *answer
   opened_leave(s, opened);
 }
 
-/* Reads three numbers, as "1,2.5,-3", from a query. If the text is absent (null), the numbers stay. False:
- * the text is something else. */
+/* Reads three numbers, as "1,2.5,-3", from a query. If the text is absent (null), the numbers stay. Returns
+ * false if the text is something else. */
 bool read_triple(const char *text, double numbers[3]) {
   if (text == NULL) return true;
   char copy[128];

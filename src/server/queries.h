@@ -6,7 +6,7 @@
 
 struct MHD_Connection;
 
-/* The text of a parameter, which lives as long as the request; null: it is absent. */
+/* The text of a parameter, which lives as long as the request; null if it is absent. */
 const char *query_text(struct MHD_Connection *connection, const char *name);
 /* Reads a whole number from low to high. Returns `standard` if the parameter is absent, and -1 if it is no
  * such number. */
@@ -26,8 +26,8 @@ bool names_page(const frame_request *wanted);
 bool names_overlay(const frame_request *wanted);
 /* Whether the frame's format can have overlays, which are drawn with 8 bits per channel. */
 bool overlay_fits(const frame_request *wanted);
-/* Reads the plane that a query describes. False: the query describes no plane, or a plane that is too
- * large. */
+/* Reads the plane that a query describes. Returns false if the query describes no plane, or a plane that is
+ * too large. */
 bool query_slice(struct MHD_Connection *connection, slice_request *wanted);
 /* Reads a film's parameters. Numbers that cannot be read become -1. With too many keys, the number of frames
  * becomes -1. format: borrowed. */

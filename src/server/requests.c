@@ -117,7 +117,7 @@ static unsigned check_upload(const server *s, struct MHD_Connection *connection,
   return length != NULL && strtoull(length, NULL, 10) > r->upload.room ? 413 : 0;
 }
 
-/* The HTTP status of a refused request, and its error line; 0: the request is allowed. */
+/* The HTTP status of a refused request, and its error line; if 0, the request is allowed. */
 static unsigned check(const server *s, struct MHD_Connection *connection, const char *method, const char *url,
                       request *r, const char **line) {
   const char *host = header(connection, "Host"), *length = header(connection, "Content-Length");
@@ -142,7 +142,7 @@ static unsigned check(const server *s, struct MHD_Connection *connection, const 
 
 /* ---- bodies ---- */
 
-/* Appends a piece of the body. False: the body is too large, or there is no memory for it. */
+/* Appends a piece of the body. Returns false if the body is too large, or there is no memory for it. */
 static bool collect(request *r, const char *bytes, size_t count) {
   if (count > MOST_BODY_BYTES - r->length) return false;
   if (r->length + count > r->capacity) {
@@ -165,7 +165,7 @@ static void answer_problem(server_answer *answer, unsigned status, const char *l
   snprintf(answer->problem, sizeof answer->problem, "%s", line);
 }
 
-/* Answers with a JSON text, which the answer then owns. null: memory was short. */
+/* Answers with a JSON text, which the answer then owns. Returns null if memory is short. */
 static void answer_json(server_answer *answer, char *text) {
   if (text == NULL) {
     answer_problem(answer, 500, "out of memory\n");

@@ -43,7 +43,7 @@
 typedef struct server_file {
   hl_context *confined; /* opens only files in the file's folder; if the file is a folder, only files in it */
   const char *name;     /* the file's name in that folder; "." if the file is a folder */
-  const char *folder;   /* the folder's absolute path, by which the scene names files; null: the file was
+  const char *folder;   /* the folder's absolute path, by which the scene names files; if null, the file was
                          * dropped on the page, and its scene can be saved beside it */
 } server_file;
 
@@ -51,13 +51,14 @@ typedef struct server_options {
   hl_context *context; /* its `cancelled` callback is server_is_outdated() */
   hl_scene *scene;
   const char *title;  /* the input's name, for the page's title */
-  const char *folder; /* absolute path; pages may open files below it; null: they may open none */
+  const char *folder; /* absolute path; pages may open files below it; if null, they may open none */
   hl_status (*open)(void *files_data, const server_file *file, hl_scene **scene, hl_error *error);
   /* Reads volumes whose files have finer resolutions than were read (hl_volume_selection.aim), at the next
-   * finer one. *finer: the scene with these volumes; null: there is none to read. Null: no scene has one. */
+   * finer one. *finer: the scene with these volumes; null if there is none to read. Null if no scene has
+   * one. */
   hl_status (*refine)(void *files_data, const hl_scene *scene, hl_scene **finer, hl_error *error);
   void *files_data;                        /* data for `open` and `refine` */
-  uint64_t most_upload_bytes;              /* the most bytes of a dropped file; 0: no limit */
+  uint64_t most_upload_bytes;              /* the most bytes of a dropped file; 0 if there is no limit */
   int port;                                /* 0: any free port */
   bool (*token)(int port, char token[33]); /* sets the URL's token, 32 hexadecimal digits, to the one that was
                                             * kept for this port. Called when the server has the port. If the
@@ -69,8 +70,8 @@ typedef struct server_options {
                                      * the page */
 } server_options;
 
-/* Serves until options->stopped() returns true. False: the server could not begin, and `problem` has an error
- * line. */
+/* Serves until options->stopped() returns true. Returns false if the server could not begin, and `problem`
+ * has an error line. */
 bool server_run(const server_options *options, char *problem, size_t problem_size);
 
 /* A function for the context's `progress` callback. fraction: how much is done of the file that this thread

@@ -14,7 +14,7 @@ typedef struct attenuate_volume {
   const float *density;       /* [256], block-major; the volume's densities on the current sheet */
   const float *before;        /* [256], block-major; the volume's densities on the sheet before */
   const float *enter, *leave; /* [256], block-major: the heights at which rays enter and leave the volume's
-                               * box; null: the box does not cut anything visible */
+                               * box; null if the box does not cut anything visible */
   uint32_t blocks;            /* the blocks of the tile in which the volume has density on the current sheet
                                * or on the sheet before; one bit each */
   int surface;                /* whether the volume has surfaces; if not, it is a medium */
@@ -49,12 +49,12 @@ typedef struct attenuate_job {
   float *transmittance[HL_CHANNELS]; /* the tile's first pixel of each channel; rows are `stride` floats
                                       * apart */
   float *older[HL_CHANNELS];         /* a second transmittance, laid out as `transmittance` and multiplied by
-                                      * the same factors; null: there is none */
-  /* the light at the outside of surfaces, laid out as `transmittance`; null: the buffer does not keep it */
+                                      * the same factors; null if there is none */
+  /* the light at the outside of surfaces, laid out as `transmittance`; null if the buffer does not keep it */
   float *outside[HL_CHANNELS];
   size_t stride;
   /* the tile's first pixel of each channel; rows are moment_stride floats apart. The light that the slab
-   * absorbs, times `position`, is added to the pixels. Null: nothing is added */
+   * absorbs, times `position`, is added to the pixels. If null, nothing is added */
   float *moment[HL_CHANNELS];
   size_t moment_stride;
   float position;

@@ -43,8 +43,8 @@ typedef struct shadow_buffer {
                                       * transmittance */
   float *transmittance[HL_CHANNELS]; /* pixel (0,0) of each channel's transmittance, in the planes of sheet
                                       * `sheet`; a part of `memory` */
-  /* pixel (0,0) of each channel of the other two kinds of planes, for sheet `sheet`; null: the buffer has no
-   * planes of this kind */
+  /* pixel (0,0) of each channel of the other two kinds of planes, for sheet `sheet`; null if the buffer has
+   * no planes of this kind */
   float *outside[HL_CHANNELS], *second[HL_CHANNELS];
   int sheet;                   /* the sheet for which hl_shadow_buffer_reach() was
                                 * called last */
@@ -134,9 +134,9 @@ typedef struct shadow_lookup {
   shadow_map map;
   const float *transmittance[HL_CHANNELS]; /* pixel (0,0) of the planes that are looked up */
   const float *outside[HL_CHANNELS];       /* planes of the light at the outside of surfaces, laid out as
-                                            * `transmittance`; null: there are none */
+                                            * `transmittance`; null if there are none */
   const float *older[HL_CHANNELS]; /* pixel (0,0) of each channel of the older light, from which samples fade
-                                    * to `transmittance`; null: there is none */
+                                    * to `transmittance`; null if there is none */
   float young;                     /* how far samples have faded from `older` to `transmittance`, from 0 (not
                                     * at all) to 1 (completely) */
 } shadow_lookup;
@@ -152,7 +152,7 @@ typedef struct sublight_lookup {
   const sublight_pixel *transmittance[HL_CHANNELS]; /* pixel (0,0) of each channel of the sub-light's
                                                      * transmittance */
   const sublight_pixel *outside[HL_CHANNELS];       /* the light at the outside of surfaces, laid out as
-                                                     * `transmittance`; null: there is none */
+                                                     * `transmittance`; null if there is none */
   float weight[HL_CHANNELS]; /* the sub-light's weight in the mean over all sub-lights; 1 for lights
                               * without an emission image */
 } sublight_lookup;

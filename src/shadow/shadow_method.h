@@ -56,12 +56,13 @@ typedef struct shadow_setup {
   hl_context *context;
   const hl_render_settings *settings;
   const light_source *source;
-  light_emission *emission; /* the light's emission image; null: all points of the light are equally bright.
-                             * The method sets the positions of the image's cells */
+  light_emission *emission; /* the light's emission image; if null, all points of the light are equally
+                             * bright. The method sets the positions of the image's cells */
   const sheet_stack *sheets;
   const view *eye;
   const light_exchange *exchange; /* exchanges light with the renderers of the other parts of a shared
-                                   * picture; null: there are no other parts, or the parts exchange nothing */
+                                   * picture; null if there are no other parts, or the parts exchange
+                                   * nothing */
   bool surfaces;                  /* whether some volume has surfaces; surfaces are lit by the light that
                                    * arrives at their outside */
   int channels;                   /* number of channels of attenuation: 1 (grey) or 3 (R, G, B) */
@@ -103,8 +104,8 @@ typedef struct shadow_method shadow_method;
 
 /* One light's shadows in one sweep. */
 typedef struct light_shadow {
-  const shadow_method *method; /* the method that makes the shadows; null: the light casts no shadows, or the
-                                * eye sees nothing */
+  const shadow_method *method; /* the method that makes the shadows; if null, the light casts no shadows, or
+                                * the eye sees nothing */
   shadow_setup setup;
   shadow_means means; /* valid after hl_light_shadow_begin() */
   shadow_plan plan;
@@ -121,15 +122,15 @@ typedef struct light_shadow {
   shadow_memory *kept;                                    /* borrowed from the renderer */
   void *passing;                                          /* memory that is lent until the sweep ends; the
                                                            * setup's reserve lends it */
-  /* [tiles]; for each tile, the last slab at which this part of a shared picture needs the tile; 0: this part
-   * never needs it. Null: this part needs all tiles at all slabs. Borrowed; it must be set before the first
-   * slab */
+  /* [tiles]; for each tile, the last slab at which this part of a shared picture needs the tile; if 0, this
+   * part never needs it. If null, this part needs all tiles at all slabs. Borrowed; it must be set before the
+   * first slab */
   const int32_t *needed_until;
   const int32_t *sublights_until; /* [sublight_count][sublight_tiles_y][sublight_tiles_x]; the same numbers as
                                    * in needed_until, but for the tiles of the sub-lights' buffers; set only
                                    * if there are sub-lights */
   const unsigned char *owned;     /* [tiles]; 1 for tiles whose light this part of a shared picture sends to
-                                   * the other parts; null: it sends no light */
+                                   * the other parts; if null, it sends no light */
 } light_shadow;
 
 /* A method's memory besides the buffer. */
@@ -162,7 +163,7 @@ struct shadow_method {
   /* Prepares the job that composites a slab into the buffer: sets the members that are equal for all
    * tiles. */
   void (*before_slab)(light_shadow *shadow, int sheet, attenuate_job *job);
-  /* Finds the lit blocks of a tile and stores them in buffer->tile_lit. Null: the sweep finds them itself.
+  /* Finds the lit blocks of a tile and stores them in buffer->tile_lit. If null, the sweep finds them itself.
    * Two calls for the same tile never run at the same time. */
   void (*find_lit)(light_shadow *shadow, size_t tile);
   void (*before_tile)(const light_shadow *shadow, size_t tile, attenuate_job *job);
@@ -172,7 +173,7 @@ struct shadow_method {
    * sublights_until). */
   bool divides;
   /* Raises some numbers of needed_until, [tiles], because the pixels of needed tiles will depend on pixels of
-   * other tiles. Null: no tile depends on other tiles. */
+   * other tiles. Null if no tile depends on other tiles. */
   void (*widen_needs)(light_shadow *shadow, int32_t *needed_until);
   /* Whether each part of a shared picture computes only the tiles that it needs (needed_until, owned), and
    * gets the light of the other tiles from the other parts (the setup's exchange). Each tile that any brick
@@ -184,8 +185,8 @@ struct shadow_method {
   void (*end)(light_shadow *shadow);
 };
 
-/* Returns the method that makes a light's shadows; null: the light casts no shadows. The method follows from
- * the settings `shadows` and soft_method. */
+/* Returns the method that makes a light's shadows; if null, the light casts no shadows. The method follows
+ * from the settings `shadows` and soft_method. */
 const shadow_method *hl_shadow_method(const light_source *source);
 
 /* ---- for the sweep ---- */

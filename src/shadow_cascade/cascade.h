@@ -121,7 +121,7 @@ typedef struct cascade_level {
 /* A part's exchange of messages with the renderers of the other parts of one picture. A message holds the
  * light of one tile (cascade_exchange.c). */
 typedef struct cascade_exchange {
-  const light_exchange *with; /* the renderers of the other parts; null: there are no other parts */
+  const light_exchange *with; /* the renderers of the other parts; null if there are no other parts */
   size_t slot_bytes;          /* bytes of a message */
   size_t slots;               /* the greatest number of messages that a part sends at once */
   light_post post;            /* the post that sends `outgoing` and receives `incoming` */
@@ -144,7 +144,7 @@ typedef struct soft_cascade {
   double light_height;
   double widest;                        /* the greater of the light's two widths along the buffer's axes */
   double least_fraction;                /* the smaller of these two widths, as a fraction of the greater */
-  const light_emission *emission;       /* the light's emission image; null: all points of the light are
+  const light_emission *emission;       /* the light's emission image; if null, all points of the light are
                                          * equally bright, and blurs use boxes */
   double slope_start[2], slope_step[2]; /* slope_start: the slope of the light's ray through the buffer's
                                          * corner; slope_step: the change of the slope from pixel to pixel */
@@ -152,8 +152,8 @@ typedef struct soft_cascade {
                                          * the buffer */
   double chunk_start;                   /* omega at the start of the current chunk */
   double shortest_chunk;                /* length of the shortest chunk of the sweep, measured in omega */
-  double shrink;          /* the length of a chunk divided by -omega at its start; 0: all chunks have the same
-                           * length */
+  double shrink;          /* the length of a chunk divided by -omega at its start; if 0, all chunks have the
+                           * same length */
   double evened;          /* from this omega on, all chunks have the same length again; pixels */
   double lookup_variance; /* the variance by which look-ups of the buffer blur, in squared pixels */
   uint64_t chunks;        /* number of the chunks that have ended */

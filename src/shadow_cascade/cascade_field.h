@@ -27,7 +27,7 @@ typedef struct field_job {
   field_pixel *to;
   size_t stride_in, stride; /* stride: the number of pixels from row to row of the output; stride_in: of the
                              * inputs that have another resolution */
-  const field_pixel *thin;  /* the fraction of b that the thin matter of a absorbs; null: there is no thin
+  const field_pixel *thin;  /* the fraction of b that the thin matter of a absorbs; null if there is no thin
                              * matter */
   tile_rows rows;
 } field_job;
@@ -62,7 +62,7 @@ typedef struct refill_job {
    * value; rows are stride_to apart */
   float *older;
   float *outside; /* the light at the outside of surfaces, whose difference from `to` stays the same; rows are
-                   * stride_to apart; null: there is none */
+                   * stride_to apart; null if there is none */
   size_t stride, stride_to;
   int kept;  /* whether the chunk's slabs absorbed some light */
   int again; /* whether `to` was also refilled at the start of the chunk that ends */
@@ -99,7 +99,7 @@ typedef struct absorbed_job {
                   * position in the chunk; the function clears it */
   float length;  /* the length of the chunk, measured in omega */
   const field_pixel *before; /* rows are `stride` apart; the light that the groups before the chunk absorbed;
-                              * null: it is not known */
+                              * null if it is not known */
   field_pixel *start_absorbed, *start_thin; /* the group at the chunk's start, to which matter is added;
                                              * rows are `stride` apart */
   field_pixel *end_absorbed, *end_thin;     /* the group at the chunk's end, to which matter is written;

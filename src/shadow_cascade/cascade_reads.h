@@ -19,7 +19,7 @@ enum { READ_EVERYWHERE = -1 };
 
 /* Marks the tiles that the next sheets touch in the light's view, because the picture's slabs look up the
  * buffer there. needed_until: [tiles]; if the picture is shared, only tiles are marked that this part needs
- * at the slab of the first sheet; null: all tiles may be marked. */
+ * at the slab of the first sheet; if null, all tiles may be marked. */
 void hl_cascade_reads_find(cascade_reads *reads, const occupancy *occupancy, const int32_t *needed_until,
                            int first_sheet, int last_sheet);
 

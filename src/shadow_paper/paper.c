@@ -15,7 +15,7 @@
 #include "shadow/shadow_method.h"
 
 typedef struct soft_paper {
-  const light_emission *emission; /* the light's emission image; null: convolutions use a box */
+  const light_emission *emission; /* the light's emission image; if null, convolutions use a box */
   bool parallel;
   double size;         /* the width L of the virtual light (see_light()); for parallel light, L / Z */
   double light_height; /* height of a near light, measured along the sheets' normal */

@@ -42,7 +42,7 @@ typedef struct sublight_job {
   sublight_pixel *transmittance[HL_CHANNELS]; /* pixel (0,0) of the sub-light's buffer; rows are `stride`
                                                * apart */
   sublight_pixel *outside[HL_CHANNELS];       /* pixel (0,0) of the light at the outside of surfaces, laid out
-                                               * as the transmittance; null: there is none */
+                                               * as the transmittance; null if there is none */
   size_t stride;                              /* number of pixels from row to row; a row has a margin of
                                                * one tile on either side */
   int tiles_x;

@@ -79,8 +79,8 @@ enum { SUBLIGHT_TAPS = 8 };
  * from 2 i by `first` to first + count
  * - 1. weight[k] is 1 for pixels with the difference first + k, else 0. */
 typedef struct row_taps {
-  /* count: the number of different half pixels that pixels read, counted from `first`; 0: there are too many
-   * for the weights */
+  /* count: the number of different half pixels that pixels read, counted from `first`; 0 if there are too
+   * many for the weights */
   int first, count;
   lanes_int half; /* for each pixel, the half pixel that it reads, limited to the slab and its margin */
   lanes weight[SUBLIGHT_TAPS];

@@ -56,7 +56,7 @@ typedef struct sublights {
   size_t moved_floats;
   slab_rows *rows; /* [tiles of the slab]; the rows in which some pixel is below 1 */
   uint32_t *found; /* [tiles of the slab]; for each tile, the run of slabs for which the tile's lit blocks
-                    * were found last; 0: they were never found */
+                    * were found last; if 0, they were never found */
 } sublights;
 
 /* Sets slab->tile_lit of a tile: the blocks of the next slab that light of some sub-light still reaches. Only

@@ -107,7 +107,7 @@ static void find_cone(const surfaces *all, surface_cluster *cluster) {
 /* A set of the vertices of a cluster. It is a hash table. */
 enum { SLOTS = 512 };
 typedef struct vertex_set {
-  uint32_t slot[SLOTS]; /* the vertex's index in `vertex`, plus 1; 0: the slot is free */
+  uint32_t slot[SLOTS]; /* the vertex's index in `vertex`, plus 1; if 0, the slot is free */
   uint32_t vertex[CLUSTER_VERTICES], count;
 } vertex_set;
 

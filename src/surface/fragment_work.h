@@ -40,21 +40,21 @@ typedef struct fragments_source {
                   * So a surface does not darken itself when look-ups interpolate between pixels */
   /* A distance in pixels. In a light's view, a fragment fills all slabs that its surface's plane crosses
    * within this distance from the fragment. So rays of other directions than the view's find no gap between
-   * the pixels of a slanted surface. 0: each fragment fills one slab. */
+   * the pixels of a slanted surface. If it is 0, each fragment fills one slab. */
   double rise;
   /* [sheets][tile_words], one bit for each tile; may be null. A bit is set if a surface that is visible or
    * casts shadows lies in the tile, or beside it, in the slab that ends at the sheet */
   uint64_t *marks;
   int tile_words;
-  const int32_t *needed; /* [tiles]; 0: nobody needs the fragments of this tile. Null: the fragments of all
-                          * tiles are needed */
+  const int32_t *needed; /* [tiles]; if 0, nobody needs the fragments of this tile. If null, the fragments of
+                          * all tiles are needed */
 } fragments_source;
 
 /* The opaque fragments that were added last to a pixel of a tile in a light's view: one fragment for each of
  * several slabs. */
 typedef struct latest_fragments {
-  uint32_t end; /* the index, in the worker's array scratch, of the first of these fragments, plus 1; 0: there
-                 * are no such fragments */
+  uint32_t end; /* the index, in the worker's array scratch, of the first of these fragments, plus 1; 0 if
+                 * there are no such fragments */
   int32_t last; /* the slab of the last of these fragments */
 } latest_fragments;
 
@@ -81,8 +81,8 @@ typedef struct fragment_worker {
    * tile that lies `across` columns and `down` rows away, -1 to 1, has the bit 3 (1 + down) + 1 + across */
   uint16_t *near;
   int32_t nearest, farthest; /* the first and the last slab for which `near` has a bit */
-  fragment_block *out;       /* the fragments of the tiles that the thread has finished; null: there are none
-                              * yet */
+  fragment_block *out;       /* the fragments of the tiles that the thread has finished; null if there are
+                              * none yet */
   bool failed;
 } fragment_worker;
 

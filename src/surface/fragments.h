@@ -10,7 +10,7 @@
 
 /* The fragments of one view. */
 typedef struct fragments {
-  tile_list *of;          /* owned; [tiles]; the fragments of each tile; null: the view has no surfaces */
+  tile_list *of;          /* owned; [tiles]; the fragments of each tile; null if the view has no surfaces */
   fragment_block *blocks; /* owned; the blocks of memory in which the tiles' fragments lie */
   size_t tiles;
 } fragments;

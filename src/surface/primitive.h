@@ -107,7 +107,7 @@ size_t hl_surface_mesh_of(const surfaces *all, uint32_t primitive);
 float hl_primitive_opacity(const surfaces *all, const surface_mesh *mesh, uint32_t primitive);
 
 /* Multiplies the colour of a mesh's material by a row of the mesh's own colours, linear RGB. row: null stands
- * for white. */
+ * for white everywhere. */
 static inline void hl_primitive_color(const surface_mesh *mesh, const float *own, double color[3]) {
   for (int c = 0; c < 3; c++) color[c] = mesh->look.color[c] * (own != NULL ? (double)own[c] : 1);
 }

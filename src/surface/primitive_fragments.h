@@ -55,7 +55,7 @@ bool hl_next_pixel(const view *view, const tile_part *part, const seen_part *see
                    covered_pixel *pixel);
 
 /* Adds the fragment of a plane at a pixel, and marks its slab. seams: in a light's view, the corners of the
- * triangle; null: none. */
+ * triangle; null if there is none. */
 void hl_add_pixel(const fragment_work *work, fragment_worker *worker, const surface_plane *plane, fragment f,
                   const covered_pixel *at, const seen_seams *seams);
 

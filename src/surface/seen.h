@@ -13,7 +13,7 @@ enum { SUBPIXELS = 256, CLIPPED_CORNERS = 8 };
 
 /* A triangle as a view sees it: a polygon of three corners, or of more corners if the triangle was cut. */
 typedef struct seen_polygon {
-  int count;                                      /* number of corners; 0: nothing is seen */
+  int count;                                      /* number of corners; if 0, nothing is seen */
   int32_t x[CLIPPED_CORNERS], y[CLIPPED_CORNERS]; /* 1/256 pixels */
 } seen_polygon;
 

@@ -8,8 +8,8 @@
 
 /* The part of a primitive that a view sees: a triangle, or one side of a sphere. All members are borrowed. */
 typedef struct seen_part {
-  const surfaces *all;                                  /* the surfaces, whose cuts are applied; null: no cut
-                                                         * removes anything of the part */
+  const surfaces *all;                                  /* the surfaces, whose cuts are applied; null if no
+                                                         * cut removes anything of the part */
   vec3 (*point)(const void *shape, double u, double v); /* a function that finds the part's point at the
                                                          * position (u, v) of the view, in pixels; frame
                                                          * space */

@@ -245,8 +245,8 @@ static bool overlap(const float low[3], const float high[3], const double from[3
   return true;
 }
 
-/* Returns whether a leaf has a primitive that reaches a box or the convex hull of balls. balls: null: it is
- * enough that boxes overlap. */
+/* Returns whether a leaf has a primitive that reaches a box or the convex hull of balls. balls: if null, it
+ * is enough that boxes overlap. */
 static bool leaf_reaches(const surface_tree *tree, const surface_box *leaf, const double low[3],
                          const double high[3], const hull_ball *balls, int count, double least) {
   for (uint32_t i = leaf->first; i < leaf->first + leaf->count; i++) {

@@ -38,8 +38,8 @@ typedef struct surface_tree {
  * corner (late/surface_rims.h), and the spheres that cuts cut. */
 #define ALL_SURFACES INFINITY
 
-/* Creates a tree. all: the surfaces; null: there are no surfaces. The tree may be released even if it was not
- * created, but is all zeros. */
+/* Creates a tree. all: the surfaces; null if there are no surfaces. The tree may be released even if it was
+ * not created, but is all zeros. */
 hl_status hl_surface_tree_create(hl_context *context, const surfaces *all, double distance,
                                  surface_tree *tree, hl_error *error);
 /* Returns whether a tree that was kept is the same as a tree that would be created now. */

@@ -33,11 +33,11 @@ typedef struct surface_mesh {
   hl_mesh *mesh;                   /* retained, because its arrays are borrowed */
   affine3 placement;               /* maps the mesh to frame space */
   double scale;                    /* the length, in frame units, of the mesh's own unit of length */
-  const float (*colors)[4];        /* borrowed; [vertices of the mesh]; null: the vertices have no colours
+  const float (*colors)[4];        /* borrowed; [vertices of the mesh]; null if the vertices have no colours
                                     * of their own */
-  const float (*face_colors)[4];   /* borrowed; [triangles of the mesh]; null: the triangles have no
-                                    * colours of their own */
-  const float (*sphere_colors)[4]; /* borrowed; [spheres of the mesh]; null: the spheres have no colours of
+  const float (*face_colors)[4];   /* borrowed; [triangles of the mesh]; null if the triangles have no colours
+                                    * of their own */
+  const float (*sphere_colors)[4]; /* borrowed; [spheres of the mesh]; null if the spheres have no colours of
                                     * their own */
   const uint32_t (*edges)[3];      /* borrowed; [triangles of the mesh]; the indices of the normals at
                                     * sharp edges, as in hl_mesh */
@@ -70,8 +70,8 @@ typedef struct surfaces {
                                       * sides, from hl_corner_product(), axis by axis; frame space */
   float *cluster_positions;          /* owned; for each cluster of triangles, the positions of its vertices:
                                       * [3][vertices]; frame space */
-  surface_seam *seams;               /* owned; [seam_count]; the corners at which large triangles meet;
-                                      * null: there are none */
+  surface_seam *seams;               /* owned; [seam_count]; the corners at which large triangles meet; null
+                                      * if there are none */
   cut_shape *cuts;                   /* owned; [cut_count]; the scene's cuts, in frame space */
   size_t cut_count, cluster_count, seam_count;
   size_t mesh_count, vertex_count, edge_normal_count;

@@ -209,7 +209,7 @@ static vec3 seen_point(const sweep *sweep, const tile_slab *slab, const fragment
   return vec3_length(vec3_subtract(seen, point)) < MOST_PIXELS_ASIDE * sweep->frame->pixel ? seen : point;
 }
 
-/* Sets the ray of sample i. last: the ray of the sample before it; null: sample i is the first. */
+/* Sets the ray of sample i. last: the ray of the sample before it; if null, sample i is the first. */
 static void place_ray(const sweep *sweep, const tile_slab *slab, const surface_batch *batch, int i,
                       const contact_ray *last, contact_ray *ray) {
   const surfaces *all = sweep->frame->surfaces;

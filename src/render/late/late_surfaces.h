@@ -41,8 +41,8 @@ bool hl_contact_find(const sweep *sweep, const tile_slab *slab, const surface_ba
 
 /* The part of a slab that is shaded in each pixel of a tile, as heights above the first sheet. */
 typedef struct slab_piece {
-  const float *from, *to; /* [256], block-major; the heights at which each pixel's piece begins and ends;
-                           * null: the piece is the whole slab */
+  const float *from, *to; /* [256], block-major; the heights at which each pixel's piece begins and ends; if
+                           * null, the piece is the whole slab */
 } slab_piece;
 
 /* The fragments in a slab and in the few slabs before it. seen: fragments of visible meshes, which cut the

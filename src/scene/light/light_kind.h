@@ -29,7 +29,7 @@ struct light_kind {
 
   /* ---- checks; settings are in their ranges already ---- */
   hl_status (*check)(const hl_checker *check,
-                     const hl_light *light); /* checks a light's settings beyond their ranges; null: there
+                     const hl_light *light); /* checks a light's settings beyond their ranges; null if there
                                               * is nothing more to check */
   /* Checks that floats hold the light's places and lengths beside the scene's voxels. */
   hl_status (*check_reach)(const hl_checker *check, const hl_light *light, const hl_frame_space *space);

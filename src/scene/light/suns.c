@@ -81,7 +81,7 @@ typedef struct cap {
 } cap;
 
 typedef struct brightest {
-  float brightness; /* the sum of the pixel's channels; 0: the row has no pixel left */
+  float brightness; /* the sum of the pixel's channels; 0 if the row has no pixel left */
   int column;
 } brightest;
 

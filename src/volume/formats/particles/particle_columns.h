@@ -35,7 +35,7 @@ typedef struct hl_particle_columns {
   hl_particle_column column[HL_PARTICLE_COLUMNS_MOST];
   int column_count;
   double box_low[3], box[3]; /* world: the box of scaled coordinates */
-  double period[3];          /* world; 0: not periodic along the axis */
+  double period[3];          /* world; 0 if it is not periodic along the axis */
 } hl_particle_columns;
 
 /* Splits a line into words, in place, at commas, semicolons, tabs and spaces. Removes quotes around words.
