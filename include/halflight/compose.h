@@ -1,8 +1,9 @@
 /* halflight/compose.h - makes scenes by named options, also for a bare volume, a volume that is given without
  * a scene.
  *
- * The program, the Python package and the viewer make their scenes by hl_scene_compose(). The options are
- * those of `halflight render`: an option is its name, without dashes, and its value as text. */
+ * The program, the Python package and the viewer make their scenes by hl_scene_compose(). The options have
+ * the names of the options of `halflight render`. An option is given by its name, without dashes, and its
+ * value as text. */
 #ifndef HALFLIGHT_COMPOSE_H
 #define HALFLIGHT_COMPOSE_H
 

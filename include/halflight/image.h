@@ -81,10 +81,10 @@ HL_API HL_WARN_UNUSED hl_status hl_image_encode(hl_context *context, const hl_im
 HL_API void hl_bytes_release(hl_context *context, unsigned char *bytes); /* null is allowed */
 
 /* Converts the picture to 8-bit sRGB, for windows and toolkits: bytes R, G, B, A of each pixel, top row
- * first. The codes are those of a .png with png_depth 8. Pixels that are composited over a background have A
- * = 255. With options->background_transparent, alpha is kept, and colours are not multiplied by alpha. bytes:
- * the caller's, [height][row_stride], of which 4 x width are used in each row; row_stride in bytes, at least
- * 4 x width. options null: the picture is shown over black. */
+ * first. The codes are the same as in a .png file with png_depth 8. Pixels that are composited over a
+ * background have A = 255. With options->background_transparent, alpha is kept, and colours are not
+ * multiplied by alpha. bytes: the caller's, [height][row_stride], of which 4 x width are used in each row;
+ * row_stride in bytes, at least 4 x width. options null: the picture is shown over black. */
 HL_API HL_WARN_UNUSED hl_status hl_image_to_srgb8(const hl_image *image,
                                                   const hl_image_write_options *options, uint8_t *bytes,
                                                   size_t row_stride, hl_error *error);
@@ -101,7 +101,8 @@ typedef struct hl_image_about {
   const char *format;     /* "PNG", "OpenEXR", "NPY" or "Radiance HDR"; static */
   uint64_t width, height; /* pixels */
   int channels, bits;     /* the number of values of a pixel, and the bits of each value. A palette's colours
-                           * count as values of 8 bits; for OpenEXR, bits are those of the widest channel */
+                           * count as values of 8 bits; for OpenEXR, the bits are the bits of the widest
+                           * channel */
   int has_scene;          /* non-zero: the file carries a scene, which hl_image_find_scene() finds */
 } hl_image_about;
 
@@ -112,7 +113,7 @@ HL_API HL_WARN_UNUSED hl_status hl_image_get_about(const char *name, const void 
                                                    hl_image_about *about, hl_error *error);
 
 /* Finds the JSON array of hl_image_write_options.field_errors that a PNG carries. *text: null-terminated;
- * free with hl_text_release(); null if the PNG carries no such array. The other arguments are those of
+ * free with hl_text_release(); null if the PNG carries no such array. The other arguments are the same as for
  * hl_image_find_scene(). */
 HL_API HL_WARN_UNUSED hl_status hl_image_find_field_errors(hl_context *context, const char *name,
                                                            const void *bytes, size_t byte_count, char **text,

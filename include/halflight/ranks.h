@@ -1,9 +1,9 @@
 /* halflight/ranks.h - lets the processes of an MPI job hold a volume together.
  *
- * A volume over ranks lies in the memory of all processes (ranks). Each rank holds a block of the volume, and
- * asks the other ranks for voxels of their blocks when it samples them. Such a volume renders like any other,
- * with the same bytes, on every rank. The voxels that a rank keeps of other ranks' blocks count towards its
- * context's memory limit.
+ * A volume over ranks is a volume that lies in the memory of all processes, which MPI calls ranks. Each rank
+ * holds a block of the volume, and asks the other ranks for voxels of their blocks when it samples them. Such
+ * a volume renders like any other, with the same bytes, on every rank. The voxels that a rank keeps of other
+ * ranks' blocks count towards its context's memory limit.
  *
  * hl_ranks_join() loads the library of Open MPI (version 4 or 5), of MPICH (3.1 or later), or one with
  * MPICH's binary interface, as Intel MPI and MVAPICH have. Builds need neither headers nor a library of MPI.

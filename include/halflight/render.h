@@ -102,7 +102,7 @@ HL_API HL_WARN_UNUSED hl_status hl_renderer_use_device(hl_renderer *renderer, co
 
 /* Renders the picture, and the layers whose buffers are not null (halflight/layers.h). This takes longer than
  * the picture alone, because each light with a layer is shaded twice more, with and without its shadow. The
- * other arguments are those of hl_renderer_render(). */
+ * other arguments are the same as for hl_renderer_render(). */
 HL_API HL_WARN_UNUSED hl_status hl_renderer_render_layers(hl_renderer *renderer, const hl_scene *scene,
                                                           float *pixels, size_t row_stride,
                                                           const hl_layers *layers,

@@ -37,8 +37,8 @@ HL_API void hl_reslice_options_defaults(hl_reslice_options *options);
 /* Finds the data values of a plane. values: the caller's, [height][width]. A value is NaN if all of its
  * samples are without a value. A sample is without a value beyond half a voxel around the grid, at a voxel
  * that is not finite, and, with interpolation, where one of the voxels that it needs is not finite. At the
- * voxels' centres, in a plane of one layer, the values are those of hl_volume_value(), with and without
- * interpolation. Numbers that are not finite, or beyond 1e9 voxels, are HL_ERROR_ARGUMENT. */
+ * voxels' centres, in a plane of one layer, the values are the same as for hl_volume_value(), with and
+ * without interpolation. Numbers that are not finite, or beyond 1e9 voxels, are HL_ERROR_ARGUMENT. */
 HL_API HL_WARN_UNUSED hl_status hl_volume_reslice(const hl_volume *volume, const hl_reslice_options *options,
                                                   double *values, hl_error *error);
 

@@ -456,7 +456,7 @@ HL_API void hl_scene_release(hl_scene *scene); /* null is allowed */
  * gives a colour gets a colour that differs from the others. table: the path of a colour table of FreeSurfer
  * or Slicer, of ITK-SNAP's label descriptions or of a CSV file; null if there is none. *labels is owned by
  * the caller (hl_labels_release). HL_ERROR_INPUT: a value is no whole number. HL_ERROR_UNSUPPORTED: the map
- * lies in a scratch file or in bricks. Where a map lies over ranks (ranks.h), the first call is collective:
+ * lies in a scratch file or in bricks. If the map lies over ranks (ranks.h), the first call is collective:
  * each rank gets a copy of the whole map, which the map keeps. */
 HL_API HL_WARN_UNUSED hl_status hl_labels_of_volume(hl_context *context, const hl_volume *map,
                                                     const char *table, hl_label **labels, size_t *count,
@@ -553,9 +553,9 @@ HL_API HL_WARN_UNUSED hl_status hl_camera_fit(const hl_scene_description *descri
                                               hl_camera *camera);
 
 /* Finds a camera whose picture shows everything that the pictures of all given cameras show. The cameras may
- * be, for example, those of several time steps. cameras: [count], one or more, of one type, direction, up
- * vector and field of view. aspect: a picture's width divided by its height. *joined: the first camera if its
- * picture already shows everything. Otherwise it is the nearest camera that shows everything; in parallel
+ * be, for example, the cameras of several time steps. cameras: [count], one or more, of one type, direction,
+ * up vector and field of view. aspect: a picture's width divided by its height. *joined: the first camera if
+ * its picture already shows everything. Otherwise it is the nearest camera that shows everything; in parallel
  * projection, the one with the smallest picture. Its target is as deep as the first camera's.
  * HL_ERROR_ARGUMENT: the cameras have different types, directions, up vectors or fields of view, or a
  * camera's position is its target. */

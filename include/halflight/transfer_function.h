@@ -136,8 +136,8 @@ typedef enum hl_range_scale {
   HL_RANGE_LINEAR = 0,
   HL_RANGE_LOG = 1 /* they are spread evenly over the logarithms of the values; the range must be above 0 */
 } hl_range_scale;
-/* Makes the function *to by moving the points of `from`: the values from old[0] to old[1] become those from
- * range[0] to range[1]. Lengths of gradients are multiplied by the ratio of the ranges' widths. With
+/* Makes the function *to by moving the points of `from`: the values from old[0] to old[1] become the values
+ * from range[0] to range[1]. Lengths of gradients are multiplied by the ratio of the ranges' widths. With
  * HL_RANGE_LOG, *to gets further points, so that it follows the logarithm between the moved points, too;
  * beyond the range, *to is constant. The caller owns the points of *to. */
 HL_API HL_WARN_UNUSED hl_status hl_transfer_function_spread(hl_context *context,

@@ -270,7 +270,7 @@ typedef struct hl_volume_array {
   const char *name;   /* the array's name, which belongs to the volume; "" if the format has no names */
   size_t components;  /* number of values of each voxel, or number of volumes of a series */
   hl_voxel_type type; /* the type of the values; if 0, this type cannot be read */
-  int of_cells;       /* non-zero: VTK's values are those of cells, which lie between the points */
+  int of_cells;       /* non-zero if VTK's values belong to cells, which lie between the points */
   int chosen;         /* non-zero: the volume was read from this array */
   int component;      /* only for the array that was read: the number of the component that was read, or an
                        * HL_COMPONENT_ value. HL_COMPONENT_LUMINANCE stands for colours whose luminance gives

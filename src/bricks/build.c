@@ -69,7 +69,7 @@ static void clear_block(const hl_lattice_box *cells, const ptrdiff_t block[3], i
       memset(own + (k * cells->count[1] + j) * cells->count[0] + low[0], 0, high[0] - low[0]);
 }
 
-/* Clears those cells of a level that bricks of coarser levels cover. */
+/* Clears the cells of a level that bricks of coarser levels cover. */
 static void clear_coarser(const hl_bricks *bricks, int level, const hl_lattice_box *cells,
                           unsigned char *own) {
   ptrdiff_t first[3], last[3], block[3];

@@ -100,7 +100,7 @@ static int level_of(double edge, double spacing) {
   return level < 0 ? 0 : level > LEVELS_MOST - 1 ? LEVELS_MOST - 1 : (int)level;
 }
 
-/* Estimates the number of bytes that the bricks need: the bytes of the directory, and those of the
+/* Estimates the number of bytes that the bricks need: the bytes of the directory, and the bytes of the
  * coefficients. The number of coefficients follows from the cells' volumes; a factor accounts for borders and
  * partly filled bricks. size: the size of the mesh's box. */
 static double bytes_of(const cell_field *field, double spacing, const double size[3]) {

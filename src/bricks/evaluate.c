@@ -99,8 +99,8 @@ static void copy_piece(const hl_bricks *bricks, const float *brick, const int64_
     }
 }
 
-/* Sums a brick's coefficients along x. The rows are those with y from low[1] to high[1] and
- * z from low[2] to high[2]. Each row has one sum for each point of the piece along x. */
+/* Sums a brick's coefficients along x. The rows have y from low[1] to high[1] and z from low[2] to high[2].
+ * Each row has one sum for each point of the piece along x. */
 static void sum_rows(const hl_bricks *bricks, const float *brick, const piece *piece, taps at[3][RUN],
                      const int64_t low[3], const int64_t high[3], double sums[SPAN][SPAN][RUN]) {
   size_t width = hl_brick_width(bricks);
@@ -219,7 +219,7 @@ double hl_bricks_value(const hl_bricks *bricks, const double point[3]) {
   return sum_taps(bricks, hl_brick_pool(bricks, entry->slot), found);
 }
 
-/* Widens a range so that it holds those coefficients of a brick on which the cells first .. last of level 0
+/* Widens a range so that it holds the coefficients of a brick on which the cells first .. last of level 0
  * depend. */
 static void widen_to_brick(const hl_bricks *bricks, const hl_brick_entry *entry, const int64_t block[3],
                            const int64_t first[3], const int64_t last[3], float range[2]) {

@@ -59,7 +59,7 @@ void hl_bricks_range(const hl_bricks *bricks, const int64_t first[3], const int6
  * without data. */
 bool hl_bricks_are_finite(const hl_bricks *bricks);
 /* Copies bricks, and replaces numbers that are not finite by `empty`. filled: must have a directory and a
- * pool as large as those of `bricks`; the function sets all other members. */
+ * pool of the same sizes as in `bricks`; the function sets all other members. */
 void hl_bricks_fill_holes(const hl_bricks *bricks, float empty, hl_bricks *filled);
 
 /* The number of bytes that the directory and the pool of `bricks` take together. */

@@ -33,9 +33,9 @@ typedef struct hl_label_layers {
 
 hl_status hl_read_shown(const hl_asked *show, hl_shown_list *list, hl_error *error);
 
-/* Shows the labels that the list names. An empty list changes nothing. "all" shows every label except those
- * that a table hides. If an item names a label by its name or number, this item counts for the label, and not
- * "all". The order of the items has no effect. */
+/* Shows the labels that the list names. An empty list changes nothing. "all" shows every label that no table
+ * hides. If an item names a label by its name or number, this item counts for the label, and not "all". The
+ * order of the items has no effect. */
 void hl_show_labels(hl_shown_list *list, hl_label *labels, size_t count);
 
 /* Logs how to name labels whose own names are "all" or "rest", if the list has these words. */

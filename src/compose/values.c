@@ -20,7 +20,7 @@ static bool asks_for_values(const hl_composer *composer, const hl_scene_volume *
          (asked[HL_ASK_LOOK].given && asked[HL_ASK_LOOK].choice == HL_LOOK_MIP);
 }
 
-/* Makes volumes of values of those label maps whose values options ask for: removes their labels, and gives
+/* Makes volumes of values of the label maps whose values options ask for: removes their labels, and gives
  * them the transfer function and material for their values. The scene then has the kernel that suits the
  * first volume's values. functions: [description->volume_count], zeroed; the caller owns their points, also
  * after a failure. */

@@ -10,8 +10,8 @@
 struct hl_context {
   hl_context_options options;       /* the options; `allocate` and `release` are never null, and
                                      * `instruction_set` is never AUTO */
-  atomic_uint_least64_t held, peak; /* bytes of the context's blocks of memory: those that are held now, and
-                                     * the most that were held at one time */
+  atomic_uint_least64_t held, peak; /* number of bytes of the context's blocks of memory that are held now;
+                                     * the greatest number that was held at one time */
   char *scratch_folder;             /* owned; the folder given to hl_context_limit_memory(); may be null */
   atomic_uint_least64_t paged; /* bytes of the pages of scratch files (volume/store/pages.h) held in memory */
   struct hl_ranks *ranks;      /* borrowed; the ranks over which loaded volumes lie (halflight/ranks.h);

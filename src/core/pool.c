@@ -37,7 +37,7 @@ enum { MAXIMUM_THREADS = 256, SPINS = 4000 };
 /* The time between two calls of the cancel callback while a job runs. It is much less than a person notices,
  * and much more than a call takes. */
 static const int64_t NANOSECONDS_BETWEEN_QUESTIONS = 2000000;
-/* The clock is read again after MOST_UNREAD calls at most. It is read earlier if so many calls could take
+/* The clock is read again after MOST_UNREAD calls at most. It is read earlier if MOST_UNREAD calls could take
  * longer than NANOSECONDS_BETWEEN_READINGS. */
 static const int64_t NANOSECONDS_BETWEEN_READINGS = 50000;
 enum { MOST_UNREAD = 15 };
@@ -95,8 +95,8 @@ struct hl_pool {
   /* The members below are used by the calling thread only. */
   _Alignas(64) int64_t asked,
       read;       /* when the cancel callback was last called and the clock was last read, in nanoseconds */
-  uint64_t waits; /* how often the caller waited for other threads, at the end of an offer or of a run; a run
-                   * with more indices than a share can hold counts several times */
+  uint64_t waits; /* number of times that the caller waited for other threads, at the end of an offer or of a
+                   * run; a run with more indices than a share can hold counts several times */
   /* readings: number of calls between two readings of the clock; unread: number of calls until the next
    * reading */
   int readings, unread;
@@ -275,7 +275,7 @@ static void run_part(hl_pool *pool, size_t base, size_t count, void (*function)(
 }
 
 void hl_pool_run(hl_pool *pool, size_t count, void (*function)(void *, size_t, int), void *data) {
-  pool->readings = pool->unread = 0; /* it is not known yet how long the next job's indices take */
+  pool->readings = pool->unread = 0; /* the time that an index of the next job takes is not known yet */
   if (pool->threads == 1 || count <= 1) {
     for (size_t index = 0; index < count && !hl_pool_stops(pool, 0); index++) function(data, index, 0);
     return;

@@ -47,7 +47,7 @@
 
 /* ---- the picture ---- */
 
-/* The optical depth below which the gradient has hardly any effect on how much light a slab absorbs. */
+/* The optical depth below which the gradient has hardly any effect on the light that a slab absorbs. */
 #define THIN_DEPTH (1.0f / 64)
 
 /* The alpha from which on a pixel counts as opaque. Matter behind such a pixel would change it by less than

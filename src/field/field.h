@@ -1,9 +1,9 @@
 /* field/field.h - fields of absorption and of light in a lattice of cells over the whole content. Neither
  * field depends on the eye.
  *
- * In: the grids and classifiers of a frame's volumes, its meshes, its sky. Out: how much light each cell
- * absorbs along each axis (opacity.c), and the sky's light that reaches each cell (sky_field.c). Samples look
- * up the sky's light (lookup_lanes.h).
+ * In: the grids and classifiers of a frame's volumes, its meshes, its sky. Out: the fraction of light that
+ * each cell absorbs along each axis (opacity.c), and the sky's light that reaches each cell (sky_field.c).
+ * Samples look up the sky's light (lookup_lanes.h).
  *
  * A lattice is walked in slices: planes of cells at a right angle to an axis. A slice's rows lie along
  * `across`, one below the other along `down`, and are padded to whole vectors of lanes.
@@ -152,8 +152,8 @@ typedef struct sky_slice {
 } sky_slice;
 
 /* The type of the function that moves the light of all directions to the next slice, in one row of cells, and
- * adds it to those cells near which something is visible. In a block of cells that all get less than
- * SKY_FAINT of a direction's light, this light counts as 0 and is not moved on. */
+ * adds it to the cells near which something is visible. In a block of cells that all get less than SKY_FAINT
+ * of a direction's light, this light counts as 0 and is not moved on. */
 typedef void sky_row_function(const sky_slice *slice, int32_t row);
 
 typedef struct field_functions {

@@ -200,8 +200,8 @@ LANES_INLINE void fetch_sky(const sky_light *sky, lanes3 position, uint32_t acti
   }
 }
 
-/* Adds up the eight cells around each active lane's position. pairs: the cells' weights. halves: how many
- * halves of a cell's numbers are read, 1 or 2; the mean of the light is in the first half. */
+/* Adds up the eight cells around each active lane's position. pairs: the cells' weights. halves: the number
+ * of halves of a cell's numbers that are read, 1 or 2; the mean of the light is in the first half. */
 LANES_INLINE void add_cells(const sky_light *sky, const sky_cells *cells, const int32_t pairs[4][LANES],
                             int halves, sky_rows *found) {
   const sky_steps steps = steps_of_sky(sky);

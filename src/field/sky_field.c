@@ -45,8 +45,8 @@ static int samples_of_sky(const hl_sky *sky) {
   return pixels < 8 ? 8 : pixels > SIDE_SAMPLES ? SIDE_SAMPLES : pixels;
 }
 
-/* The direction of a point of a face. x, y: from -1 to 1 in equal angles. slope: receives how far a ray moves
- * aside, along both other axes, while it moves by 1 along the face's axis. */
+/* The direction of a point of a face. x, y: from -1 to 1 in equal angles. slope: receives the distances that
+ * a ray moves along the two other axes while it moves by 1 along the face's axis. */
 static vec3 direction_of(const field_slices *s, int sign, double x, double y, double slope[2]) {
   double v[3] = {0, 0, 0};
   slope[0] = tan(HL_PI / 4 * x);
@@ -357,8 +357,8 @@ static void make(hl_context *context, const sky_content *content, passing_arrays
 }
 
 /* Finds the harmonics of the light where nothing hides the sky, and for each channel a bound of the harmonics
- * in all cells. The bound is a sum of magnitudes over the directions, because matter can only lessen what
- * each direction adds. */
+ * in all cells. The bound is a sum of magnitudes over the directions, because matter can only lessen the
+ * light of each direction. */
 static void find_open(const sky_content *content, sky_light *light) {
   double sum[3][FIELD_HARMONICS] = {{0}}, bound[3][FIELD_HARMONICS] = {{0}};
   for (int end = 0; end < ENDS; end++) {

@@ -207,7 +207,7 @@ LANES_INLINE uint32_t drop_last_block(uint32_t active, uint32_t starts) {
   return active & ((1u << (31 - __builtin_clz(starts & below))) - 1);
 }
 
-/* Copies the gradients in `some` to `slope`, in those lanes whose bits are set in `bits`. */
+/* Copies the gradients in `some` to `slope`, in the lanes whose bits are set in `bits`. */
 LANES_INLINE void join_slopes(uint32_t bits, lanes3 some, lanes3 *slope) {
   lanes_int mask = lanes_from_bits(bits);
   *slope = (lanes3){lanes_select(mask, some.x, slope->x), lanes_select(mask, some.y, slope->y),

@@ -10,9 +10,9 @@
 #include "grid/faces.h"
 #include "view/rays_lanes.h"
 
-/* The skin of one face: how much of a ray's matter in a slab belongs to the face. It is found in the middle
- * of the ray's part that lies behind the face. before, depth: the distances, in voxels, by which the ray is
- * behind the face on the slab's first and last sheet. */
+/* The skin of one face: the fraction of a ray's matter in a slab that belongs to the face. It is found in the
+ * middle of the ray's part that lies behind the face. before, depth: the distances, in voxels, by which the
+ * ray is behind the face on the slab's first and last sheet. */
 LANES_INLINE lanes skin_of_depth(lanes before, lanes depth) {
   lanes middle = (lanes_max(before, lanes_set(0)) + depth) * 0.5f;
   return lanes_keep(depth > before, lanes_clamp(FACE_VOXELS - middle, 0, 1));
@@ -40,9 +40,9 @@ LANES_INLINE lanes distance_to_shape(const run_cut *cut, lanes3 at, const float 
                    (lanes_abs(at.z) - 1.0f) * scale[2]);
 }
 
-/* The skin of a cut: how much of the matter belongs to one of its faces. In a box whose inside is left, light
- * may come in through one face close to another face. So all faces of such a box are tested, and not only the
- * nearest one. */
+/* The skin of a cut: the fraction of the matter that belongs to one of the cut's faces. In a box whose inside
+ * is left, light may come in through one face close to another face. So all faces of such a box are tested,
+ * and not only the nearest one. */
 LANES_INLINE lanes skin_of_cut(const run_cut *cut, lanes3 from, lanes3 to, float voxel) {
   const float scale[3] = {1.0f / (cut->size[0] * voxel), 1.0f / (cut->size[1] * voxel),
                           1.0f / (cut->size[2] * voxel)};

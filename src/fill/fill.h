@@ -26,7 +26,7 @@ typedef struct filled_blocks {
 } filled_blocks;
 
 /* The type of the functions that fill a tile of a sheet. They fill the array density[16][16] (block, lane)
- * for the blocks whose bits are set in `need`. They also fill those blocks of `others` whose points lie in
+ * for the blocks whose bits are set in `need`. They also fill the blocks of `others` whose points lie in
  * cells that may show something (grid/relevant.h). The densities of other blocks stay as they are. */
 typedef filled_blocks fill_tile_function(const fill_source *source, int tile_x, int tile_y, uint32_t need,
                                          uint32_t others, float *density);
@@ -52,15 +52,15 @@ typedef struct slab_run {
   float steps[3]; /* the distances between voxels along the axes, in units of `voxel` */
 } slab_run;
 
-/* What a tile shows of a run of slabs. blocks: for each slab of the run, the needed blocks of a tile in which
- * the slab may hold something visible. uncut: whether neither the volume's box nor a cut cuts the slab in
- * these blocks. */
+/* The blocks of a tile that may show something in a run of slabs. blocks: for each slab of the run, the
+ * needed blocks of a tile in which the slab may hold something visible. uncut: whether neither the volume's
+ * box nor a cut cuts the slab in these blocks. */
 typedef struct relevant_blocks {
   uint16_t blocks[RUN_SLABS];
   uint16_t uncut; /* one bit for each slab of the run */
 } relevant_blocks;
 
-/* The type of the function that finds the relevant blocks of a tile. It sets the members of `found` for those
+/* The type of the function that finds the relevant blocks of a tile. It sets the members of `found` for the
  * slabs whose bits are set in `slabs`; the members for other slabs stay as they are. need: the blocks that
  * the caller needs. */
 typedef void relevant_blocks_function(const slab_run *run, int tile_x, int tile_y, uint32_t slabs,

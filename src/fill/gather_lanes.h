@@ -325,9 +325,9 @@ LANES_INLINE block_points points_in_tile(const fill_source *source, int tile_x, 
   return points;
 }
 
-/* Fills the blocks in `need`, and those blocks in `others` whose cells may show something. All cells are
- * tested before any block is filled. If tests and sums alternated, the processor would mispredict branches,
- * and would begin sums in vain. inside: the result of tile_is_inside(). */
+/* Fills the blocks in `need`, and the blocks in `others` whose cells may show something. All cells are tested
+ * before any block is filled. If tests and sums alternated, the processor would mispredict branches, and
+ * would begin sums in vain. inside: the result of tile_is_inside(). */
 LANES_INLINE filled_blocks gather_blocks(const fill_source *source, int tile_x, int tile_y, uint32_t need,
                                          uint32_t others, int inside, float *density) {
   block_points points[TILE_BLOCKS];

@@ -112,7 +112,7 @@ static __attribute__((noinline)) lanes3 slopes_in_pages(const grid *grid, const 
   return sum;
 }
 
-/* The gradient's components, for a field in bricks, brick by brick. The parameters are those of
+/* The gradient's components, for a field in bricks, brick by brick. The parameters are the same as for
  * sum_in_bricks(). */
 static __attribute__((noinline)) lanes3 slopes_in_bricks(const grid *grid, const kernel *kernel,
                                                          const lanes_int cell[3], const lanes part[3],

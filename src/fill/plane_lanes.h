@@ -10,7 +10,8 @@
 /* ---- another volume's value ---- */
 
 /* The weighted sums of the taps (the voxels around a point) of another volume whose voxels are in memory, for
- * lanes that may belong to several blocks of pixels. The parameters are those of slopes_in_memory(). */
+ * lanes that may belong to several blocks of pixels. The parameters are the same as for
+ * slopes_in_memory(). */
 LANES_INLINE lanes values_in_memory(const grid *grid, const lanes_int cell[3], uint32_t active,
                                     uint32_t starts, const lanes weight[3][4]) {
   lanes sum = lanes_set(0);

@@ -235,8 +235,9 @@ static __attribute__((noinline)) lanes3 slopes_of_copies(const window_copies *co
 _Static_assert(LANES * sizeof(window_copies) <= INT16_MAX,
                "signed 16-bit numbers hold offsets in the copies of sixteen windows");
 
-/* Sums gradients over windows. Each window serves as many blocks of pixels as fit into it. Then one sum takes
- * taps from the copies of all windows. Returns false if a single block does not fit a window. */
+/* Sums gradients over windows. Each window serves the greatest number of blocks of pixels that fits into it.
+ * Then one sum takes taps from the copies of all windows. Returns false if a single block does not fit a
+ * window. */
 static __attribute__((unused)) int slopes_of_windows(const grid *grid, const lanes_int cell[3],
                                                      uint32_t active, uint32_t starts,
                                                      const tap_slope_weights *w, lanes3 *slope) {

@@ -283,8 +283,8 @@ static __attribute__((noinline)) lanes3 slopes_of_window_f32(const voxel_window 
   return sum;
 }
 
-/* Sums gradients over windows. Each window serves as many blocks of pixels as fit into it. Returns false if a
- * single block does not fit a window. */
+/* Sums gradients over windows. Each window serves the greatest number of blocks of pixels that fits into it.
+ * Returns false if a single block does not fit a window. */
 static __attribute__((unused)) int slopes_of_windows(const grid *grid, const lanes_int cell[3],
                                                      uint32_t active, uint32_t starts,
                                                      const tap_slope_weights *w, lanes3 *slope) {

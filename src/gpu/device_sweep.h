@@ -25,7 +25,8 @@ typedef struct plan_rays {
   float height;
   /* The next members are set only for the rays, in frame space, of a light that is `soft`: */
   float position; /* the position, in its chunk, of the slab before the sheet */
-  float young;    /* how far the samples of this slab have faded to the light of its chunk, 0 to 1 */
+  float young;    /* the weight, from 0 to 1, of the current chunk's light at the samples of this slab, which
+                   * fade from the older light to it */
   int chunk;      /* number of the chunk that holds this slab, from 1 on */
 } plan_rays;
 

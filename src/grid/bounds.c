@@ -30,8 +30,8 @@ typedef struct brick_job {
   float *columns;
   unsigned char *copies; /* [threads][WINDOW * WINDOW][copy_bytes]; copies of rows, for grids with pages */
   size_t copy_bytes;
-  /* number of the first layer of bricks that this job bounds; over ranks, other ranks bound the layers before
-   * this layer */
+  /* number of the first layer of bricks that this job bounds; if several ranks share the volume, other ranks
+   * bound the layers before this layer */
   size_t first;
 } brick_job;
 
@@ -150,7 +150,7 @@ static void lay_out_columns(brick_job *job, int threads, hl_layout *layout) {
   job->copies = hl_layout_take(layout, (size_t)threads * WINDOW * WINDOW, job->copy_bytes);
 }
 
-/* Bounds the layers of bricks. Over ranks, each rank bounds a part of the layers. */
+/* Bounds the layers of bricks. If several ranks share the volume, each rank bounds a part of the layers. */
 static void bound_layers_of_bricks(hl_pool *pool, brick_job *job) {
   const grid *grid = job->grid;
   size_t layers = (size_t)grid->brick_count[2];
@@ -426,7 +426,8 @@ hl_status hl_cells_bound(hl_context *context, hl_pool *pool, const grid_function
   cell_job job = {.grid = grid, .functions = functions, .smooth = smooth, .context = context};
   size_t layers = (size_t)grid->brick_count[2];
   set_cell_range(volume, grid);
-  if (!cells_have_bounds(grid)) return HL_OK; /* without bounds of cells, bricks alone tell what is visible */
+  /* Without bounds of cells, only the bricks tell where something is visible. */
+  if (!cells_have_bounds(grid)) return HL_OK;
   hl_layout layout = {0};
   while (hl_layout_pass(&layout, context)) lay_out_slices(&job, hl_pool_threads(pool), &layout);
   if (layout.base == NULL) return hl_fail_memory(error, layout.bytes, "the bounds of a volume's cells");

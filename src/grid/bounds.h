@@ -6,8 +6,8 @@
  * greatest of its Bezier points. For the cell between the voxels b and c of four voxels a b c d along an
  * axis, these points are (a + 4 b + c) / 6, (2 b + c) / 3, (b + 2 c) / 3 and (b + 4 c + d) / 6. All weights
  * are non-negative, so bounds found along one axis can serve as input along the next. In noise around a
- * threshold, half as many cells may be visible by these bounds as by the bounds of the least and the greatest
- * voxel. The other kernels use the least and greatest voxel. */
+ * threshold, these bounds may leave half the number of visible cells that the bounds of the least and the
+ * greatest voxel leave. The other kernels use the least and greatest voxel. */
 #ifndef HL_GRID_BOUNDS_H
 #define HL_GRID_BOUNDS_H
 

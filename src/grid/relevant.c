@@ -370,7 +370,7 @@ static void find_faces(grid *grid, bool any_relevant) {
   }
 }
 
-/* Lists those relevant bricks that have a visible cell. For all relevant bricks together, finds the least and
+/* Lists the relevant bricks that have a visible cell. For all relevant bricks together, finds the least and
  * greatest coordinates, the number of voxels, and the faces of the box that the bricks reach. */
 static void list_relevant(grid *grid) {
   grid->kept_voxels = 0;

@@ -31,7 +31,7 @@ void hl_content_bounds(const grid *grid, double margin, double low[3], double hi
 /* The place, in voxels, to which faces that cut nothing visible are moved: far outside of the grid. */
 #define FACE_FAR_OUT 1e9f
 
-/* Opens those faces of a grid that touch another grid's box. Matter goes on beyond these faces, so they are
+/* Opens the faces of a grid that touch another grid's box. Matter goes on beyond these faces, so they are
  * moved far outside, where they cut nothing. Most often both grids are parts of one volume. */
 void hl_open_faces(grid *grid, const struct grid *other);
 

@@ -12,8 +12,8 @@
 #include "volume/store/pages.h"
 
 /* Makes the pages. volume: must have pages. empty: replaces values that are not finite. *pages: owned by the
- * caller. Over ranks all ranks must make this call, and all must release the pages. Coefficients need ranks
- * that hold whole slices, in the order of the ranks; else the call fails. */
+ * caller. If several ranks share the volume, all ranks must make this call, and all must release the pages.
+ * Coefficients need ranks that hold whole slices, in the order of the ranks; else the call fails. */
 hl_status hl_value_pages_create(hl_pool *pool, const hl_volume *volume, const kernel *kernel, float empty,
                                 hl_pages **pages, hl_error *error);
 

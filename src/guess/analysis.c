@@ -216,7 +216,7 @@ static hl_status falls_off(const hl_volume *volume, const hl_sample *sample, con
 
 /* Returns whether the data are the density of a fog, as the file says. The file's word counts where the data
  * have no other sign than that they are smooth or filled up: they fall off from their maxima or are solid,
- * and nothing is below 0, which is empty. A scan's materials and a signed quantity remain what they are. */
+ * and nothing is below 0, which is empty. A scan's materials and a signed quantity remain as they are. */
 static bool is_fog(const hl_volume *volume, const hl_data_analysis *a) {
   return volume->says_fog && volume->minimum >= 0 && a->direction > 0;
 }
@@ -291,8 +291,8 @@ static void find_middle(const hl_sample *sample, double mode, hl_data_analysis *
 static hl_status analyse_values(const hl_volume *volume, const hl_sample *sample, float *memory,
                                 hl_data_analysis *a, hl_error *error) {
   distances d = {memory, sample->count};
-  bool bordered = sample->border_count > 0; /* without a border its commonest value would be NaN, and that of
-                                             * all voxels is taken */
+  bool bordered = sample->border_count > 0; /* a volume without a border has no commonest value of the border,
+                                             * so that the commonest value of all voxels is taken */
   a->background = bordered ? hl_mode(sample->border, sample->border_count)
                            : hl_mode(sample->values, sample->count);
   spread s = spread_of(sample, a->background);
@@ -400,8 +400,8 @@ hl_status hl_data_analyse(const hl_volume *volume, hl_data_analysis *analysis, h
 
 typedef struct tally {
   int64_t value;
-  unsigned int seen, shared; /* number of neighbours of voxels with this value, and how many of these
-                              * neighbours have the same value */
+  unsigned int seen, shared; /* number of neighbours of voxels with this value; number of these neighbours
+                              * that have the same value */
 } tally;
 
 enum { TALLIES = 4 * HL_FEW_LABELS, NO_ROOM = -1 };
@@ -413,8 +413,8 @@ typedef struct value_table {
   size_t count;
 } value_table;
 
-/* The place of a value, which is added if it is new; NO_ROOM if the table already has as many values as a
- * label map may have. */
+/* The place of a value, which is added if it is new; NO_ROOM if the table already has the greatest number of
+ * values that a label map may have. */
 static int place_of(value_table *table, int64_t value) {
   size_t place = (size_t)(((uint64_t)value * 0x9e3779b97f4a7c15u) >> 32) % TALLIES;
   while (table->tallies[place].seen != 0 && table->tallies[place].value != value)
@@ -451,7 +451,7 @@ static bool is_repeated(const hl_volume *volume, int axis, size_t count) {
 
 /* Counts, for each value, the neighbours of its voxels, and the neighbours that also have this value. Returns
  * false if a value is no whole number, or if there are too many values. If the volume was enlarged by
- * repeating voxels, the neighbours are those of the smaller volume. */
+ * repeating voxels, the neighbours are the neighbours in the smaller volume. */
 static bool count_neighbours(const hl_volume *volume, value_table *table) {
   const size_t *n = volume->dimension;
   size_t step = hl_lattice_step(n, HL_LATTICE_PLACES), apart[3] = {1, 1, 1};
@@ -482,9 +482,9 @@ static int compare_values(const void *a, const void *b) {
   return x < y ? -1 : x > y;
 }
 
-/* Lists the labels in rising order: all values but the background, or as many of them as there is room for.
- * The background is 0 if any value is 0 or less. Returns whether there are two or more labels, and most of
- * them lie in blocks. */
+/* Lists the labels in rising order: all values but the background. If there are more labels than
+ * HL_FEW_LABELS, only some of them are listed. The background is 0 if any value is 0 or less. Returns whether
+ * there are two or more labels, and most of them lie in blocks. */
 static bool list(const value_table *table, double least, hl_data_analysis *a) {
   size_t found = 0, in_blocks = 0;
   double background = least <= 0 ? 0 : a->background;

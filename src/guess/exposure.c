@@ -44,8 +44,8 @@ typedef struct exposure {
 } exposure;
 
 /* The value at a voxel's centre of the uniform cubic B-spline over the voxels. Derived: at whole numbers the
- * spline's weights are 1/6, 2/3, 1/6, and those of its derivative -1/2, 0, 1/2. Beyond the grid the outermost
- * voxels are repeated. *gradient: per voxel. NaN where a voxel is not finite. */
+ * spline's weights are 1/6, 2/3, 1/6, and the weights of its derivative are -1/2, 0, 1/2. Beyond the grid the
+ * outermost voxels are repeated. *gradient: per voxel. NaN where a voxel is not finite. */
 static double smooth_value(const hl_volume *volume, const long at[3], double gradient[3]) {
   static const double weight[3] = {1.0 / 6, 2.0 / 3, 1.0 / 6}, slope[3] = {-0.5, 0, 0.5};
   double value = 0;

@@ -23,8 +23,8 @@
 #define LIGHT_ELEVATION 45
 #define FILL_AZIMUTH    0 /* fill light from the eye: it suits a key light from any direction */
 #define FILL_ELEVATION  0
-/* The memory, beside that of a volume, for which the memory limit must have room so that the scene gets a
- * sky. The sky's field, and the work of making it, take less than half of this. */
+/* The memory that the memory limit must leave free beside a volume, so that the scene gets a sky. The sky's
+ * field, and the work of making it, take less than half of this. */
 #define ROOM_FOR_SKY (512u << 20)
 /* Constant light that takes the place of a sky, as a fraction of the sky's strength. */
 #define INSTEAD 0.35

@@ -58,8 +58,8 @@ static double nearest_eye(const frame_job *job, vec3 along, double tangent) {
 }
 
 /* The eye's coordinate along `along`, at a given depth, that puts the outline in the middle. Derived: both
- * sides of the outline are then seen at the same tangent t, and the depth is that of nearest_eye() for t. The
- * depth grows with t, so t is found by halving. */
+ * sides of the outline are then seen at the same tangent t, and the depth is the result of nearest_eye() for
+ * t. The depth grows with t, so t is found by halving. */
 static double middle_from(const frame_job *job, vec3 along, double greatest, double depth) {
   double low = 0, high = greatest;
   for (int n = 0; n < HALVINGS && greatest > 0; n++) {

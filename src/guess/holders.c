@@ -249,7 +249,7 @@ static side tilt(const search *s, const body_cells *cells, side plane, size_t *m
   return plane;
 }
 
-/* Finds the plane, among those across the directions of `sides`, that cuts off most of a body. *most: the
+/* Finds the plane that cuts off most of a body, among the planes across the directions of `sides`. *most: the
  * number of examined cells that the plane cuts off. */
 static side best_plane(const search *s, const body_cells *cells, size_t *most) {
   side plane = s->sides[0];
@@ -261,9 +261,9 @@ static side best_plane(const search *s, const body_cells *cells, size_t *most) {
   return *most > 0 ? tilt(s, cells, plane, most) : plane;
 }
 
-/* Adds planes that cut off a body, until there are `most_planes`. Each new plane cuts off as many of the
- * remaining cells as one plane can. *left: the fraction of the body that remains in the end. Fails for lack
- * of memory. */
+/* Adds planes that cut off a body, until there are `most_planes`. Each new plane cuts off the greatest
+ * possible number of the remaining cells. *left: the fraction of the body that remains in the end. Fails for
+ * lack of memory. */
 static hl_status cut_off(search *s, uint32_t body, size_t most_planes, double *left, hl_error *error) {
   body_cells cells;
   hl_status status = find_cells(s, body, &cells, error);

@@ -169,7 +169,7 @@ static void bound_points(const hl_outline *outline, points_box *boxes) {
   }
 }
 
-/* A bound of how far the box's points reach along a unit vector. It allows for rounding. */
+/* A bound of the coordinates of the box's points along a unit vector. The bound allows for rounding. */
 static double farthest_of_box(const points_box *box, vec3 along) {
   const double way[3] = {along.x, along.y, along.z};
   double sum = box->radius, size = box->radius;
@@ -256,7 +256,7 @@ static void look_at_mesh(farthest_points *far, const hl_scene_mesh *mesh, bool *
   }
 }
 
-/* Adds those vertices and spheres of a mesh that lie farthest along axes and diagonals. All vertices are
+/* Adds the vertices and spheres of a mesh that lie farthest along axes and diagonals. All vertices are
  * compared, because a floor must touch the lowest one, and a single vertex that sticks out of the picture
  * would be seen. */
 static hl_status add_farthest(hl_outline *outline, const hl_scene_mesh *mesh, hl_error *error) {
@@ -273,8 +273,8 @@ static hl_status add_farthest(hl_outline *outline, const hl_scene_mesh *mesh, hl
   return status;
 }
 
-/* Adds the outermost vertices and spheres of a mesh: those that lie farthest in many directions. Of a large
- * mesh, only some vertices are compared. */
+/* Adds the outermost vertices and spheres of a mesh, which lie farthest in many directions. Of a large mesh,
+ * only some vertices are compared. */
 static hl_status add_mesh(hl_outline *outline, const hl_scene_mesh *mesh, hl_error *error) {
   enum { MOST_CORNERS = 60000 };
   const hl_mesh_description *d = hl_mesh_describe(mesh->mesh);

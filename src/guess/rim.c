@@ -2,8 +2,8 @@
  *
  * A surface between two materials has about the same area for any value between them. A surface at the value
  * of a material follows the material's noise, so that its area is much larger. So if the area has a maximum
- * between the thresholds faint and solid, the value of the maximum is that of an outer material. The rim of
- * the objects then lies half way from the background to this value. */
+ * between the thresholds faint and solid, the value of the maximum is the value of an outer material. The rim
+ * of the objects then lies half way from the background to this value. */
 #include <math.h>
 
 #include "guess/analysis.h"

@@ -12,8 +12,8 @@ const hl_look *hl_style_find(const char *name);
 /* The style that has this name in hl_look_name(); null for "auto". Other names are refused. */
 hl_status hl_style_named(const char *name, const hl_look **style, hl_error *error);
 
-/* Writes a style's opacities. The colours are those of the look that suits the volume (base), unless the
- * style has colours of its own. */
+/* Writes a style's opacities. The colours are the colours of the look that suits the volume (base), unless
+ * the style has colours of its own. */
 void hl_style_write(const hl_look *style, const hl_look *base, hl_function_writer *w);
 
 #endif

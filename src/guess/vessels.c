@@ -15,7 +15,8 @@
 #define LEAST_TUBES 0.5  /* least fraction of the bright voxels that lies in tubes */
 #define MOST_BRIGHT 0.06 /* greatest fraction of the object's voxels that is bright */
 #define SPREAD      0.4  /* least part of the object's extent over which tubes reach, along two axes */
-/* A line is long if its run of bright voxels is this many times as long as that of the shortest line. */
+/* A line is long if its run of bright voxels has at least this number of times the length of the shortest
+ * line's run. */
 #define ELONGATED 2.5
 
 enum { LONG = 5 /* a long line has at least this many voxels */, REACH = 32, DIRECTIONS = 13, LEVELS = 4 };

@@ -327,8 +327,9 @@ const hl_image_format hl_png_format = {
 
 /* ---- the scene ----
  *
- * Chunks are walked by hand, so that the picture itself need not be decoded: tEXt, zTXt and iTXt (PNG
- * specification, sections 11.3.4.3 to 11.3.4.5), the latter two inflated within a limit. */
+ * Chunks are read without libpng, so that the picture itself need not be decoded. The chunks are tEXt, zTXt
+ * and iTXt (PNG specification, sections 11.3.4.3 to 11.3.4.5). The texts of zTXt and iTXt are inflated within
+ * a limit. */
 
 enum { SCENE_BYTES_MOST = 16 << 20, CHUNK_EXTRA_BYTES = 12 };
 

@@ -61,7 +61,7 @@ static uint32_t cross_edge(cutting *cut, uint32_t a, uint32_t b) {
   return vertex;
 }
 
-/* Cuts a triangle, and writes those of its parts that lie on one side at *to. */
+/* Cuts a triangle, and writes its parts on one side to *to. */
 static void cut_triangle(cutting *cut, const uint32_t corner[3], bool above, uint32_t (*triangles)[3],
                          size_t *to) {
   uint32_t kept[4];

@@ -11,8 +11,8 @@
 #include "isosurface/triangles.h"
 #include "mesh/mesh.h"
 
-/* The greatest rise of the surface above an edge that is left whole. The surface rises 4/3 as far above the
- * middle of an equilateral triangle as above its edges. */
+/* The greatest rise of the surface above an edge that is left whole. Above the middle of an equilateral
+ * triangle, the surface rises by 4/3 of its rise above the triangle's edges. */
 static const double MOST_RISE = 0.014;
 
 /* An edge of at most this length is never halved. Otherwise noise, whose surfaces bend within a voxel, would

@@ -69,8 +69,8 @@ static hl_status copy_known(hl_json_reader *reader, const char *file, const hl_j
   return HL_OK;
 }
 
-/* Copies an image's pixels, with as many channels as `to` has. If alpha is left out, the result is the image
- * over black, because the colours are premultiplied. */
+/* Copies an image's pixels, with the number of channels that `to` has. If alpha is left out, the result is
+ * the image over black, because the colours are premultiplied. */
 static hl_status take_pixels(hl_json_reader *reader, const hl_image *image, const hl_json_image *to) {
   size_t count = (size_t)hl_image_width(image) * (size_t)hl_image_height(image);
   size_t channels = (size_t)to->channels;

@@ -3,8 +3,8 @@
  *
  * The function starts as the named preset or file. If neither is named and no opacity is given, it starts as
  * the automatic function, or for volumes of shapes as an opaque solid. The points, the colormap and the
- * unit_distance of the scene then replace those of the starting function. The file of a function may be a
- * scene, from which the first volume's function is taken, or a file of another program. */
+ * unit_distance of the scene then replace the starting function's. The file of a function may be a scene,
+ * from which the first volume's function is taken, or a file of another program. */
 #include <string.h>
 
 #include "core/door.h"

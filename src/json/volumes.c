@@ -418,7 +418,7 @@ static bool is_there(const hl_json_reader *reader, const char *file) {
 }
 
 /* A volume in JSON may name a stand-in for its file. If the file is absent, *value becomes a copy of the
- * volume's JSON in which the keys of the stand-in replace those of the file. The copy is owned by the
+ * volume's JSON in which the keys of the stand-in replace the keys of the file. The copy is owned by the
  * shelf. */
 static hl_status choose_stand_in(hl_json_reader *reader, const json_t **value, hl_volume_shelf *shelf) {
   const json_t *stand_in = json_object_get(*value, "stand_in");

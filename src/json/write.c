@@ -263,7 +263,7 @@ static void write_shapes(hl_json_writer *w, const char *text) {
   json_decref(root);
 }
 
-/* Writes the name of a volume's file, and those options of loading that do not have their defaults. */
+/* Writes the name of a volume's file, and the options of loading that do not have their defaults. */
 static void write_source(hl_json_writer *w, const hl_scene_volume *volume) {
   write_file(w, volume->file);
   if (volume->series != NULL) hl_json_write_name(w, "series", volume->series);

@@ -44,7 +44,7 @@ static void find_window(const label_field *field, size_t x, size_t y, size_t z,
     }
 }
 
-/* Marks the voxels of a row that the surface may cross. Returns how many of the other voxels have values
+/* Marks the voxels of a row that the surface may cross. Returns the number of other voxels whose values are
  * above the level. room: scratch memory, [voxels of the row + 2]. */
 static int32_t find_crossed(const label_enclosed *enclosed, size_t y, size_t z, float *room, float *crossed) {
   const label_field *field = enclosed->field;

@@ -6,7 +6,7 @@
 enum { CELL = 2 }; /* length of a cell's edge in voxels */
 
 /* LEVEL_SUMS: the number of planes with sums over faces. LEVEL_BLENDED: the number of planes that are
- * blurred: those with sums, and HL_LEVEL_THIN. */
+ * blurred. They are the planes with sums, and HL_LEVEL_THIN. */
 enum { LEVEL_SUMS = HL_LEVEL_FALL + 1, LEVEL_BLENDED = HL_LEVEL_THIN + 1 };
 
 /* The filter that blurs cells, [1 2 1] / 4, so that there are no steps from cell to cell. */

@@ -44,7 +44,8 @@ typedef struct label_row_functions {
   void (*weigh)(const float *taps, int reach, const float *const rows[HL_FILTER_ROWS], size_t count,
                 float *out);
   /* Sets the elements of `crossed` to 1 for voxels that the surface at `level` may cross, and to 0 for the
-   * others. Returns how many of the others are above the level. crossed: [count]; overlaps nothing. */
+   * others. Returns the number of these other voxels that are above the level. crossed: [count]; overlaps
+   * nothing. */
   int32_t (*find_crossed)(const row_neighbours *rows, size_t count, float level, float *crossed);
   /* Measures a voxel that the surface at `level` may cross, and adds the results to measures,
    * [HL_ENCLOSED_MEASURES]. weights: the weights of the coefficients at the middles of the voxel's parts.

@@ -1,8 +1,8 @@
 /* label/solids.h - makes one volume of several labels that are solid together.
  *
  * If two labels that touch were drawn by their own fields, which are rounded, there would be a groove between
- * them. Labels that are solid together have one field. So surface, normals and shadows are those of one body,
- * in which the labels differ by their colours. */
+ * them. Labels that are solid together have one field. So surface, normals and shadows look like one body, in
+ * which the labels differ by their colours. */
 #ifndef HL_LABEL_SOLIDS_H
 #define HL_LABEL_SOLIDS_H
 

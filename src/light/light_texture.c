@@ -189,9 +189,9 @@ static double blur_at(const light_source *source, const view *view, vec3 point) 
 }
 
 /* FIRST_BLUR: the standard deviation of level 0's blur, in pixels of the picture. Each level's standard
- * deviation is sqrt(2) times that of the level before. The edge of a level's pixel is LEVEL_PIXEL times the
- * level's standard deviation, but at least LEAST_PIXEL times the edge of a picture's pixel. It is larger
- * where a side of the level would have more than GREATEST_LEVEL_SIDE pixels. */
+ * deviation is sqrt(2) times the standard deviation of the level before. The edge of a level's pixel is
+ * LEVEL_PIXEL times the level's standard deviation, but at least LEAST_PIXEL times the edge of a picture's
+ * pixel. It is larger where a side of the level would have more than GREATEST_LEVEL_SIDE pixels. */
 static const double FIRST_BLUR = 1.4, LEVEL_PIXEL = 0.5, LEAST_PIXEL = 0.7;
 enum { GREATEST_LEVEL_SIDE = 8192 };
 

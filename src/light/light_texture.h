@@ -37,8 +37,9 @@ typedef struct light_texture {
   float beyond[4];    /* for parallel light: maps frame space to the distance behind the screen along the
                        * rays. For near light, the factor w of `map` is used instead */
   int parallel;
-  /* 1 / square of the distance from the screen (near light: of 1 - Zs / Z) at which the blur is that of level
-   * 0. At 2^l times this square the blur is the blur of level l, whose variance is 2^l times greater */
+  /* The inverse square of the distance behind the screen at which the blur equals the blur of level 0. For a
+   * near light, 1 - Zs / Z takes the place of the distance. At 2^l times this square the blur is the blur of
+   * level l, whose variance is 2^l times greater. */
   float first;
   float edge[2];   /* along u and v: the width, in pixels of the image, of a box that has the same variance as
                     * the blur at the distance 1 */

@@ -59,10 +59,10 @@ LANES_INLINE void sharp_pattern(const light_texture *texture, lanes blur, lanes 
 }
 
 /* Interpolates between the two levels of a light texture whose variances enclose the variance of the sample's
- * blur; the variance of the result is linear in the weights. Where the sample's variance is below that of
- * level 0, the result is a mean of level 0 and the image itself. The weight of level 0 is then the square of
- * the ratio of the two variances, so that the image stays sharp as long as it can. In the image itself, too,
- * the edges of the screen are blurred. */
+ * blur; the variance of the result is linear in the weights. If the sample's variance is below the variance
+ * of level 0, the result is a mean of level 0 and the image itself. The weight of level 0 is then the square
+ * of the ratio of the two variances, so that the image stays sharp as long as it can. In the image itself,
+ * too, the edges of the screen are blurred. */
 LANES_INLINE void soft_pattern(const light_texture *texture, lanes blur, lanes u, lanes v, lanes ahead,
                                lanes pattern[3]) {
   lanes variance = lanes_min(blur * blur * texture->first, lanes_set(1e30f));

@@ -68,8 +68,8 @@ static int hex_value(char c) {
                                 : -1;
 }
 
-/* Decodes the name that a URI stands for: "%20" is a space (RFC 3986, section 2.1). name: has room for as
- * many bytes as the URI. */
+/* Decodes the name that a URI stands for: "%20" is a space (RFC 3986, section 2.1). name: has room for the
+ * number of bytes of the URI. */
 static void decode_uri(const char *uri, char *name) {
   for (; *uri != 0; uri++) {
     int high = *uri == '%' ? hex_value(uri[1]) : -1, low = high >= 0 ? hex_value(uri[2]) : -1;

@@ -78,8 +78,8 @@ typedef struct mesh_parts {
 } mesh_parts;
 
 /* Two functions that make room for vertices or triangles. count: the number of all vertices or triangles for
- * which there must be room, including those that exist already. with_normals, with_colors: whether the
- * vertices have normals and colours. */
+ * which there must be room, including the existing ones. with_normals, with_colors: whether the vertices have
+ * normals and colours. */
 hl_status hl_mesh_reserve_vertices(mesh_parts *parts, size_t count, bool with_normals, bool with_colors,
                                    hl_error *error);
 hl_status hl_mesh_reserve_triangles(mesh_parts *parts, size_t count, hl_error *error);

@@ -1,10 +1,10 @@
 /* mesh/polydata.c - converts VTK's PolyData to the parts of a mesh.
  *
- * Colours are those of points if there are any, else those of cells. Arrays of bytes with three or four
- * components are taken as sRGB, as VTK's mappers do. Other scalars are coloured by the colormap viridis, from
- * their least to their greatest value. Radii of spheres and tubes come from the point array "radius", or else
- * are a fraction of the size of the box around all points. If cells have normals, triangles show their own
- * normals, so that the mesh looks as flat as its cells. */
+ * The colours of points are taken if there are any, else the colours of cells. Arrays of bytes with three or
+ * four components are taken as sRGB, as VTK's mappers do. Other scalars are coloured by the colormap viridis,
+ * from their least to their greatest value. Radii of spheres and tubes come from the point array "radius", or
+ * else are a fraction of the size of the box around all points. If cells have normals, triangles show their
+ * own normals, so that the mesh looks as flat as its cells. */
 #include "mesh/polydata.h"
 
 #include <math.h>

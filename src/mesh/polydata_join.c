@@ -1,8 +1,8 @@
 /* mesh/polydata_join.c - joins the pieces of a file.
  *
  * In: pieces with arrays of their own. Out: one polydata. Its points are the points of the first piece, then
- * those of the second, and so on. Cells are ordered by kind, and cells of one kind by piece. So values at
- * cells are joined kind by kind. */
+ * the points of the second piece, and so on. Cells are ordered by kind, and cells of one kind by piece. So
+ * values at cells are joined kind by kind. */
 #include <string.h>
 
 #include "core/memory.h"

@@ -204,8 +204,8 @@ static void add_kind(const unstructured_cells *grid, const face_table *table, in
   }
 }
 
-/* Checks that the ends of the cells' points are possible, and that cells have as many corners as their types
- * need. */
+/* Checks that the ends of the cells' points are possible, and that cells have the number of corners that
+ * their types need. */
 static hl_status check(const unstructured_cells *grid, const polydata *data, hl_error *error) {
   double before = 0;
   size_t passed = 0;

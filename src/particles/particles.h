@@ -11,7 +11,7 @@
  * Each level keeps only the blocks of its points where the sum may differ from 0. The sum becomes an array of
  * all points of level 0, or bricks at levels (bricks/bricks.h). In bricks, a place has the level of the
  * narrowest kernel that reaches it. The array and the bricks give the same field. Derived: a brick of a level
- * begins two points before the first kernel of this level, so no kernel is spread on those points whose
+ * begins two points before the first kernel of this level, so no kernel is spread on the points whose
  * coefficients the bricks' builder subdivides.
  *
  * In: places, the quantity that each particle carries, and smoothing lengths or none
@@ -115,8 +115,8 @@ hl_status hl_particles_plan(hl_context *context, const hl_particle_set *set,
                             hl_particle_plan *plan, hl_error *error);
 void hl_particle_plan_release(hl_context *context, hl_particle_plan *plan);
 
-/* hl_particle_plan_brick_bytes() gives the number of bytes of the plan's bricks,
- * hl_particle_plan_field_bytes() that of one field while it is spread. */
+/* hl_particle_plan_brick_bytes() gives the number of bytes of the plan's bricks.
+ * hl_particle_plan_field_bytes() gives the number of bytes of one field while it is spread. */
 double hl_particle_plan_brick_bytes(const hl_particle_plan *plan);
 double hl_particle_plan_field_bytes(const hl_particle_plan *plan);
 

@@ -143,8 +143,8 @@ static void need_points(planning *p, int level, const ptrdiff_t first[3], const 
   hl_particle_visit(&p->plan->lattice, level, first, count, need_piece, p);
 }
 
-/* Adds the blocks from which others are subdivided: for each block of a level, those blocks of the next
- * coarser level on which it depends. */
+/* Adds the blocks from which others are subdivided: for each block of a level, the blocks of the next coarser
+ * level on which it depends. */
 static void need_coarser(planning *p) {
   for (int level = 0; level + 1 < p->plan->lattice.levels; level++)
     for (size_t n = 0; n < p->plan->blocks[level].count && p->status == HL_OK; n++) {

@@ -1,7 +1,7 @@
 /* plan/frame_objects.h - the volumes, lights and meshes of a frame, as plain data in frame space.
  *
- * In:  the scene that is brought to frame space (framed_scene.h). Out: those properties of the scene's
- * volumes, lights and meshes that back ends read. Back ends do not read descriptions of a scene. */
+ * In: the scene that is brought to frame space (framed_scene.h). Out: the properties of the scene's volumes,
+ * lights and meshes that back ends read. Back ends do not read descriptions of a scene. */
 #ifndef HL_PLAN_FRAME_OBJECTS_H
 #define HL_PLAN_FRAME_OBJECTS_H
 
@@ -56,8 +56,8 @@ typedef struct frame_light {
                                          * space */
 } frame_light;
 
-/* A mesh of the frame, or an isosurface of a volume. Its primitives are those of the mesh with the same index
- * in the frame's surfaces. */
+/* A mesh of the frame, or an isosurface of a volume. Its primitives are the primitives of the mesh with the
+ * same index in the frame's surfaces. */
 typedef struct frame_mesh {
   const char *name; /* the mesh's name; borrowed; null if it has none */
   int object;       /* the mesh's number in the layer of objects; an isosurface has the number of its

@@ -70,8 +70,8 @@ typedef struct sweep_plan {
 typedef struct plan_sweeps {
   sweep_sheets *sheets; /* owned; [count]; the direction and the sheets of each sweep */
   sweep_plan *list;     /* owned; [count]; the plan of each sweep */
-  light_plan *lights;   /* owned; [light_count]; the lights of all sweeps; the lights of one sweep follow
-                         * those of the sweep before */
+  light_plan *lights;   /* owned; [light_count]; the lights of all sweeps; the lights of one sweep follow the
+                         * lights of the sweep before */
   int count, light_count;
 } plan_sweeps;
 

@@ -60,7 +60,7 @@ static double brightness(const share_content *content, const light_source *sourc
   return color / fmax(vec3_dot(way, way), 1e-12);
 }
 
-/* Returns whether each part computes only those of a light's shadows that it needs. */
+/* Returns whether each part computes only the shadows of a light that it needs. */
 static bool is_divided(const picture_share *share, const light_source *source) {
   const shadow_method *method = hl_shadow_method(source);
   if (method == NULL) return false;
@@ -297,7 +297,7 @@ static int choose_bands(const share_content *content, const picture_share *share
   return chosen;
 }
 
-/* Returns whether any volume lies in pages over ranks. */
+/* Returns whether any volume lies in pages that are fetched from several ranks. */
 static bool lies_over_ranks(const share_content *content) {
   for (int g = 0; g < content->grid_count; g++)
     if (content->grids[g].pages != NULL && content->grids[g].pages->version != NULL) return true;
@@ -305,7 +305,7 @@ static bool lies_over_ranks(const share_content *content) {
 }
 
 /* Returns whether parts wait for each other at each depth, and should therefore have several bands. If
- * volumes lie over ranks, parts of one band are better, because they need the fewest pages. */
+ * several ranks share the volumes, parts of one band are better, because they need the fewest pages. */
 static bool waits_at_depths(const share_content *content, const picture_share *share) {
   const light_source *light = brightest(content, share);
   const shadow_method *method = light != NULL ? hl_shadow_method(light) : NULL;
@@ -314,7 +314,7 @@ static bool waits_at_depths(const share_content *content, const picture_share *s
 
 /* Returns whether parts are bands, and not rows of cells in turn. Rows in turn divide the work more equally.
  * But if shadows are divided among the parts, a band needs less light. If no shadows are cast, a band needs
- * fewer voxels, which matters if the voxels lie over ranks. It must not matter whether voxels lie in a
+ * fewer voxels, which matters if several ranks share the voxels. It must not matter whether voxels lie in a
  * scratch file, because each process decides that for itself. */
 static bool is_cut_in_bands(const share_content *content, const picture_share *share) {
   const frame *frame = content->frame;

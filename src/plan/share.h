@@ -17,7 +17,7 @@
 #include "plan/frame_objects.h"
 
 /* A picture's division into parts. It is made in cells. A cell is `oversampling` tiles of the frame wide and
- * high, so it has as many pixels of the picture as a tile has of the frame. */
+ * high. Therefore its number of picture pixels equals the number of frame pixels in a tile. */
 typedef struct picture_share {
   int part, parts;                /* part: number of this renderer's part; parts: number of parts */
   const light_exchange *exchange; /* borrowed; exchanges light with the other parts; null if light is not

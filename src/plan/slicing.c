@@ -53,8 +53,8 @@ static vec3 slicing_axis(const frame *frame, const hl_render_settings *settings,
  * rays, floors would shade themselves. */
 static const double FLATTEST = 0.2, FLATTEST_ALONE = 0.35;
 
-/* Whether, for all rays of a light, the cosine of the angle to the sheets' normal is at least `least`. The
- * rays are those from the centre of a near light, or those of the whole disk of a soft parallel light. */
+/* Whether, for all rays of a light, the cosine of the angle to the sheets' normal is at least `least`. They
+ * are the rays from the centre of a near light, or the rays from the whole disk of a soft parallel light. */
 static bool rays_cross(const frame *frame, const light_source *source, vec3 h, double least) {
   if (source->parallel) {
     double off = acos(fmin(fmax(vec3_dot(source->direction, h), -1), 1));

@@ -177,7 +177,7 @@ static hl_status fail_box(const hl_blocks *blocks, int rank, const char *what, h
 }
 
 /* Checks that the boxes of all ranks fill the array: they lie within the array, they do not overlap, and
- * together they have as many elements as the array. */
+ * their numbers of elements sum to the array's number of elements. */
 static hl_status check_boxes(const hl_blocks *blocks, hl_error *error) {
   const size_t *n = blocks->shape.dimension;
   size_t elements = 0;

@@ -128,8 +128,8 @@ static double way_to_removed(const reference_volume *volume, vec3 point, vec3 di
 typedef struct left_face {
   vec3 outward;  /* outward normal of the face; a unit vector in the world */
   vec3 crossing; /* the point where the ray crosses the face; index space */
-  double skin;   /* how much the matter at the ray's beginning belongs to the face: 1 up to one voxel behind
-                  * the face, falling to 0 at two voxels behind it */
+  double skin;   /* the fraction of the matter at the ray's beginning that belongs to the face: 1 up to one
+                  * voxel behind the face, falling to 0 at two voxels behind it */
 } left_face;
 
 static left_face find_left_face(const reference_volume *volume, vec3 point, vec3 direction, bool uncut) {

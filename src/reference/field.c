@@ -274,9 +274,9 @@ static void mark_visible(void *data, size_t k, int worker) {
 }
 
 /* Lowers the distance of brick (i, j, k) to one more than the least distance of its neighbours on one side.
- * side -1: the neighbours that come before the brick in memory; +1: those that come after it. Two sweeps over
- * all bricks, one in each direction, give the exact chessboard distance (Rosenfeld and Pfaltz, "Distance
- * functions on digital pictures", 1968). */
+ * side -1: the neighbours that come before the brick in memory; +1: the neighbours that come after it. Two
+ * sweeps over all bricks, one in each direction, give the exact chessboard distance (Rosenfeld and Pfaltz,
+ * "Distance functions on digital pictures", 1968). */
 static void relax_brick(const reference_volume *volume, ptrdiff_t i, ptrdiff_t j, ptrdiff_t k, int side) {
   const ptrdiff_t n[3] = {(ptrdiff_t)volume->bricks[0], (ptrdiff_t)volume->bricks[1],
                           (ptrdiff_t)volume->bricks[2]};

@@ -9,8 +9,8 @@ typedef struct mask_voxels {
   double share[8];
 } mask_voxels;
 
-/* Finds the voxels around p, a point of the lattice's index space. If p lies outside the lattice, the voxels
- * are those around the nearest point of the lattice's border, and the result is false. */
+/* Finds the voxels around p, a point of the lattice's index space. If p lies outside the lattice, finds the
+ * voxels around the nearest point of the lattice's border, and returns false. */
 static bool find_voxels_at(const hl_volume *mask, const double p[3], mask_voxels *found) {
   bool inside = true;
   for (int corner = 0; corner < 8; corner++) {

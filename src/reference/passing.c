@@ -129,8 +129,8 @@ typedef struct kept_light {
 static double kept_in_skin(double kept, double skin) { return skin > 0 ? pow(kept, 1 - skin) : kept; }
 
 /* Finds the fractions of the light taken by a surface that still count as taken by this surface after one
- * step. from, to: the volume's values at the step's ends, in the direction of the light. skin: how much of
- * the visible matter in the step belongs to the face of a cut, 0 to 1. */
+ * step. from, to: the volume's values at the step's ends, in the direction of the light. skin: the fraction
+ * of the visible matter in the step that belongs to the face of a cut. */
 static kept_light kept_of_step(const reference_volume *volume, double from, double to, double length,
                                double skin) {
   double foot_from = foot_of(volume, from), foot_to = foot_of(volume, to), deep = to - foot_to,

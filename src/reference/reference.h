@@ -279,8 +279,8 @@ bool hl_reference_mesh_left(const hl_scene_description *scene, const hl_scene_me
  * infinite if there is none. origin, direction: index space. */
 double hl_reference_next_face(const reference_volume *volume, vec3 origin, vec3 direction, double after);
 /* Changes the normal and the surface fraction of a sample near the face of a cut or of the clip box. *normal,
- * *surface: on entry, as they follow from the volume's data. Returns how much the face counts: 1 at the face,
- * 0 from two voxels behind it on. */
+ * *surface: on entry, as they follow from the volume's data. Returns the weight of the face: 1 at the face, 0
+ * from two voxels behind the face on. */
 double hl_reference_cut_face(const reference_volume *volume, vec3 point, vec3 to_eye, vec3 *normal,
                              double *surface);
 /* How much the matter at a point belongs to the face of a cut or of the box through which the light reaches
@@ -316,7 +316,8 @@ double hl_reference_mask_factor(const reference_volume *volume, vec3 point);
 /* The gradient, per world unit, of the mask's factor at a point of index space. It is 0 if matter gets no
  * faces where the mask hides the matter beside it. */
 vec3 hl_reference_mask_slope(const reference_volume *volume, vec3 point);
-/* Finds the mask's colour at a point. Returns how much of this colour the matter takes, from 0 to 1. */
+/* Finds the mask's colour at a point. Returns the fraction of this colour, from 0 to 1, that the matter
+ * takes. */
 double hl_reference_mask_color(const reference_volume *volume, vec3 point, double color[3]);
 /* The field's gradient, in data values per world unit. */
 vec3 hl_reference_gradient(const reference_volume *volume, vec3 point);

@@ -97,7 +97,7 @@ LANES_INLINE void shorten_way(const shade_volume *volume, lanes3 from, lanes3 to
   }
 }
 
-/* The length of those parts of a way from a point towards the light that no cut removes. */
+/* The length of the parts of a way from a point towards the light that no cut removes. */
 LANES_INLINE lanes way_left(const shade_volume *volume, lanes3 from, lanes3 towards, lanes enter,
                             lanes leave) {
   lanes removed = lanes_set(0);
@@ -123,8 +123,8 @@ typedef struct ways_before {
 } ways_before;
 
 /* The two faces of a box across one axis. ahead, behind: the distances, towards the light, from the lit
- * position to the face on the light's side and to the opposite face. u, v: by how much both distances shrink
- * with a step of one pixel along u or v. along: by how much both distances shrink when the lit position moves
+ * position to the face on the light's side and to the opposite face. u, v: the decrease of both distances
+ * with a step of one pixel along u or v. along: the decrease of both distances when the lit position moves
  * through the whole slab along the eye's ray. */
 typedef struct faces_of_axis {
   lanes ahead, behind, u, v, along;
@@ -151,9 +151,9 @@ LANES_INLINE lanes face_of_cut(const shade_cut *cut, lanes3 position, lanes3 tow
 
 /* Finds the distances of a box's faces from the lit position. Derived (slab method): if a point moves
  * sideways by s, its distance to the face along the light's way changes by -row.s / row.l, where l is the
- * light's direction. Returns a number from 0 to 1 that tells how much the correction for the face counts. It
- * is 1 near a face through which the light comes, because light to some near pixel then passes beside the
- * face. It falls to 0 at twice the distance of the near pixels. */
+ * light's direction. Returns the weight of the correction for the face, from 0 to 1. It is 1 near a face
+ * through which the light comes, because light to some near pixel then passes beside the face. It falls to 0
+ * at twice the distance of the near pixels. */
 LANES_INLINE lanes find_faces(const shade_volume *volume, const block_geometry *g, lanes3 towards,
                               const near_pixels *near, faces_of_axis faces[3]) {
   lanes close[3], reach[3], longest = lanes_set(1e30f), likely = lanes_set(0);

@@ -1,7 +1,7 @@
 /* render/device_cascade.c - see device_cascade.h.
  *
- * The order of the passes and the choice of groups are those of the processors (shadow_cascade). Only the
- * passes themselves differ: they are recorded here, and at a chunk's end they run on the device, over all
+ * The order of the passes and the choice of groups are the same as on the processors (shadow_cascade). Only
+ * the passes themselves differ: they are recorded here, and at a chunk's end they run on the device, over all
  * tiles. A tile that the processors leave out holds zeros, or is not read. */
 #include "render/device_cascade.h"
 

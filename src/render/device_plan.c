@@ -357,8 +357,8 @@ static bool has_soft_lights(const sweep_task *task) {
 }
 
 /* The number of planes of one sheet of a light's buffer. The transmittance has one plane for each channel.
- * The light at the outside of surfaces has as many, if it is kept. The older light from which samples of soft
- * lights fade also has as many. */
+ * The light at the outside of surfaces has one plane for each channel, too, if it is kept. So does the older
+ * light from which samples of soft lights fade. */
 static size_t planes_of_sheet(const sweep_task *task, const light_shadow *shadow) {
   const size_t kinds = 1 + (shadow->plan.outside ? 1u : 0) + (has_soft_lights(task) ? 1u : 0);
   return (size_t)task->frame_plan->channels * kinds;

@@ -1,8 +1,8 @@
 /* render/light_depth_lanes.h - finds how much light the matter of a slab absorbs before the light reaches a
  * medium in the same slab (step 15, derived).
  *
- * The shadow buffer holds the light that reaches the slab's first sheet. From there on, the sample's own
- * densities and gradient tell how much light is absorbed. */
+ * The shadow buffer holds the light that reaches the slab's first sheet. From this sheet on, the absorbed
+ * light follows from the sample's own densities and gradient. */
 #ifndef HL_RENDER_LIGHT_DEPTH_LANES_H
 #define HL_RENDER_LIGHT_DEPTH_LANES_H
 
@@ -30,7 +30,7 @@ LANES_INLINE mean_transmittance transmittance_within(lanes x, lanes left) {
 
 /* The light's transmittance within the slab, averaged over the slab's matter with the weights with which the
  * eye sees it. e: the slab's optical depth for the eye. left: exp(-e). enter: the light's optical depth where
- * the eye's ray enters the matter; more: how much this depth grows until the eye's ray leaves the matter.
+ * the eye's ray enters the matter; more: the increase of this depth until the eye's ray leaves the matter.
  * Derived; exact for extinction that varies along one direction only: int e exp(-e s) exp(-enter - more s) ds
  * / (1 - exp(-e)) = exp(-enter) phi(e + more) / phi(e), with phi(-x) = exp(x) phi(x). */
 LANES_INLINE lanes own_transmittance(lanes e, lanes left, lanes enter, lanes more) {
@@ -121,14 +121,14 @@ LANES_INLINE ways_in_box find_ways(const block_slab *slab, block_density *densit
 
 /* Optical depths for one light within a slab, counted from the slab's first sheet. */
 typedef struct light_depths {
-  /* enter: the optical depth to the point where the eye's ray enters the matter. more: how much the depth
-   * grows until the eye's ray leaves the matter. */
+  /* enter: the optical depth to the point where the eye's ray enters the matter. more: the increase of the
+   * depth until the eye's ray leaves the matter. */
   lanes enter[HL_CHANNELS], more[HL_CHANNELS];
   /* near a face: the optical depths of the light's ways from the face to each near pixel on the first
    * sheet */
   lanes near[HL_CHANNELS][NEAR_PIXELS];
   lanes_int face; /* lanes near a face of a box */
-  lanes beside;   /* near a face: how much the correction for the face counts, 0 to 1 */
+  lanes beside;   /* near a face, the weight of the correction for the face, from 0 to 1 */
   /* near a face: the depths `enter` and `more` for the light's way before the slab; the other members are for
    * its way within the slab */
   lanes before_enter[HL_CHANNELS], before_more[HL_CHANNELS];

@@ -98,7 +98,7 @@ static int tile_at(double pixel, int tiles) {
   return pixel >= (double)tiles * TILE ? tiles - 1 : (int)(pixel / TILE);
 }
 
-/* Raises `until` in those tiles of the buffer that samples in the convex hull of some points may read. These
+/* Raises `until` in the tiles of the buffer that samples in the convex hull of some points may read. These
  * are all tiles if a point does not lie ahead of the light, or if there are no points. */
 static void read_hull(const read_buffer *buffer, const vec3 *points, int count, int32_t slab) {
   const int tiles[2] = {buffer->tiles_x, buffer->tiles_y};
@@ -176,8 +176,8 @@ static void read_tile(const reads_task *task, size_t tile) {
   if (first > 0) read_slabs(task, tile, first, last);
 }
 
-/* For those lights that are sectors: marks the tiles of the lights' buffers that are read at surfaces which
- * the eye sees in a tile of the picture. */
+/* For the lights that are sectors: marks the tiles of the lights' buffers that are read at surfaces which the
+ * eye sees in a tile of the picture. */
 static void read_surfaces(const reads_task *task, size_t tile) {
   const sweep *sweep = task->sweep;
   const fragments *all = &sweep->surfaces.image;

@@ -75,7 +75,7 @@ LANES_INLINE void keep_block(packed_tile *tile, const block_slab *block, const b
   packed->whole = 1;
 }
 
-/* Packs those pixels of a block whose bits are set into a slab. densities: the block_density of all slabs. */
+/* Packs the pixels of a block whose bits are set into a slab. densities: the block_density of all slabs. */
 LANES_INLINE void pack_block(packed_tile *tile, const block_slab *block, const block_density *ways,
                              int patch_count, uint32_t bits, block_density *densities, packed_block *packed) {
   int count = __builtin_popcount(bits), s = slab_with_room(tile, count, patch_count, densities),

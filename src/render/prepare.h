@@ -44,16 +44,16 @@ typedef struct prepared_volume {
   size_t iso_count;
 } prepared_volume;
 
-/* Brings prepared[0 .. count) up to date with the scene's volumes; what has not changed is reused. scene: in
- * frame space (plan/framed_scene.h). plane_marks: [scene->volume_count]; numbers that identify the contents
- * of functions of two numbers. */
+/* Brings prepared[0 .. count) up to date with the scene's volumes. Parts that have not changed are reused.
+ * scene: in frame space (plan/framed_scene.h). plane_marks: [scene->volume_count]; numbers that identify the
+ * contents of functions of two numbers. */
 hl_status hl_prepare_volumes(hl_context *context, hl_pool *pool, const hot_functions *hot,
                              const hl_scene_description *scene, const uint64_t *plane_marks,
                              prepared_volume *prepared, hl_error *error);
 /* Brings the volumes' isosurfaces up to date, after the volumes. */
 hl_status hl_prepare_isosurfaces(hl_context *context, hl_pool *pool, const hl_scene_description *scene,
                                  prepared_volume *prepared, hl_error *error);
-/* Releases those volumes of prepared[0 .. count) whose grids the scene's volumes cannot use any more. */
+/* Releases the volumes of prepared[0 .. count) whose grids the scene's volumes cannot use any more. */
 void hl_prepared_release_stale(hl_context *context, const hl_scene_description *scene,
                                prepared_volume *prepared);
 /* Counts the memory that preparing one volume takes. kernel: the scene's kernel. */

@@ -308,7 +308,7 @@ LANES_INLINE color_lanes color_of_block(const shade_job *job, const block_slab *
 }
 
 /* Applies the factors on extinction to the slabs whose numbers are in `seen`, and drops the slabs in which
- * nothing is visible afterwards. Returns how many slabs stay. */
+ * nothing is visible afterwards. Returns the number of slabs that stay. */
 LANES_INLINE int weigh_slabs(const shade_job *job, packed_tile *tile, block_density *const *of,
                              int patch_count, int *seen, int count, color_lanes *lit) {
   int left = 0;

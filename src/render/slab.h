@@ -149,7 +149,7 @@ typedef struct tile_slab {
   const shade_job *job;       /* the job of the slab */
   size_t tile;                /* index of the tile */
   int x, y;                   /* column and row of the tile */
-  const shade_patch *patches; /* [patch_count]; the patches of those volumes that have density */
+  const shade_patch *patches; /* [patch_count]; the patches of the volumes that have density */
   int patch_count;
   uint32_t blocks; /* the blocks that have density and are not opaque yet, one bit each */
   int worker;      /* number of the thread */

@@ -77,8 +77,8 @@ typedef struct block_density {
   lanes_int sloped; /* lanes in which the gradient is known */
   lanes3 slope;     /* the gradient at the place where the matter is seen; 0 in other lanes */
   lanes3 normal;    /* unit, away from the matter */
-  lanes surface;    /* how much of the matter counts as a surface: 1 for a surface, falling to 0 for a medium,
-                     * which has no normal */
+  lanes surface;    /* the fraction of the matter that is shaded as a surface: 1 for a surface, falling to 0
+                     * for a medium, which has no normal */
   lanes behind; /* the distance, in voxels, of the matter from the face of a cut that is shaded as a surface,
                  * along the face's normal; FACE_VOXELS if no such face is near */
   lanes3 outside; /* the position at which the sky's light is looked up; set if volumes hide the sky from each
@@ -328,9 +328,9 @@ LANES_INLINE int is_near_box_face(const shade_volume *volume, lanes3 point, lane
   return lanes_bits(near & seen) != 0;
 }
 
-/* The skin of matter that lies `behind` voxels from a face: how much of the matter belongs to the face. It is
- * 1 at the face, and 0 from two voxels behind the face on. Near the face, the gradient of even matter is only
- * noise of the data, so the face's normal replaces it. */
+/* The skin of matter that lies `behind` voxels from a face: the fraction of the matter that belongs to the
+ * face. It is 1 at the face, and 0 from two voxels behind the face on. Near the face, the gradient of even
+ * matter is only noise of the data, so the face's normal replaces it. */
 LANES_INLINE lanes skin_of_face(lanes behind) { return lanes_clamp(FACE_VOXELS - behind, 0, 1); }
 
 /* The distance of a slab's matter, in voxels, from the face of a cut, or of the volume's box, through which

@@ -103,15 +103,15 @@ typedef struct light_points {
 /* Fragments and surfaces of the sweep's views; all zeros if the frame has no surfaces. */
 typedef struct surface_state {
   fragments image, lights[FRAME_LIGHTS];
-  fragments unseen;             /* fragments, in the eye's view, of those meshes that are not visible but cast
-                                 * shadows on volumes */
-  void *memory;                 /* owned; holds all arrays below */
-  shade_patch *patches;         /* [threads][volumes] */
-  float (*cuts)[TILE_PIXELS];   /* [threads][volumes][2]; for each pixel, the heights at which the ray enters
-                                 * and leaves a volume's box within a piece of the slab */
-  float (*bounds)[TILE_PIXELS]; /* [threads][2]; for each pixel, the heights at which a piece of the slab
-                                 * begins and ends */
-  float (*passing)[TILE_PIXELS];     /* [threads][lights][channels]; the result of hl_near_surfaces_find() */
+  fragments unseen;              /* fragments, in the eye's view, of the meshes that are not visible but cast
+                                  * shadows on volumes */
+  void *memory;                  /* owned; holds all arrays below */
+  shade_patch *patches;          /* [threads][volumes] */
+  float (*cuts)[TILE_PIXELS];    /* [threads][volumes][2]; for each pixel, the heights at which the ray enters
+                                  * and leaves a volume's box within a piece of the slab */
+  float (*bounds)[TILE_PIXELS];  /* [threads][2]; for each pixel, the heights at which a piece of the slab
+                                  * begins and ends */
+  float (*passing)[TILE_PIXELS]; /* [threads][lights][channels]; the result of hl_near_surfaces_find() */
   float (*contact)[SURFACE_SAMPLES]; /* [threads][lights][channels]; the result of hl_contact_find() */
   light_points *points;              /* [lights] */
 } surface_state;
@@ -136,7 +136,7 @@ typedef struct loop_arrays {
   sweep_counts *counts;              /* [threads] */
 } loop_arrays;
 
-/* What a sweep took. */
+/* The time and the waits of a sweep. */
 typedef struct sweep_times {
   double seconds_sort, seconds_tiles, seconds_soften;
   uint64_t waits; /* number of times that all threads have waited for each other */

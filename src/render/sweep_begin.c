@@ -109,8 +109,7 @@ static void count_light(sweep *sweep, int index, sweeps_memory *memory) {
   hl_view_sheets_count(&sweep->content, &shadow->plan.view, shadow->plan.spare, passing);
 }
 
-/* The number of tiles of the picture, and of the buffers of those lights that cast shadows and are
- * planned. */
+/* The number of tiles of the picture, and of the buffers of the lights that cast shadows and are planned. */
 static size_t count_tasks(const sweep *sweep) {
   size_t tasks = sweep->frame_plan->picture.tiles;
   for (int i = 0; i < sweep->geometry->light_count; i++)

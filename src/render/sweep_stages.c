@@ -31,8 +31,7 @@ static uint32_t shown_blocks(const sweep *sweep, size_t tile, int slab) {
 /* The number of the last slab in the run of a slab. Sheets are filled for one run of slabs at a time. */
 static int last_of_run(int slab) { return (slab - 1) / RUN_SLABS * RUN_SLABS + RUN_SLABS; }
 
-/* Does steps 6 and 8 to 11 for one tile: finds those of its patches that have density in the needed blocks.
- */
+/* Does steps 6 and 8 to 11 for one tile: finds the tile's patches that have density in the needed blocks. */
 static int fill_image_tile(sweep *sweep, slab_place place, uint32_t need, int worker, shade_patch *patches,
                            uint32_t *blocks) {
   size_t tile = place.tile;

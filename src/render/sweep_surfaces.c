@@ -213,7 +213,7 @@ static uint32_t shade_piece(const sweep *sweep, const tile_slab *slab, const flo
   return act_behind(sweep, &piece, (slab_piece){from, to});
 }
 
-/* Returns those of the blocks `blocks` in which some pixel is not opaque. */
+/* Returns the blocks among `blocks` in which some pixel is not opaque. */
 static uint32_t open_blocks(const sweep *sweep, const tile_slab *slab, uint32_t blocks) {
   const float *pixels = sweep->target.pixels + slab->tile * 4 * TILE_PIXELS;
   uint32_t open = 0;

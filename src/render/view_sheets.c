@@ -23,8 +23,7 @@ static size_t cuts_of(const view_sheets *sheets, int grid) {
   return sheets->of_light && of->cut_casts_shadow ? 0 : of->cut_count;
 }
 
-/* The number of those cuts that count, of all grids before this grid. For grid = volume_count: of all
- * grids. */
+/* The number of the cuts that count, of all grids before this grid. For grid = volume_count: of all grids. */
 static size_t cuts_before(const view_sheets *sheets, int grid) {
   size_t count = 0;
   for (int g = 0; g < grid; g++) count += cuts_of(sheets, g);
@@ -260,7 +259,7 @@ static void reach_run(view_sheets *sheets, int first) {
   }
 }
 
-/* Makes the sources of a sheet. Their rays are those of the run that holds the slab before the sheet.
+/* Makes the sources of a sheet. Their rays are the rays of the run that holds the slab before the sheet.
  * reach_run() must have been called for this run. */
 static void reach_sheet(view_sheets *sheets, int sheet) {
   const sheet_content *content = sheets->content;
@@ -365,8 +364,8 @@ static uint32_t visible_on(const patch_bundle *b, int i) {
 }
 
 /* Relevant blocks of a bundle. relevant_in_slab(): the relevant blocks of a slab. relevant_beside(): the
- * relevant blocks of the two slabs beside a sheet. beside_visible(): of the blocks of relevant_beside(),
- * those in which the slab's other sheet shows something. */
+ * relevant blocks of the two slabs beside a sheet. beside_visible(): the blocks of relevant_beside() in which
+ * the slab's other sheet shows something. */
 static uint32_t relevant_in_slab(const patch_bundle *b, int slab) {
   return slab < 0 || slab >= b->slabs ? 0 : b->relevant[slab];
 }
@@ -378,8 +377,8 @@ static uint32_t beside_visible(const patch_bundle *b, int i) {
          (relevant_in_slab(b, i) & visible_on(b, i + 1));
 }
 
-/* Fills those blocks of a sheet that are not filled yet: all blocks in `wanted`, and those other blocks in
- * which the sheet's own cells may show something. */
+/* Fills the blocks of a sheet that are not filled yet: all blocks in `wanted`, and the other blocks in which
+ * the sheet's own cells may show something. */
 static void fill_sheet(patch_bundle *b, int i, uint32_t wanted, uint32_t others) {
   const occupancy *o = &b->sheets->occupancy;
   kept_patch *kept = patch_on_sheet(b->sheets, b->patch, b->first + i);

@@ -36,7 +36,7 @@ typedef struct patch_run {
   int32_t end;               /* the number that follows the last sheet of the last requested bundle */
   uint16_t asked;            /* blocks whose relevance is known */
   uint16_t filled;           /* blocks for which the bundle's densities are filled */
-  relevant_blocks relevant;  /* for each slab: of the blocks `asked`, those in which matter may be visible */
+  relevant_blocks relevant;  /* for each slab, the blocks among `asked` in which matter may be visible */
   uint16_t shows[RUN_SLABS]; /* for each slab of the bundle: the filled blocks in which matter is visible */
 } patch_run;
 
@@ -118,7 +118,7 @@ static inline bool hl_patch_is_touched(view_sheets *sheets, size_t patch, int sl
   return slab >= row->first && (slab <= row->last || hl_patch_reaches(sheets, patch, slab));
 }
 
-/* Of the needed blocks of a patch, those in which a slab may show something. The slab must touch the patch.
+/* The needed blocks of a patch in which a slab may show something. The slab must touch the patch.
  * hl_patch_slab() may then find fewer blocks. */
 uint32_t hl_patch_relevant(const view_sheets *sheets, slab_place place, uint32_t need);
 

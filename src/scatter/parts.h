@@ -52,8 +52,8 @@ vec3 hl_scatter_way(int line, bool onwards);
 float hl_scatter_line_weight(int line);
 
 /* Finds the sky's light that enters the grid, in each channel. A direction of the grid gets the mean radiance
- * of those directions of the sky that are nearest to it. Then the radiances of all 26 directions are
- * multiplied by one factor, so that their weighted sum is the light of the whole sky. */
+ * of the sky's directions that are nearest to it. Then the radiances of all 26 directions are multiplied by
+ * one factor, so that their weighted sum is the light of the whole sky. */
 void hl_scatter_sky_inflow(const hl_sky *sky, scatter_inflow inflow[3]);
 
 /* The division of the sky's light between two fields. The sky's field (field/sky_field.h) is finer than the

@@ -54,8 +54,8 @@ typedef struct scatter_nodes {
 typedef struct scatter_field {
   scatter_nodes nodes;
   /* owned; [channels][count z][count y][count x]: the mean over all directions of scattered light, and of
-   * that part of the sky's light that the sky's field does not give to samples (parts.h). The units are those
-   * of a light's color. Null if there is no field. */
+   * that part of the sky's light that the sky's field does not give to samples (parts.h). The units are the
+   * same as for a light's color. Null if there is no field. */
   float *light;
   float *flux;  /* in the block of `light`; [channels][3][count z][count y][count x]: the mean over all
                  * directions of the light times its direction of travel; null if all matter scatters

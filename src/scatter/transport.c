@@ -200,7 +200,7 @@ static void solve_line(void *data, size_t line, int worker) {
   }
 }
 
-/* Finds, for lines of one direction, by how much the light that travels onwards exceeds the mean of both ways
+/* Finds, for lines of one direction, the excess of the light that travels onwards over the mean of both ways
  * (v at the head of the file): at each node, the mean of v on the links before and after the node. */
 static void flux_line(void *data, size_t line, int worker) {
   (void)worker;

@@ -114,7 +114,7 @@ static void fill_line(const wall_job *job, int line, const int32_t from[3]) {
   }
 }
 
-/* Finds the fractions for those lines of one direction that begin in one slice of nodes. */
+/* Finds the fractions for the lines of one direction that begin in one slice of nodes. */
 static void fill_lines(void *data, size_t index, int worker) {
   (void)worker;
   const wall_job *job = data;

@@ -12,7 +12,7 @@ enum {
   HL_LIMIT_MARK_TEXT = 2000   /* greatest number of bytes of a text */
 };
 
-/* The rule of a kind of mark: its name in scene files, and how many points it has. */
+/* The rule of a kind of mark: its name in scene files, and its number of points. */
 typedef struct hl_mark_rule {
   const char *name;
   size_t least, most; /* the least and the greatest number of points */

@@ -45,7 +45,7 @@ static void write_light(const void *data, hl_key *key) {
 
 /* ---- volumes ---- */
 
-/* Adds those properties of a volume's voxels to its key that are known without reading the voxels. */
+/* Adds to a volume's key the properties of its voxels that are known without reading the voxels. */
 static void add_voxels(hl_key *key, const hl_volume *volume) {
   for (int axis = 0; axis < 3; axis++) hl_key_add_whole(key, (int64_t)volume->dimension[axis]);
   hl_key_add_whole(key, volume->storage);

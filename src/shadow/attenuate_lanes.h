@@ -93,8 +93,9 @@ LANES_INLINE lanes factor_in_block(const attenuate_job *job, const attenuate_vol
       .factor;
 }
 
-/* The fractions k and k' of attenuate.h: how much of the light that a surface has absorbed still lights it
- * after the slab. k is for light absorbed before the slab, k' for light absorbed within the slab. */
+/* The fractions k and k' of attenuate.h: the fractions of the light that a surface has absorbed which still
+ * light the surface after the slab. k is for light absorbed before the slab, k' for light absorbed within the
+ * slab. */
 typedef struct kept_light {
   lanes before, within;
 } kept_light;

@@ -137,8 +137,8 @@ typedef struct shadow_lookup {
                                             * `transmittance`; null if there are none */
   const float *older[HL_CHANNELS]; /* pixel (0,0) of each channel of the older light, from which samples fade
                                     * to `transmittance`; null if there is none */
-  float young;                     /* how far samples have faded from `older` to `transmittance`, from 0 (not
-                                    * at all) to 1 (completely) */
+  float young;                     /* the weight of `transmittance` while samples fade from `older` to
+                                    * `transmittance`, from 0 (beginning) to 1 (end) */
 } shadow_lookup;
 
 /* The transmittance in the buffer of a sub-light (one of the points that stand for a light), in units of 1 /

@@ -7,8 +7,8 @@
 #include "simd/gathers.h"
 
 /* The samples' positions in a shadow buffer. Around each position there are two by two pixels: `first` is the
- * first of these pixels. The fractions fx and fy say how far the position lies from the middle of the first
- * pixel, in pixels. */
+ * first of these pixels. fx and fy are the distances, in pixels, of the position from the middle of the first
+ * pixel. */
 typedef struct shadow_taps {
   lanes_int inside;
   lanes_squares first;

@@ -105,8 +105,8 @@ typedef struct cascade_level {
    * instead */
   bool filled;
   double sum_omega; /* omega of the newest group in the sum */
-  double owed[2];   /* along rows and along columns: how much greater the variance of the sum's blur is than
-                     * it should be; in squared pixels of the buffer */
+  double owed[2];   /* along rows and along columns: the surplus of the variance of the sum's blur over the
+                     * wanted variance; in squared pixels of the buffer */
   bool renewed;     /* whether the sum must be made again */
   cascade_field scratch;              /* a field for a sum that comes from farther levels; level 0 has none */
   cascade_field mean[2][HL_CHANNELS]; /* only for lights with an emission image: the fields `absorbed` and
@@ -199,7 +199,7 @@ void hl_cascade_begin_elsewhere(light_shadow *shadow);
 /* The place of a slab among the chunks. */
 typedef struct cascade_slab {
   float position; /* the slab's position in its chunk (attenuate_job.position) */
-  float young;    /* how far samples have faded to the light of the current chunk (shadow_lookup.young) */
+  float young;    /* the weight of the current chunk's light while samples fade to it (shadow_lookup.young) */
   int chunk;      /* number of the slab's chunk; the first chunk is 1 */
   bool ends;      /* whether the chunk ends at the sheet after the slab */
 } cascade_slab;
@@ -214,8 +214,8 @@ void hl_cascade_end_chunk(light_shadow *shadow, const occupancy *occupancy, int 
 
 /* cascade_exchange.c */
 void hl_cascade_exchange_lay_out(soft_cascade *cascade, const light_exchange *with, shadow_layouts *layouts);
-/* Begins to send messages to the other parts. The messages hold the pixels of two groups, those at the two
- * ends of the last chunk, in the tiles that this part owns and that the chunk has touched. */
+/* Begins to send messages to the other parts. The messages hold the pixels of the two groups at the ends of
+ * the last chunk, in the tiles that this part owns and that the chunk has touched. */
 void hl_cascade_exchange_send(soft_cascade *cascade, const unsigned char *owned);
 /* Lets messages that are under way make progress. */
 void hl_cascade_exchange_look(const soft_cascade *cascade);

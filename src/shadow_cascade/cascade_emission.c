@@ -115,7 +115,7 @@ static void average_row(void *data, size_t index, int worker) {
 }
 
 /* Finds the offsets of the taps for a tile. Leaves out taps that lie outside the level for all pixels of the
- * tile, because all pixels outside are zeros. Returns how many taps are left. */
+ * tile, because all pixels outside are zeros. Returns the number of taps that are left. */
 static int offsets_of(const cascade_level *level, const emission_taps *taps, int x, int y, ptrdiff_t *offset,
                       int *kept) {
   int count = 0;

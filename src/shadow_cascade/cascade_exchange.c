@@ -119,7 +119,7 @@ static void read_message(const chunk_exchange *chunk, const unsigned char *messa
   }
 }
 
-/* Sends the next messages about the chunk's tiles, as many as a post holds. */
+/* Sends the next messages about the chunk's tiles, up to the number that a post holds. */
 static void send_messages(const chunk_exchange *chunk) {
   cascade_exchange *exchange = &chunk->cascade->exchange;
   const cascade_level *level = &chunk->cascade->level[0];

@@ -40,8 +40,8 @@ static double divide(soft_cascade *cascade, double start, double end, bool withi
   return log(cascade->evened / start) / log(1 - cascade->shrink) + (end - cascade->evened) / thick;
 }
 
-/* The least number of chunks between a receiver and a level's groups. The number follows from how many groups
- * the levels keep: three on level 0, two on level 1, five on every other level. */
+/* The least number of chunks between a receiver and a level's groups. It follows from the numbers of groups
+ * that the levels keep: three on level 0, two on level 1, five on every other level. */
 static double chunks_before(int level) { return level < 2 ? 3 * level : 4 * (pow(2, level - 1) - 1); }
 
 /* The scale of a level: the edge of its pixels, in pixels of the buffer. It is chosen so that the narrowest
@@ -297,7 +297,7 @@ static void clear_plane(void *data, size_t index, int worker) {
 }
 
 /* Clears the moments and the light at the start of the last, unfinished chunk. All tiles are cleared, even
- * those that the chunk has not touched. The reason: in dark pixels, rounding and matter behind surfaces'
+ * the tiles that the chunk has not touched. The reason: in dark pixels, rounding and matter behind surfaces'
  * marks leave moments that are not cleared at the end of a chunk. */
 static void clear_moments(const soft_cascade *cascade, hl_pool *pool) {
   const cascade_level *level = &cascade->level[0];

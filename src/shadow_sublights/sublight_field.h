@@ -22,7 +22,7 @@ typedef struct half_pixel_job {
  * Row `row` of copy `copy` has the bit TILE * copy + row. */
 typedef uint64_t slab_rows;
 
-/* The type of the function that fills one tile of the shifted copies. It fills those rows in which some pixel
+/* The type of the function that fills one tile of the shifted copies. It fills the rows in which some pixel
  * is below 1. All other rows hold ones already. */
 typedef slab_rows half_pixel_tile_function(const half_pixel_job *job, int tile_x, int tile_y);
 

@@ -263,8 +263,8 @@ static void sublight_tiles(const sublight *sublight, int axis, int low, int high
   tiles_under((double)high * TILE, scale, shift, tiles, &unused, last);
 }
 
-/* Limits a range of the slab's tiles to those tiles that lie over lit tiles of a sub-light. y: the
- * sub-light's row of tiles. */
+/* Limits a range of the slab's tiles to the tiles that lie over lit tiles of a sub-light. y: the sub-light's
+ * row of tiles. */
 static void lit_range(const sublight_task *task, const sublight *sublight, int y, int *x0, int *x1) {
   const int tiles = task->sublights->tiles_x;
   const uint16_t *lit = sublight->lit + (size_t)y * (size_t)tiles;
@@ -308,8 +308,8 @@ static void composite_row(const sublight_task *task, sublight *sublight, int y) 
   }
 }
 
-/* Marks those tiles as dark that this part of a shared picture does not need any more. Dark tiles are
- * skipped. Blocks of the slab are then skipped, too, if only dark tiles of sub-lights would read them. */
+/* Marks the tiles as dark that this part of a shared picture does not need any more. Dark tiles are skipped.
+ * Blocks of the slab are then skipped, too, if only dark tiles of sub-lights would read them. */
 static void forget_tiles(const sublight_task *task, sublight *sublight, int y) {
   const sublights *all = task->sublights;
   const size_t tiles_x = (size_t)all->tiles_x, row = (size_t)y * tiles_x;
@@ -319,7 +319,7 @@ static void forget_tiles(const sublight_task *task, sublight *sublight, int y) {
     if (until[x] < task->slab_after) sublight->lit[row + x] = 0;
 }
 
-/* Finds the lit blocks of a sub-light again, in those tiles of a row in which light was absorbed. */
+/* Finds the lit blocks of a sub-light again, in the tiles of a row in which light was absorbed. */
 static void find_sublight_lit(const sublight_task *task, sublight *sublight, int y) {
   int tiles_x = task->sublights->tiles_x;
   size_t row = (size_t)y * (size_t)tiles_x;

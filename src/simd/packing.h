@@ -24,10 +24,10 @@ LANES_INLINE uint64_t spread_bits(uint64_t bits) {
   return (bits | bits << 3) & NIBBLE_ONES;
 }
 
-/* Moves the numbers of the chosen nibbles of a word into consecutive nibbles. Each number moves down by as
- * many nibbles as there are nibbles below it that are not chosen, in steps of one, two, four and eight
- * nibbles (Warren, "Hacker's Delight", compress). chosen: 1 in each chosen nibble. before: for each nibble,
- * the number of chosen nibbles below it. */
+/* Moves the numbers of the chosen nibbles of a word into consecutive nibbles. Each number moves down by the
+ * number of nibbles below it that are not chosen, in steps of one, two, four and eight nibbles (Warren,
+ * "Hacker's Delight", compress). chosen: 1 in each chosen nibble. before: for each nibble, the number of
+ * chosen nibbles below it. */
 LANES_INLINE uint64_t chosen_numbers(uint64_t chosen, uint64_t before) {
   uint64_t all = chosen * 15, numbers = NIBBLE_NUMBERS & all, ways = (NIBBLE_NUMBERS - before) & all;
   for (int step = 0; step < 4; step++) {

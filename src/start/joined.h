@@ -22,7 +22,7 @@ hl_status join_meshes(hl_context *context, const hl_scene_mesh *added, size_t co
 hl_status frame_anew(hl_scene_description *description, hl_error *error);
 
 /* Makes one scene of two: the volumes and meshes of the first scene, and after them the volumes and meshes of
- * the second. Light, background and settings are those of the first scene. Its camera keeps its direction,
+ * the second. Light, background and settings are taken from the first scene. Its camera keeps its direction,
  * and is moved so that it frames everything. */
 hl_status join_scenes(hl_context *context, hl_scene *base, hl_scene *added, hl_scene **scene,
                       hl_error *error);

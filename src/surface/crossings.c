@@ -10,7 +10,7 @@
  * pixels with more fragments, nobody sees the order of the surfaces. */
 enum { MOST_FRAGMENTS = 32 };
 
-/* The fragments of a pixel, with the surfaces of those fragments that may cross others. */
+/* The fragments of a pixel, with the surfaces of the fragments that may cross others. */
 typedef struct pixel_fragments {
   const crossing_tile *tile;
   fragment list[2 * MOST_FRAGMENTS]; /* [count]; first the fragments that the caller gave, then the parts
@@ -47,7 +47,7 @@ static const shown_surface *surface_of(pixel_fragments *pixel, size_t i) {
   return surface;
 }
 
-/* Returns those of the given samples at which fragment i lies before fragment j. */
+/* Returns the samples among the given ones at which fragment i lies before fragment j. */
 static uint32_t samples_before(pixel_fragments *pixel, size_t i, size_t j, uint32_t samples) {
   const shown_surface *own = surface_of(pixel, i), *other = surface_of(pixel, j);
   uint32_t before = 0;
@@ -76,7 +76,7 @@ static void set_height(const pixel_fragments *pixel, const shown_surface *surfac
 }
 
 /* Makes a part of fragment i, which lets light through: some samples of it become a fragment of their own,
- * which comes before fragment j. There are at most as many parts as fragments. */
+ * which comes before fragment j. The number of parts is at most the number of fragments. */
 static void add_part(pixel_fragments *pixel, size_t i, size_t j, uint32_t samples) {
   fragment part = pixel->list[i], *other = &pixel->list[j];
   size_t number = pixel->count - pixel->given;

@@ -38,8 +38,8 @@ typedef struct fragment {
 /* The mean position of the covered samples in their pixel, 0 to 1. */
 void hl_fragment_middle(uint16_t samples, double *u, double *v);
 
-/* The reach of a fragment: how far its surface lies above or below the fragment's height, at most, within the
- * fragment's samples. It is stored in units of 1 / REACH_PARTS of the distance of sheets, rounded up.
+/* The reach of a fragment: the greatest distance of its surface above or below the fragment's height, within
+ * the fragment's samples. It is stored in units of 1 / REACH_PARTS of the distance of sheets, rounded up.
  * FARTHEST stands for an unlimited reach. */
 enum { REACH_PARTS = 16, FARTHEST = UINT8_MAX };
 

@@ -15,7 +15,7 @@ struct shown_surface {
   surface_plane plane;
   /* for a triangle: whether the view cut no corner of it; if so, the surface's height is rise / part */
   bool by_corners;
-  double rise[3], part[3]; /* linear functions of the pixel, like those of surface_plane */
+  double rise[3], part[3]; /* linear functions of the pixel, as in surface_plane */
   /* for a sphere: the view's rays, relative to the sphere's centre */
   sphere_rays rays;
   bool leaving; /* for a sphere: whether the fragment lies on the side where rays leave the sphere */

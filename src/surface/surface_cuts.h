@@ -21,7 +21,7 @@ typedef struct seen_part {
 typedef enum cut_answer { CUT_LEAVES_ALL, CUT_LEAVES_SOME, CUT_LEAVES_NOTHING } cut_answer;
 cut_answer hl_surface_cut(const surfaces *all, const surface_mesh *mesh, uint32_t primitive);
 
-/* Returns those of the given samples of pixel (x, y) at which the scene's cuts do not remove the part. */
+/* Returns the given samples of pixel (x, y) at which the scene's cuts do not remove the part. */
 uint16_t hl_left_samples(const seen_part *part, int x, int y, uint16_t samples);
 
 #endif

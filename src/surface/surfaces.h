@@ -14,7 +14,7 @@
 #include "scene/geometry/cut.h"
 #include "surface/primitive_kinds.h"
 
-/* How a mesh looks, and how much light it absorbs. */
+/* The look of a mesh, and the fraction of light that the mesh absorbs. */
 typedef struct surface_look {
   double color[3];             /* linear RGB; the colour of the mesh's material */
   double opacity;              /* a factor on the opacities of the mesh's vertices */

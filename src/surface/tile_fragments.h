@@ -9,10 +9,10 @@
 
 void hl_fragment_blocks_release(hl_context *context, fragment_block *latest);
 
-/* Sets those members of the work that depend only on the view: `small` and `near`. */
+/* Sets the members of the work that depend only on the view: `small` and `near`. */
 void hl_fragment_work_begin(fragment_work *work);
 
-/* Allocates those arrays of a worker that do not grow. Returns false if there is no memory. */
+/* Allocates the arrays of a worker that do not grow. Returns false if there is no memory. */
 bool hl_fragment_worker_begin(hl_context *context, fragment_worker *worker, int sheets);
 /* Releases all memory of a worker except the blocks that hold the finished tiles' fragments. */
 void hl_fragment_worker_end(hl_context *context, fragment_worker *worker);

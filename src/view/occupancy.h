@@ -9,7 +9,7 @@
 #include "grid/grid.h"
 #include "view/view.h"
 
-/* The rectangle of those tiles of a view that one grid can touch. For this grid, other tiles take neither
+/* The rectangle of the tiles of a view that one grid can touch. For this grid, other tiles take neither
  * memory nor time. */
 typedef struct tile_rectangle {
   int x, y, width, height; /* position and size of the rectangle, in tiles */

@@ -140,7 +140,7 @@ static void place(const coarsening *c, hl_volume_description *d) {
 }
 
 /* Copies to the coarser volume the properties that do not depend on its resolution: the value around the
- * content, the window, and what the file states about units, space, labels and fog. */
+ * content, the window, and the file's statements about units, space, labels and fog. */
 static void inherit(const hl_volume *volume, hl_volume *made) {
   made->unit = volume->unit;
   made->absence = volume->absence;

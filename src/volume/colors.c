@@ -28,8 +28,8 @@ void hl_colors_store(hl_voxel_type type, const void *stored, size_t step, size_t
                                             : (unsigned char)((wide[n * step] * 255U + 32767U) / 65535U);
 }
 
-/* The luma of a colour's codes. The weights, in units of 1/256, are those of ITU-R BT.709: .2126, .7152 and
- * .0722. */
+/* The luma of a colour's codes. The weights, in units of 1/256, are the weights of ITU-R BT.709: .2126, .7152
+ * and .0722. */
 static unsigned char luminance_of(const unsigned char *color) {
   return (unsigned char)((54U * color[0] + 183U * color[1] + 19U * color[2] + 128U) >> 8);
 }

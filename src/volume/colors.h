@@ -1,5 +1,4 @@
-/* volume/colors.h - voxels with colours of their own: the data that readers collect, and the volume made of
- * them.
+/* volume/colors.h - makes volumes whose voxels have colours of their own, from the data that readers collect.
  *
  * A volume keeps the densities from which opacity is computed and, [k][j][i], colours of 4 bytes: red, green
  * and blue as sRGB codes, and the colour's weight for interpolation between voxels. */

@@ -3,8 +3,8 @@
  * Stored values of 32-bit and 64-bit integers and of doubles are floats, which hold whole numbers exactly up
  * to 2^24. Where a file has greater numbers that a float rounds (the ids of atlases), the numbers themselves
  * are kept too, in the file's type: for labels, masks, `info`, `convert` and percentiles. Pictures of values
- * use the floats. If the voxels lie in pages, the numbers lie in a second scratch file. Over ranks each rank
- * keeps the numbers of its own voxels.
+ * use the floats. If the voxels lie in pages, the numbers lie in a second scratch file. If several ranks
+ * share the volume, each rank keeps the numbers of its own voxels.
  *
  * In: voxels as a file or a caller gives them, in pieces of any size and order, from several threads at once.
  * Out: the numbers of all voxels, or null if floats hold all of them. */
@@ -22,8 +22,8 @@ typedef enum hl_exact_place {
 typedef struct hl_exact {
   hl_context *context;
   hl_voxel_type type;
-  size_t first, count; /* the voxels whose numbers are kept: the number of the first voxel, which is 0 except
-                        * over ranks, and the number of voxels */
+  size_t first, count; /* the voxels whose numbers are kept. first: the number of the first one, which is 0
+                        * unless several ranks share the volume. count: the number of these voxels */
   hl_exact_place place;
   atomic_bool rounds;      /* whether floats round any of the recorded numbers */
   atomic_int failure;      /* the system's error number if memory or disk had no room for the numbers, else

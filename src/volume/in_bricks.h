@@ -7,7 +7,7 @@
 #include "volume/volume.h"
 
 /* Makes a volume of a field in bricks. For such a volume, the smoothing kernel and the interpolating kernel
- * give the same field, whose coefficients are those of the bricks. bricks: its arrays, blocks of
+ * give the same field, whose coefficients are the bricks' coefficients. bricks: its arrays, blocks of
  * hl_allocate(), are taken over, also on failure; *bricks is empty afterwards. grid: the voxels at which the
  * field is evaluated where voxels are wanted: dimensions, axis, space, and origin, the place of voxel
  * (0,0,0), which is at bricks->origin in the lattice. Its type must be HL_VOXEL_F32, its value_scale 1 and

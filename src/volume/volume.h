@@ -32,7 +32,7 @@ typedef struct hl_selection {
   int aim; /* the resolution that would be read if no coarser one were wanted for a first picture */
 } hl_selection;
 
-/* How many chunks a store on a server has, and how many of them the server has no file for. */
+/* The number of chunks of a store on a server, and the number of chunks for which the server has no file. */
 typedef struct hl_absence {
   size_t absent, chunks; /* 0 if the file is not a store on a server */
 } hl_absence;
@@ -44,7 +44,7 @@ typedef struct hl_series_entry {
   size_t dimensions[3];
 } hl_series_entry;
 
-/* What a file states about one of its channels. */
+/* The facts that a file states about one of its channels. */
 enum { HL_CHANNEL_NAME_BYTES = 128 };
 typedef struct hl_channel {
   char name[HL_CHANNEL_NAME_BYTES]; /* printable; "" if absent */

@@ -65,7 +65,7 @@ int web_depth(size_t length);
 const unsigned char *web_answer(void);
 size_t web_answer_bytes(void);
 
-/* Bytes held for what is open. */
+/* The number of bytes that are held for the open scene. */
 double web_memory_held(void);
 
 /* Functions that the page provides. web_cancelled() says whether the running call is not wanted any more.

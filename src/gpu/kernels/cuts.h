@@ -130,7 +130,7 @@ DEVICE void shorten_way(GLOBAL const plan_cut *cuts, int count, vector from, vec
   }
 }
 
-/* The length of those parts of a way from a point towards the light that cuts leave. left: the part of the
+/* The length of the parts of a way from a point towards the light that no cut removes. left: the part of the
  * way that counts. */
 DEVICE float length_left(GLOBAL const plan_cut *cuts, int count, vector from, vector towards, way_left left) {
   float removed = 0.0f;
@@ -168,8 +168,8 @@ DEVICE int is_far_from_cuts(GLOBAL const plan_cut *cuts, int count, vector posit
 
 /* ---- the skin of faces ---- */
 
-/* The skin of one face: how much of the matter behind the face belongs to it. before, depth: how deep a ray
- * lies behind the face on a slab's first and last sheet; in voxels. */
+/* The skin of one face: the fraction of the matter behind the face that belongs to the face. before, depth:
+ * the depths of a ray behind the face on a slab's first and last sheet; in voxels. */
 DEVICE float skin_of_depth(float before, float depth) {
   const float middle = (greater(before, 0.0f) + depth) * 0.5f;
   return depth > before ? limited(FACE_VOXELS - middle, 0.0f, 1.0f) : 0.0f;

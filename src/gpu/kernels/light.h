@@ -159,8 +159,8 @@ typedef struct light_ways {
 } light_ways;
 
 /* The lengths of the light's ways from the slab's first sheet to the beginning and to the end of the slab's
- * covered part. Only those parts of the ways count that the volume's box and cuts leave. path: the lengths of
- * the complete ways. */
+ * covered part. Only the parts of the ways count that lie in the volume's box and that no cut removes. path:
+ * the lengths of the complete ways. */
 DEVICE light_ways ways_in_box(const volume_data *data, GLOBAL const plan_light *light, vector start,
                               vector way, vector towards, light_ways path) {
   GLOBAL const plan_volume *volume = data->plan;

@@ -1,5 +1,5 @@
-/* gpu/kernels/numbers.h - numbers, functions and vectors like those in simd/lanes.h and view/rays_lanes.h,
- * but for one pixel instead of sixteen. */
+/* gpu/kernels/numbers.h - defines the numbers, functions and vectors of simd/lanes.h and view/rays_lanes.h
+ * for one pixel instead of sixteen. */
 #ifndef HL_GPU_NUMBERS_H
 #define HL_GPU_NUMBERS_H
 

@@ -46,7 +46,8 @@ typedef struct cut_face {
 } cut_face;
 
 /* Sets *nearest to the face of a cut through which the eye's ray comes to the sample, if this face is nearer
- * than *nearest. least: how far the face may lie behind the sample as the eye sees it; frame units. */
+ * than *nearest. least: the greatest distance by which the face may lie behind the sample as the eye sees it;
+ * frame units. */
 DEVICE void find_cut(GLOBAL const plan_cut *cut, const slab_sample *s, float least, cut_face *nearest) {
   const ray_section section = cross_cut(cut, s->position, s->towards_eye);
   float way = cut->keep_inside ? section.last : section.first;
@@ -95,7 +96,7 @@ DEVICE float find_face(const volume_data *volume, const slab_sample *s, vector *
 
 /* Treats a sample behind a face that cuts matter. Depending on the cut shading, it turns the sample's normal
  * towards the face's normal, or shades the sample less as a surface and more as a medium. The sample's skin
- * says how much. */
+ * says how strong this effect is. */
 DEVICE void find_cut_face(const volume_data *volume, slab_sample *s) {
   vector outward;
   s->behind = find_face(volume, s, &outward);
@@ -172,8 +173,9 @@ DEVICE kept_light kept_of_several(const volume_data *volume, table_coordinate a,
   return kept;
 }
 
-/* The skin of the faces of the box and of cuts on a light's ray in a slab: how much of the matter belongs to
- * them. in_index: the rays in index space at the sheet before the slab; the rays at the next sheet follow. */
+/* The skin of the faces of the box and of cuts on a light's ray in a slab: the fraction of the matter that
+ * belongs to these faces. in_index: the rays in index space at the sheet before the slab; the rays at the
+ * next sheet follow. */
 DEVICE float skin_of_faces(const volume_data *data, GLOBAL const plan_light *light,
                            GLOBAL const plan_rays *in_index, float u, float v) {
   GLOBAL const plan_volume *volume = data->plan;
@@ -191,9 +193,9 @@ DEVICE float skin_of_faces(const volume_data *data, GLOBAL const plan_light *lig
   return skin;
 }
 
-/* Finds k and k': how much of the light that a surface has absorbed still lights the surface after a slab.
- * sums: integrals from a to b. path: length of the light's ray through the slab. extinction: the slab's
- * extinction. skin: how much of the visible matter belongs to a face. */
+/* Finds k and k': the fractions of the light that a surface has absorbed which still light the surface after
+ * a slab. sums: integrals from a to b. path: length of the light's ray through the slab. extinction: the
+ * slab's extinction. skin: how much of the visible matter belongs to a face. */
 DEVICE kept_light kept_in_slab(const volume_data *volume, table_coordinate a, table_coordinate b,
                                const way_sums *sums, covered_span span, float path, float extinction,
                                float skin, float light, float outside) {
@@ -232,8 +234,8 @@ DEVICE float pass_outside(float outside, float before, float after, kept_light k
 
 /* ---- the light that lights a sample's surface ---- */
 
-/* The beginning of a light's way to a sample, on the slab's first sheet. The members are those of way_begin
- * in render/reaching_lanes.h. */
+/* The beginning of a light's way to a sample, on the slab's first sheet. The members are the same as in
+ * way_begin in render/reaching_lanes.h. */
 typedef struct way_begin {
   float start, change, first, foot;
   int there;

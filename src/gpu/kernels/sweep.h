@@ -120,7 +120,7 @@ typedef struct sweep_data {
    * and the slab's opacity, which is -1 if nothing is seen. Of this array and of the next two there are two
    * copies: one for even runs, one for odd runs. */
   GLOBAL float *slots;
-  GLOBAL unsigned *list;  /* [slabs of a run * 256 * tiles]; the numbers of those slots that are in use */
+  GLOBAL unsigned *list;  /* [slabs of a run * 256 * tiles]; the numbers of the slots that are in use */
   GLOBAL unsigned *masks; /* [256 * tiles]; bit k of a pixel's mask is set if the pixel uses its slot for the
                            * run's k-th slab */
 } sweep_data;

@@ -52,7 +52,7 @@ typedef struct near_fragments {
 } near_fragments;
 
 /* Finds the fraction of each light that reaches each pixel's piece of a slab. The fraction is found at the
- * middle of the piece. Only those fragments of `near` absorb light that the light's buffer does not hold yet.
+ * middle of the piece. Only the fragments of `near` absorb light that the light's buffer does not hold yet.
  * Returns whether any light is absorbed; only then it sets passing, [lights][channels][256], in rows of a
  * tile. */
 bool hl_near_surfaces_find(const sweep *sweep, const tile_slab *slab, const near_fragments *near,

@@ -74,7 +74,7 @@ static const hl_label *row_of(const hl_label_list *table, int64_t value) {
   return NULL;
 }
 
-/* Gives one label a name and a colour: those of the table if it has the label, else those of the map's
+/* Gives one label a name and a colour. They come from the table if it has the label, else from the map's
  * file. */
 static void describe(const hl_volume *map, const hl_label_list *table, int64_t value, hl_label *label) {
   *label = (hl_label){.value = value, .opacity = 1, .visible = 1};

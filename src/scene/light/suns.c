@@ -91,8 +91,9 @@ typedef struct search {
   row_integrals *rows;  /* [height]; the integrals of the tents of each row's pixels */
   double (*columns)[2]; /* [width]: sine and cosine of the angle to the middle column */
   brightest *peaks;     /* [height]; the brightest pixel of each row, without the pixels in `left_out` */
-  double wide, bend;    /* two integrals over the tent of a column: of the tent, and of the tent times the
-                         * cosine of the angle from the column's middle */
+  double wide, bend;    /* two integrals over the angles of a column's tent. wide: the integral of the tent.
+                         * bend: the integral of the tent times the cosine of the angle from the column's
+                         * middle */
   cap left_out[TRIES];  /* caps in which no sun begins any more */
   int left_out_count;
   double mean, total; /* brightness of the whole image: its mean, and its integral over all directions */
@@ -199,7 +200,7 @@ static void add_to_center(const search *all, int row, int column, void *data) {
 }
 
 /* Finds the middle of the spot around a pixel. Around this middle lies a cap. The middle is the mean
- * direction of those pixels of the cap that are at least half as bright as the given pixel. */
+ * direction of the cap's pixels that are at least half as bright as the given pixel. */
 static vec3 find_middle(const search *all, int row, int column, double radius) {
   cap around = {direction_of(all, row, column), radius};
   for (int i = 0; i < STEPS; i++) {

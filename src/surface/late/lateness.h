@@ -69,8 +69,8 @@ enum { RIM_PASSES = 8 };
 
 /* A mesh is rough if more than MOST_CORNERS of its vertices, and more than one vertex in MOST_PARTS, lie at
  * corners. The corners of a rough mesh are ignored, for two reasons. Rays all over such a mesh would take
- * several times as long as the rest of the frame. And a rough mesh has no corners like those of rooms, at
- * which light could leak. */
+ * several times as long as the rest of the frame. And a rough mesh has no corners like the corners of rooms,
+ * at which light could leak. */
 enum { MOST_CORNERS = 4096, MOST_PARTS = 8 };
 
 /* ---- look-ups ---- */
@@ -78,7 +78,7 @@ enum { MOST_CORNERS = 4096, MOST_PARTS = 8 };
 /* The distance by which look-ups are moved away from a surface, in pixels of the shadow buffer. They are
  * moved along the normal, but not to places where the buffer meets the surface earlier
  * (render/surface_lanes.h). So look-ups are affected as little as possible by light behind the surface, and
- * by what the surface itself absorbs. */
+ * by the light that the surface itself absorbs. */
 static const float LOOKUP_OFFSET = 1.25f;
 
 /* The delay of surfaces, in pixels, if look-ups use cubic convolution: the distance that such look-ups

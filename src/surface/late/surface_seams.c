@@ -75,7 +75,7 @@ static bool may_hold_large(const seam_search *search, const surface_cluster *clu
              search->large;
 }
 
-/* Lists those edges of large triangles that do not belong to a closed part of their mesh. */
+/* Lists the edges of large triangles that do not belong to a closed part of their mesh. */
 static void list_edges(seam_search *search) {
   const surfaces *all = search->all;
   for (size_t c = 0; c < all->cluster_count; c++) {

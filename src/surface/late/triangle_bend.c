@@ -1,7 +1,7 @@
 /* surface/late/triangle_bend.c - finds how the interpolated normal turns within a triangle (triangle.h).
  *
- * In: a triangle of a smooth mesh, and a direction along the triangle. Out: how much the surface bends in
- * this direction. A surface that bends inwards may shade itself (render/late/contact.c). */
+ * In: a triangle of a smooth mesh, and a direction along the triangle. Out: the bend of the surface in this
+ * direction. A surface that bends inwards may shade itself (render/late/contact.c). */
 #include "surface/late/lateness.h"
 #include "surface/triangle.h"
 

@@ -60,8 +60,8 @@ static hl_status choose_named(hl_load_request *request, const char *path, hl_err
                      : "");
 }
 
-/* Returns whether an array is one of those by which VTK marks points and cells that are duplicates or hidden.
- * Such an array cannot be the volume. */
+/* Returns whether VTK uses an array to mark points and cells that are duplicates or hidden. Such an array
+ * cannot be the volume. */
 static bool is_ghost(const hl_array_entry *array) {
   return hl_text_is_one_of(array->name, "vtkGhostType|vtkGhostLevels|vtkValidPointMask");
 }
@@ -149,8 +149,8 @@ void hl_channel_name(hl_channel *channel, const char *name) {
  * would not change a picture that is a thousand pixels wide. */
 static const uint64_t VOXELS_OF_A_PICTURE = (uint64_t)1 << 30;
 
-/* Returns whether a level is fine enough for a picture: its longest axis has at least as many voxels as the
- * picture's longer side has pixels. */
+/* Returns whether a level is fine enough for a picture: the number of voxels along its longest axis is at
+ * least the number of pixels along the picture's longer side. */
 static bool fills_picture(const hl_level_size *level, int pixels) {
   size_t longest = 0;
   for (int axis = 0; axis < 3; axis++)

@@ -61,9 +61,9 @@ hl_status hl_arrays_choose(hl_load_request *request, const char *path, int activ
 /* Chooses the component to read, and stores it in the payload, whose `components` and `block` must be set.
  * The choice is the wanted component, else the only one, else the magnitude of vectors of two or three
  * components, else the first component. is_series: whether components are time steps and channels. The time
- * steps of a channel follow each other. The numbers of times and channels are those of request->selection, or
- * else all components are times. By default the first time step of the first channel is read. Refuses a time,
- * a channel or a level that request->selection does not have. */
+ * steps of a channel follow each other. The numbers of times and channels are in request->selection; if they
+ * are not, all components are times. By default the first time step of the first channel is read. Refuses a
+ * time, a channel or a level that request->selection does not have. */
 hl_status hl_component_choose(hl_load_request *request, const char *path, bool is_series, hl_payload *payload,
                               hl_error *error);
 

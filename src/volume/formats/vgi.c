@@ -1,8 +1,9 @@
 /* volume/formats/vgi.c - reads .vgi headers of VGStudio, which describe bare voxels in another file.
  *
  * The text has parts "{volume1}", sections "[file1]" in them and lines "Key = value". The first part
- * "{volumeN}" says in [representation] and [file1] which voxels there are, and in which file. [geometry] of
- * the part "{volumeprimitiveN}" says how far apart they lie. Bytes are in little-endian order. */
+ * "{volumeN}" has the sections [representation] and [file1], which state the number and the type of the
+ * voxels, and their file. The section [geometry] of the part "{volumeprimitiveN}" states the distances of
+ * voxels. Bytes are in little-endian order. */
 #include <string.h>
 
 #include "volume/formats/format.h"
@@ -11,7 +12,7 @@
 
 enum { NAME_BYTES = 1024, WORD_BYTES = 64 };
 
-/* What one section says about voxels. */
+/* The facts about voxels that one section states. */
 typedef struct voxel_section {
   size_t size[3], bits;
   bool has_size;

@@ -21,7 +21,7 @@ typedef struct hl_destination {
 } hl_destination;
 
 typedef enum hl_destination_kind {
-  HL_DESTINATION_PIECES, /* in memory; in pages if memory is short, or over ranks */
+  HL_DESTINATION_PIECES, /* in memory; in pages if memory is short, or if several ranks share the volume */
   HL_DESTINATION_VOXELS, /* always in memory, for readers that access voxels more than once */
   HL_DESTINATION_COLORS  /* always in memory; the values are colours (colors.h) */
 } hl_destination_kind;

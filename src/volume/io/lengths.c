@@ -1,5 +1,5 @@
-/* volume/io/lengths.c - finds the length of a unit that a microscope's file names. The symbols are those of
- * OME's schema (UnitsLength) and the International System of Units. The names are those of UDUNITS-2 and
+/* volume/io/lengths.c - finds the length of a unit that a microscope's file names. The symbols are taken from
+ * OME's schema (UnitsLength) and the International System of Units. The names are taken from UDUNITS-2 and
  * ImageJ. */
 #include "volume/io/lengths.h"
 

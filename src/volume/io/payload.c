@@ -113,7 +113,7 @@ typedef struct page_reading {
   hl_destination *destination;
   size_t piece, done; /* number of voxels that a thread reads at once; number of voxels that all threads have
                        * read so far */
-  bool in_place;      /* whether a voxel of the file has as many bytes as a stored one */
+  bool in_place;      /* whether a voxel of the file has the same number of bytes as a stored voxel */
   bool failed;        /* whether a thread has failed, so that reading has stopped */
   pthread_mutex_t lock;
 } page_reading;

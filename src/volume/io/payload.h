@@ -43,8 +43,8 @@ void hl_payload_defaults(hl_payload *payload);
 uint64_t hl_payload_bytes(const hl_payload *payload);
 
 /* The grid of the volume that is made of the payload. A magnitude has floats, to which the file's scale and
- * offset have been applied. spacing: the lengths of the steps, which replace those of the file unless all are
- * 0. */
+ * offset have been applied. spacing: the lengths of the steps, which replace the file's lengths unless all
+ * are 0. */
 hl_volume_description hl_payload_grid(const hl_payload *payload, const double spacing[3]);
 
 /* Checks the grid and, before any allocation, whether the stream can hold the voxels. Then reads and converts

@@ -36,7 +36,7 @@ struct hl_source {
     size_t length, capacity;
     bool ended;
     z_stream zlib;
-  } inflated; /* what deflated data gave so far */
+  } inflated; /* the bytes to which the deflated data were inflated so far */
 };
 
 static voidpf zlib_allocate(voidpf context, uInt count, uInt size) {

@@ -20,7 +20,7 @@ bool hl_text_number(const char *text, size_t length, double *value);
  * is no whole number that int64_t holds. */
 bool hl_text_whole(const char *text, int64_t *whole);
 
-/* Reads numbers separated by white space. Returns how many there are, or -1 if the text contains anything
+/* Reads numbers separated by white space. Returns the number of numbers, or -1 if the text contains anything
  * else or more than `capacity` numbers. */
 int hl_text_numbers(const char *text, double *values, int capacity);
 

@@ -14,9 +14,9 @@
 bool hl_volume_is_in_memory(const hl_volume *volume);
 
 /* Gets a volume whose voxels are in one array in memory. It is the map itself, or for a map over ranks or in
- * sparse pages a copy, which the map keeps and owns. The first call for such a map makes the copy; over ranks
- * it must be made by all ranks. Later calls get the same copy. Returns HL_ERROR_UNSUPPORTED for a map in a
- * scratch file or in bricks, and HL_ERROR_MEMORY, on all ranks, if one rank has no room for the copy. */
+ * sparse pages a copy, which the map keeps and owns. The first call for such a map makes the copy; for a map
+ * over ranks, all ranks must make it. Later calls get the same copy. Returns HL_ERROR_UNSUPPORTED for a map
+ * in a scratch file or in bricks, and HL_ERROR_MEMORY, on all ranks, if one rank has no room for the copy. */
 hl_status hl_volume_in_memory(const hl_volume *map, hl_volume **whole, hl_error *error);
 
 #endif

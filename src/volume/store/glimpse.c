@@ -134,8 +134,8 @@ static unsigned char *row_of(const hl_glimpse *g, const lattice *l, size_t j, si
   return y == NOT_KEPT || z == NOT_KEPT ? NULL : l->voxels + (z * l->count[1] + y) * l->count[0] * g->bytes;
 }
 
-/* Stores those of the voxels i0 to i1 - 1 of a row that the lattice keeps. values: the stored values of these
- * voxels. */
+/* Stores the voxels that the lattice keeps among the voxels i0 to i1 - 1 of a row. values: the stored values
+ * of these voxels. */
 static void store_row(const hl_glimpse *g, const lattice *l, size_t i0, size_t i1,
                       const unsigned char *values, unsigned char *row) {
   if (l->count[0] == g->dimension[0]) {

@@ -36,7 +36,7 @@ bool hl_glimpse_create(hl_context *context, const size_t dimension[3], hl_storag
                        hl_glimpse **glimpse);
 void hl_glimpse_release(hl_glimpse *glimpse); /* null is allowed */
 
-/* Keeps those voxels that the glimpse needs, out of `count` stored values from number `first` on ([k][j][i]).
+/* Keeps the voxels that the glimpse needs, out of `count` stored values from number `first` on ([k][j][i]).
  * Several threads may store different voxels at the same time. */
 void hl_glimpse_store(hl_glimpse *glimpse, size_t first, size_t count, const void *values);
 

@@ -1,4 +1,4 @@
-/* volume/store/own_voxels.h - the block of a volume over ranks that this rank holds.
+/* volume/store/own_voxels.h - describes the block that this rank holds of a volume that several ranks share.
  *
  * In: voxels in the caller's memory, of any type and strides, borrowed; or a block of slices that a reader
  * fills with stored values. Out: stored values, packed, of any box of the block. */

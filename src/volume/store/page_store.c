@@ -15,8 +15,8 @@
 
 /* ---- parts of rows ---- */
 
-/* Finds which pages along an axis hold a voxel: the function returns the number of the first one, and *last
- * is set to that of the last. They differ if the voxel lies where pages overlap. */
+/* Finds which pages along an axis hold a voxel: the function returns the number of the first page, and *last
+ * is set to the number of the last page. They differ if the voxel lies where pages overlap. */
 static size_t first_page(const hl_pages *pages, int axis, size_t voxel, size_t *last) {
   *last = hl_page_of(pages, axis, voxel);
   size_t within = voxel - (*last << pages->shift), first = *last;
@@ -133,8 +133,9 @@ static bool write_block(const hl_pages *pages, const row_block *block) {
   return true;
 }
 
-/* Writes the first of `count` voxels, which begin with number `first`: as many whole slices as possible, or
- * else as many whole rows of one slice. Returns the number of voxels that were written; it may be 0. */
+/* Writes the first of `count` voxels, which begin with number `first`. If the voxels begin at the start of a
+ * slice and hold at least one whole slice, writes their whole slices. If not, writes their whole rows in the
+ * first slice. Returns the number of voxels that were written; it may be 0. */
 static size_t write_rows(hl_pages *pages, size_t first, size_t count, const unsigned char *values) {
   const size_t *n = pages->dimension;
   size_t row = first / n[0], j = row % n[1], k = row / n[1], rows = count / n[0];

@@ -53,8 +53,8 @@ typedef struct hl_pages {
   size_t hand;          /* the clock's hand: modulo the number of pages, the number of the page that it
                          * reaches next; atomic */
   bool filled;          /* whether hl_pages_finish() has been called */
-  bool in_use;          /* whether the pages belong to a volume; over ranks, other ranks may then ask for
-                         * voxels */
+  bool in_use;          /* whether the pages belong to a volume; if several ranks share the volume, other
+                         * ranks may then ask for voxels */
   hl_blocks *blocks;    /* owned; null for a scratch file */
   hl_own_voxels *own;   /* owned; the voxels behind `blocks` */
   uint32_t *version;    /* owned; [pages] over ranks, else null; the version of each page, which rises when
@@ -64,7 +64,8 @@ typedef struct hl_pages {
   size_t places;        /* number of places in the mapping that are taken, including place 0; atomic */
   unsigned char value[4]; /* of sparse pages: the stored value of voxels that were not stored */
   pthread_cond_t came;    /* over ranks: signalled when a page that was being fetched is complete */
-  pthread_mutex_t lock; /* held while values are counted; over ranks, also while the states of pages change */
+  pthread_mutex_t lock;   /* held while values are counted; if several ranks share the volume, also while the
+                           * states of pages change */
   uint64_t *counts; /* owned; [hl_values_of(storage)]; how often each stored value occurs; null for floats,
                      * and after the counts were taken */
   size_t counted;   /* number of stored values that were counted */

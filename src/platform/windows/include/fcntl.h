@@ -9,7 +9,7 @@
 #define O_CLOEXEC  _O_NOINHERIT
 #define O_NONBLOCK 0 /* ignored, because open() never waits here: a pipe without a writer fails */
 #define O_NOCTTY   0
-/* Flags that only hl_posix_open() and hl_posix_openat() have, beside those of the C library. */
+/* Flags of hl_posix_open() and hl_posix_openat() that the C library does not have. */
 /* the descriptor serves only for fstat(), and to open files below the folder */
 #define O_PATH      0x10000000
 #define O_DIRECTORY 0x20000000

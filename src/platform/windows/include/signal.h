@@ -21,7 +21,7 @@ struct sigaction {
 };
 int sigfillset(sigset_t *signals);
 int sigemptyset(sigset_t *signals);
-/* Sets what a signal does. Signals that the C library does not have fail. */
+/* Sets the effect of a signal. Signals that the C library does not have fail. */
 int sigaction(int number, const struct sigaction *action, struct sigaction *before);
 
 #undef pthread_sigmask

@@ -413,8 +413,8 @@ static void finish_mosaic(const hl_source *source, hl_dicom_header *header) {
   p->tiles = tiles;
 }
 
-/* Copies the attributes of the whole file to those attributes of a frame that the file does not state for the
- * frame. */
+/* Copies the attributes of the whole file to a frame, if the file does not state them for the frame
+ * itself. */
 static void complete_frame(const hl_dicom_header *header, hl_dicom_frame *frame) {
   double *own = (double *)frame;
   const double *base = (const double *)&header->base;

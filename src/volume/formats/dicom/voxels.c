@@ -23,7 +23,7 @@
 typedef struct reading {
   const hl_dicom_set *set;
   const hl_dicom_stack *stack;
-  size_t time;   /* index of the frame that is read among those at each position */
+  size_t time;   /* index of the frame that is read among the frames at each position */
   int component; /* the sample to take, or HL_COMPONENT_MAGNITUDE */
   hl_voxel_type type;
   bool as_floats; /* whether values are computed as floats; otherwise stored values are kept */

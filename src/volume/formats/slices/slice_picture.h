@@ -5,7 +5,7 @@
 
 #include "volume/formats/slices/slice_codecs.h"
 
-/* Returns whether a file's name is that of a picture that can be a slice. */
+/* Returns whether a file's name is the name of a picture that can be a slice. */
 bool hl_slice_is_named(const char *name);
 
 /* Reads a picture's header. Refuses a picture for which the file is too short. */

@@ -185,8 +185,7 @@ static hl_status measure(slices_reading *r, hl_slice_stack *stack, hl_error *err
       return hl_fail(error, HL_ERROR_CANCELLED, "%s: cancelled", r->bundle->path);
     uint64_t size = name_of(r, n)->entry->size, least = name_of(r, 0)->entry->size;
     if (size >= least / 64)
-      continue; /* a file that is not much shorter than that of the first picture needs
-                 * no check */
+      continue; /* a file that is not much shorter than the first picture's file needs no check */
     status = read_file(r, n, true, path, sizeof path, &file, error);
     if (status == HL_OK) status = hl_slice_measure(&file, &shape, error);
     hl_release(file.context, (void *)file.bytes);

@@ -70,7 +70,7 @@ static int on_error(TIFF *tiff, void *data, const char *module, const char *form
   return 1;
 }
 
-/* Logs libtiff's first few warnings, except those about tags that it does not know. */
+/* Logs libtiff's first few warnings. Warnings about tags that libtiff does not know are not logged. */
 static int on_warning(TIFF *tiff, void *data, const char *module, const char *format, va_list arguments) {
   (void)tiff, (void)module;
   tiff_file *file = data;

@@ -65,7 +65,8 @@ static void read_resolution(tiff_file *file, double resolution[2]) {
   resolution[1] = isfinite((double)y) && y > 0 ? (double)y : 0;
 }
 
-/* Drops pages whose shape is not that of the first page, and pages that are reduced pictures of others. */
+/* Drops pages whose shape differs from the first page's shape, and pages that are reduced pictures of
+ * others. */
 static hl_status drop_other_pages(tiff_file *file, const tiff_shape *first, stack_file *stack,
                                   hl_error *error) {
   size_t kept = 0, others = 0;
@@ -127,9 +128,9 @@ static hl_status check_size(const stack_reading *r, tiff_file *file, hl_error *e
       (unsigned long long)file->size);
 }
 
-/* Finds whether the pixels of all slices follow those of the first page, although the file has a page for
- * only one of them. ImageJ writes files above 4 GB in this way, and tifffile can. The slices of a deep page
- * lie in the same way, unless they are tiled. *pages: set to the number of all slices. */
+/* Finds whether the pixels of all slices follow the pixels of the first page, although the file has a page
+ * for only one of them. ImageJ writes files above 4 GB in this way, and tifffile can. The slices of a deep
+ * page lie in the same way, unless they are tiled. *pages: set to the number of all slices. */
 static hl_status find_plain(stack_reading *r, tiff_file *file, const tiff_shape *shape,
                             const char *description, const stack_file *stack, size_t *pages,
                             hl_error *error) {

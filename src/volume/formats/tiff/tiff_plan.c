@@ -133,7 +133,8 @@ static hl_status read_pixels(ome_reader *ome, const hl_xml_tag *tag, hl_error *e
   if (order != NULL && strlen(order) == 5 && strchr(order + 2, 'Z') != NULL &&
       strchr(order + 2, 'C') != NULL && strchr(order + 2, 'T') != NULL)
     memcpy(ome->order, order + 2, 3);
-  /* the samples of a pixel are colours, and count as channels in the file: one page holds as many planes */
+  /* the samples of a pixel are colours, and count as channels in the file: a page holds one plane for each
+   * sample */
   if (ome->components > 1 && ome->size[1] % ome->components == 0) ome->size[1] /= ome->components;
   read_lengths(ome, tag);
   ome->in_pixels = true;
@@ -205,7 +206,7 @@ static hl_status read_file(ome_reader *ome, const hl_xml_tag *tag, hl_error *err
   if (name == NULL) return HL_OK;
   if (strchr(name, '/') != NULL || strlen(name) >= sizeof ome->file || name[0] == 0)
     return fail_ome(ome, "names a file that is not beside it", error);
-  /* if the name is that of the first file itself, `file` stays empty */
+  /* if the name is the name of the first file itself, `file` stays empty */
   if (strcmp(name, slash != NULL ? slash + 1 : ome->path) != 0) strcpy(ome->file, name);
   return HL_OK;
 }
@@ -327,7 +328,7 @@ static bool is_imagej(const char *description) {
 
 /* Takes the lengths of voxels from ImageJ's description and the page's resolution. The resolution gives x and
  * y, the description the distance of slices and the units. The unit of y or z is stated only if it differs
- * from that of x. Lengths become micrometres if all units are known. */
+ * from the unit of x. Lengths become micrometres if all units are known. */
 static void take_imagej_lengths(hl_load_request *request, const char *description, const double resolution[2],
                                 tiff_plan *plan) {
   static const char *const names[] = {"unit", "yunit", "zunit"};

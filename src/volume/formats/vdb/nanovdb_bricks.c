@@ -95,7 +95,7 @@ hl_status nanovdb_bricks_read(const nanovdb_grid *grid, const hl_volume_descript
   size_t entries = 1;
   *bricks = (hl_bricks){.shift = SHIFT, .levels = 1};
   for (int a = 0; a < 3; a++) {
-    /* with this origin, coordinates in the lattice are those that a dense volume's voxels have in the
+    /* with this origin, coordinates in the lattice equal the coordinates of a dense volume's voxels in the
      * renderer's grid (grid/grid.h), so that pictures have the same bytes */
     bricks->origin[a] = 1;
     bricks->dimension[a] = description->dimensions[a] + 2;

@@ -209,8 +209,8 @@ static hl_status read_grid(const grid_list *list, const grid_entry *entry, unsig
 
 /* ---- the volume ---- */
 
-/* Allocates the volume's voxels. A dense volume may take far more memory than its sparse grid; the error says
- * how much. */
+/* Allocates the volume's voxels. A dense volume may take far more memory than its sparse grid; the error
+ * states the number of bytes. */
 static hl_status allocate(const grid_list *list, const grid_entry *entry, const hl_volume_description *grid,
                           void **voxels, hl_error *error) {
   hl_context *context = hl_source_context(list->source);

@@ -14,7 +14,7 @@
 
 enum { TYPES = 82 };
 
-/* A kind of cell, and the indices of those of its points that become corners of a hexahedron or a
+/* A kind of cell. corner: the indices of the cell's points that become corners of a hexahedron or a
  * tetrahedron. */
 typedef struct cell_kind {
   signed char points;                  /* least number of points of such a cell; 0 if the type is not read */

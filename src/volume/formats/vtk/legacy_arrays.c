@@ -192,7 +192,7 @@ static hl_status skip_metadata(hl_legacy_vtk *file, hl_error *error) {
 }
 
 /* Skips a text in a binary file. It begins with its length, in one, two, four or eight bytes; the first two
- * bits say in how many. Then its characters follow (vtkDataWriter). */
+ * bits state this number of bytes. Then its characters follow (vtkDataWriter). */
 static hl_status skip_binary_string(hl_legacy_vtk *file, hl_error *error) {
   static const size_t more[4] = {7, 3, 1, 0}; /* number of bytes of the length after the first */
   unsigned char first, rest[7];

@@ -51,7 +51,7 @@ hl_status hl_legacy_vtk_line(hl_legacy_vtk *file, char line[HL_LINE_BYTES], bool
 hl_status hl_legacy_vtk_fail(const hl_legacy_vtk *file, const char *message, const char *text,
                              hl_error *error);
 
-/* Finds a type by its name in the file. Fails if the name is not that of a type of numbers. */
+/* Finds a type by its name in the file. Fails if the name is not the name of a type of numbers. */
 hl_status hl_legacy_vtk_type(const hl_legacy_vtk *file, const char *name, hl_voxel_type *type,
                              hl_error *error);
 

@@ -1,4 +1,4 @@
-/* volume/formats/vtk/vtk_pieces.c - reads the pieces of those XML files of VTK that have points. */
+/* volume/formats/vtk/vtk_pieces.c - reads the pieces of XML files of VTK that have points. */
 #include "volume/formats/vtk/vtk_pieces.h"
 
 #include <math.h>

@@ -1,5 +1,5 @@
-/* volume/formats/vtk/vtk_pieces.h - reads the pieces of those XML files of VTK that have points: unstructured
- * and curvilinear grids, and PolyData. A pass over the tags lists the pieces and their arrays. */
+/* volume/formats/vtk/vtk_pieces.h - reads the pieces of XML files of VTK that have points: unstructured
+ * grids, curvilinear grids, and PolyData. A pass over the tags lists the pieces and their arrays. */
 #ifndef HL_VOLUME_VTK_PIECES_H
 #define HL_VOLUME_VTK_PIECES_H
 

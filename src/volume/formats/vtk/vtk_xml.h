@@ -67,7 +67,7 @@ hl_status hl_vtk_xml_array_tag(const hl_vtk_xml *xml, const hl_xml_tag *tag, hl_
 /* Reads the tag <AppendedData>, and goes to the first byte of the arrays in it. */
 hl_status hl_vtk_xml_appended_tag(hl_vtk_xml *xml, const hl_xml_tag *tag, hl_error *error);
 
-/* Finds a type by its name in the file. Returns false if the name is not that of a type of numbers. */
+/* Finds a type by its name in the file. Returns false if the name is not the name of a type of numbers. */
 bool hl_vtk_xml_find_type(const char *name, hl_voxel_type *type);
 /* Does what hl_vtk_xml_find_type() does, but fails if there is no such type. */
 hl_status hl_vtk_xml_type(const hl_vtk_xml *xml, const char *name, hl_voxel_type *type, hl_error *error);

@@ -25,7 +25,7 @@ typedef struct grid_file {
   int chosen_active; /* index of the active scalars in the request's list of arrays; -1 if there are none */
 } grid_file;
 
-/* Lists in the request those arrays of the first piece that hold values of points or cells. */
+/* Lists in the request the arrays of the first piece that hold values of points or cells. */
 static hl_status list_arrays(grid_file *file, hl_error *error) {
   hl_status status = HL_OK;
   const hl_vtk_pieces *pieces = &file->pieces;

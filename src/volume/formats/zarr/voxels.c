@@ -320,8 +320,8 @@ static bool wants_file(const reading *r, uint64_t number, part *place) {
 }
 
 /* Fetches the files of the `count` parts from r->first on, or the indices of shards. separator: the separator
- * in the files' names. again: whether to fetch only those files that the server does not have under the
- * array's own separator. */
+ * in the files' names. again: whether to fetch only the files that the server does not have under the array's
+ * own separator. */
 static hl_status bring_files(const reading *r, uint64_t count, char separator, bool again, hl_error *error) {
   const char *names[FILES_AT_A_TIME];
   hl_fetch_range ranges[FILES_AT_A_TIME];
@@ -349,7 +349,7 @@ static hl_status bring_files(const reading *r, uint64_t count, char separator, b
   return status;
 }
 
-/* A list of those parts of shards that will be fetched. */
+/* A list of the parts of shards that will be fetched. */
 typedef struct span_list {
   char (*keys)[KEY_BYTES]; /* owned; [FILES_AT_A_TIME]; names of the shards */
   size_t shards, count;

@@ -193,8 +193,8 @@ static hl_status list_folder(const hl_bundle *bundle, char **names, size_t *coun
   return status;
 }
 
-/* Lists the names of the arrays in a folder of an archive. They are sorted and owned as those of
- * list_folder(). */
+/* Lists the names of the arrays in a folder of an archive. They are sorted. The caller owns the list and the
+ * names. */
 static hl_status list_archive(const hl_bundle *bundle, const char *root, char **names, size_t *count,
                               hl_error *error) {
   size_t length = strlen(root);
