@@ -1,8 +1,10 @@
-/* server/bases.c - scenes that a page sends as differences from a scene that it has sent whole.
+/* server/bases.c - reads scenes that a page sends as differences from an earlier scene, which it has sent as
+ * a whole.
  *
- * While something moves, a page sends many scenes that hardly differ. The server keeps a page's base: the
- * newest scene that the page has sent whole, and the number of its frame. link.js makes the differences. A
- * difference is {"to": VALUE}, {"gone": 1} or, for an object or an array, {"in": {KEY: DIFFERENCE}}. */
+ * While something moves, a page sends many scenes that hardly differ. The server keeps each page's base. The
+ * base is the newest scene that the page has sent as a whole, and the number of that scene's frame. link.js
+ * makes the differences. A difference is {"to": VALUE}, {"gone": 1} or, for an object or an array, {"in":
+ * {KEY: DIFFERENCE}}. */
 #define _GNU_SOURCE
 #include <jansson.h>
 #include <stdlib.h>
@@ -47,8 +49,8 @@ static bool change_element(json_t *whole, const char *key, json_t *part) {
   return json_object_set_new(whole, key, changed(json_object_get(whole, key), part)) == 0;
 }
 
-/* Applies a difference to a value. Returns a reference that the caller owns; if null, the difference is
- * malformed. `from` may be changed, and may be null. */
+/* Applies a difference to a value. Returns a reference that the caller owns. Returns null if the difference
+ * is malformed. `from` may be changed, and may be null. */
 static json_t *changed(json_t *from, json_t *part) {
   json_t *to = json_object_get(part, "to"), *in = json_object_get(part, "in"), *inner;
   const char *key;

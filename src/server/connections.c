@@ -1,11 +1,12 @@
-/* server/connections.c - the connections that are open, and how long each may take.
+/* server/connections.c - keeps the table of open connections, and ends connections that take too long.
  *
  * A connection is a stranger until it has sent a request with the token. Strangers are accepted, because a
- * browser is a stranger at first. But only MOST_WAITING connections may wait for a request. If there are
- * more, a new connection takes the place of the stranger that has waited for longest. After that, no
- * connection is accepted for a moment. A browser sends its request at once, and so this request is read
- * before its connection can become the one that has waited for longest. Heads and bodies of requests have
- * deadlines. A connection is ended by shutdown(), which its own thread of libmicrohttpd notices. */
+ * browser is a stranger at first. But only MOST_WAITING connections may wait for a request. If more
+ * connections wait, a new connection takes the place of the stranger that has waited for the longest time.
+ * After that, no connection is accepted for a moment. A browser sends its request at once, and so this
+ * request is read before its connection can become the one that has waited for the longest time. Heads and
+ * bodies of requests have deadlines. A connection is ended by shutdown(), which its own thread of
+ * libmicrohttpd notices. */
 #define _GNU_SOURCE
 #include "connections.h"
 
@@ -41,8 +42,9 @@ static void end(connection_place *c) {
   shutdown(c->socket, SHUT_RDWR);
 }
 
-/* Chooses the waiting connection that ends to make room for another one. It is the one that has waited for
- * longest, among strangers if there are any. */
+/* Chooses the waiting connection that ends to make room for another one. Among the strangers, it is the
+ * connection that has waited for the longest time. If there is no stranger, it is that connection among all
+ * others. */
 static connection_place *least_missed(connection_table *table) {
   connection_place *best = NULL;
   for (int n = 0; n < MOST_CONNECTIONS; n++) {
@@ -56,7 +58,8 @@ static connection_place *least_missed(connection_table *table) {
   return best;
 }
 
-/* Takes a place for a new connection; null if there is none. *crowded: a waiting connection had to end. */
+/* Takes a place for a new connection; null if there is none. *crowded: set to whether a waiting connection
+ * had to end. */
 static connection_place *let_in(connection_table *table, int socket, bool *crowded) {
   connection_place *taken = NULL;
   int waiting = 0;

@@ -1,4 +1,4 @@
-/* server/connections.h - the connections that are open, and how long each may take. */
+/* server/connections.h - keeps the table of open connections, and ends connections that take too long. */
 #ifndef HL_SERVER_CONNECTIONS_H
 #define HL_SERVER_CONNECTIONS_H
 
@@ -11,13 +11,13 @@
 
 enum {
   MOST_CONNECTIONS = 256, /* the most connections at once */
-  MOST_WAITING = 128,     /* the most connections that wait for a request */
-  IDLE_SECONDS = 20,      /* seconds that a request may take to arrive, and for which a connection may be
-                           * silent */
-  LEAST_BYTES_PER_SECOND = 1 << 14 /* least speed at which a body must arrive after IDLE_SECONDS */
+  MOST_WAITING = 128,     /* the greatest number of connections that may wait for a request */
+  IDLE_SECONDS = 20,      /* the number of seconds within which a request must arrive; the number of seconds
+                           * for which a connection may be silent */
+  LEAST_BYTES_PER_SECOND = 1 << 14 /* the least speed at which a body must arrive after IDLE_SECONDS */
 };
 
-/* A connection of a browser, or of anybody else on this machine. */
+/* A connection that a browser, or any other program on this machine, has made. */
 typedef struct connection_place {
   int socket;
   int state;         /* one of the states in connections.c; if 0, this place is free */
@@ -32,7 +32,7 @@ typedef struct connection_table {
   unsigned long long turned_away;
 } connection_table;
 
-/* Seconds since a fixed time in the past. */
+/* The number of seconds since a fixed time in the past. */
 double server_seconds(void);
 
 bool connections_begin(connection_table *table);
@@ -49,7 +49,7 @@ void connection_changed(void *user_data, struct MHD_Connection *connection, void
 void connection_sends(connection_table *table, struct MHD_Connection *connection);
 void connection_is_answered(connection_table *table, struct MHD_Connection *connection);
 void connection_is_idle(connection_table *table, struct MHD_Connection *connection);
-/* Bytes of the body have come. */
+/* Notes that some bytes of the body have arrived. */
 void connection_received(connection_table *table, struct MHD_Connection *connection, size_t bytes);
 
 int connection_socket(struct MHD_Connection *connection);
@@ -57,11 +57,12 @@ int connection_socket(struct MHD_Connection *connection);
 /* Ends connections that are beyond their deadline. Call it some times a second. */
 void connections_expire(connection_table *table);
 
-/* Counts connections. open, waiting: the number of connections that are open now, and of those that wait for
- * a request. turned_away: the number of all connections that were ended to make room for others. */
+/* Counts connections. open: the number of connections that are open now. waiting: the number of connections
+ * that wait for a request. turned_away: the number of all connections that were ended to make room for
+ * others. */
 void connections_count(connection_table *table, int *open, int *waiting, unsigned long long *turned_away);
 
-/* Whether the other end has closed the connection. */
+/* Returns whether the other end has closed the connection. */
 bool peer_is_gone(int socket);
 
 #endif

@@ -1,5 +1,5 @@
-/* server/films.c - films that a page asks for. Each frame is rendered as `halflight animate` does. ffmpeg's
- * program joins the frames, or they are put into a zip archive. */
+/* server/films.c - makes the films that a page asks for. Each frame is rendered as `halflight animate` does.
+ * The program ffmpeg joins the frames, or the frames are stored in a zip archive. */
 #define _GNU_SOURCE
 #include <stdio.h>
 #include <stdlib.h>
@@ -44,7 +44,7 @@ static hl_status output_add(film_output *out, const unsigned char *png, size_t l
   return status;
 }
 
-/* Finishes the output; after a failure, abandons it. */
+/* Completes the output, or abandons it after a failure. */
 static hl_status output_end(film_output *out, hl_status status, hl_error *error) {
   bool good = !out->zipped || picture_zip_end(&out->zip);
   if (!good && status == HL_OK) {
@@ -76,7 +76,7 @@ static hl_status add_frame(server *s, server_page *page, const hl_scene *scene, 
     hl_scene_write_options(scene, &options);
     if (!out->zipped) options.background_transparent = 0;
     else status = hl_scene_to_json(context, scene, &text, error);
-    options.scene_json = text; /* pictures carry their scene, films do not */
+    options.scene_json = text; /* the pictures of an archive carry their scene; the frames of a film do not */
     if (status == HL_OK) status = hl_image_encode(context, image, "png", &options, &bytes, &length, error);
   }
   hl_image_destroy(image);
@@ -99,7 +99,7 @@ static hl_status add_frames(server *s, server_page *page, const film *f, film_ou
   return status;
 }
 
-/* Takes the film's bytes from its file, and removes the file. */
+/* Reads the film's bytes from its file, and removes the file. */
 static hl_status take_file(const char *path, server_answer *answer, hl_error *error) {
   struct stat about;
   FILE *file = fopen(path, "rbe");

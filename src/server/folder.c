@@ -1,5 +1,5 @@
-/* server/folder.c - the files that a page may open: files below the folder in which the viewer was started,
- * and files that are dropped on the page. */
+/* server/folder.c - finds the files that a page may open: files below the folder in which the viewer was
+ * started, and files that are dropped on the page. */
 #define _GNU_SOURCE
 #include <dirent.h>
 #include <limits.h>
@@ -17,8 +17,8 @@
 
 enum { MOST_ENTRIES = 2000 };
 
-/* Whether a name ends with one of some endings, after at least one other character. endings: separated by
- * blanks. *length: the name's length; it becomes the length without the ending. */
+/* Returns whether a name ends with one of some endings, after at least one other character. endings:
+ * separated by blanks. *length: the name's length, which is replaced by the length without the ending. */
 static bool ends_with_one(const char *name, size_t *length, const char *endings) {
   while (*(endings += strspn(endings, " ")) != '\0') {
     size_t end = strcspn(endings, " ");
@@ -83,8 +83,8 @@ bool folder_find(const server *s, const char *inside, char path[PATH_BYTES], ser
   return hl_context_confine(s->below, slash > below ? below : "", &file->confined, NULL) == HL_OK;
 }
 
-/* How a folder's list shows an entry. 'd': as a folder; 'f': as a file that can be opened; 0 if it does not
- * list the entry. */
+/* The letter by which a folder's list shows an entry: 'd' for a folder, 'f' for a file that can be opened,
+ * and 0 for an entry that is not listed. */
 static char kind_of(const server *s, const char *at, const char *name, off_t *bytes) {
   char inside[PATH_BYTES], path[PATH_BYTES];
   struct stat about;

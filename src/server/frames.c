@@ -1,10 +1,11 @@
-/* server/frames.c - pages and their frames: which page renders, and which frames are outdated.
+/* server/frames.c - renders the frames of pages, and stops outdated frames.
  *
  * Each page has a renderer of its own, which keeps everything that does not change from frame to frame. Other
- * pictures of a page, such as small ones and ones to be saved, are made by lanes. A lane is treated as a page
- * of its own, with the name NAME-LANE. Its renderer ends when no more of its pictures are asked for. A frame
- * makes all frames of its page with lower numbers outdated. An outdated frame that is being rendered stops at
- * its next check for cancellation; outdated frames that wait are not begun. */
+ * pictures of a page, such as small pictures and pictures that will be saved, are made by lanes. A lane is
+ * treated as a page of its own, with the name NAME-LANE. The lane's renderer ends when the page requests no
+ * more of the lane's pictures. A frame makes all frames of its page with lower numbers outdated. An outdated
+ * frame that is being rendered stops at its next check for cancellation; outdated frames that wait are not
+ * begun. */
 #define _GNU_SOURCE
 #include <limits.h>
 #include <stdio.h>
@@ -18,7 +19,7 @@
 /* The work of this thread: a frame that it renders, or a file that it opens. */
 static _Thread_local struct {
   server *server;
-  int socket;        /* socket of the client that has asked for the frame */
+  int socket;        /* the socket of the client that has requested the frame */
   server_page *page; /* null: there is no page */
   unsigned long long number;
   const server_opened *opened; /* the open scene that this thread prepares; null if the thread prepares
@@ -49,7 +50,7 @@ bool server_is_outdated(void) {
   return current.page != NULL && atomic_load(&current.page->newest) > current.number;
 }
 
-/* The stage of a frame, by the library's name for it. */
+/* The stage of a frame to which the library has given this name. */
 static frame_stage stage_named(const char *name) {
   return strcmp(name, "prepare") == 0 ? STAGE_LABELS : strcmp(name, "sky") == 0 ? STAGE_SKY : STAGE_PICTURE;
 }
@@ -113,7 +114,7 @@ static void release_page(server *s, server_page *page) {
   forget_renderers(page);
   base_forget(page);
   page->name[0] = '\0';
-  /* The value 0 lets the next new page take this place, and not that of an idle page. */
+  /* The value 0 lets the next new page take this place, and not the place of an idle page. */
   page->last_use = 0;
   page->leaving = false;
   atomic_store(&page->newest, 0);
@@ -204,8 +205,8 @@ int page_progress(server *s, const char *name, frame_stage *stage, int *others) 
   return part;
 }
 
-/* Frees memory by ending the renderers of all pages that no request holds. Their next frames make them
- * anew. */
+/* Frees memory by ending the renderers of all pages that no request holds. The next frames of these pages
+ * make new renderers. */
 static void spare_memory(server *s) {
   pthread_mutex_lock(&s->pages_lock);
   for (int p = 0; p < MOST_PAGES; p++)
@@ -232,15 +233,15 @@ static bool refuse_closed(server *s, long long number, server_answer *answer) {
   return opened == NULL;
 }
 
-/* Answers with the error. Status 204 means that nobody waits for this frame any more. */
+/* Answers with the error. The status is 204 if nobody waits for this frame any more. */
 static void fail_frame(server_answer *answer, hl_status status, const hl_error *error) {
   if (status == HL_ERROR_CANCELLED) answer->status = 204;
   else if (status == HL_ERROR_MEMORY || status == HL_ERROR_INTERNAL) refuse_line(answer, 500, error->message);
   else refuse_line(answer, 400, error->message);
 }
 
-/* Makes the scene that is rendered while something moves; it may be the scene itself. This function waits for
- * the coarser volumes, whose making takes less time than a frame of a large volume. */
+/* Makes the scene that is rendered while something moves. The result may be the given scene itself. The
+ * function waits until the coarser volumes are made, which takes less time than a frame of a large volume. */
 static hl_status make_quick(server *s, long long number, hl_scene *scene, hl_scene **quick, hl_error *error) {
   const struct timespec moment = {.tv_nsec = 2000000};
   server_opened *opened = opened_enter(s, number);
@@ -309,8 +310,8 @@ void answer_scene(server *s, const frame_request *request, const composed_choice
   answer->length = strlen(answer->text);
 }
 
-/* The page's renderer for a scene of coarser volumes. Where all places are taken, it takes the place that was
- * used longest ago. */
+/* The page's renderer for a scene of coarser volumes. If no place has a renderer for these volumes, the
+ * renderer whose last use is the longest time ago is used. */
 static hl_renderer **quick_renderer_of(server_page *page, const hl_scene *scene) {
   const hl_volume *volume = hl_scene_describe(scene)->volumes[0].volume;
   quick_renderer *found = &page->quick[0];
@@ -323,8 +324,7 @@ static hl_renderer **quick_renderer_of(server_page *page, const hl_scene *scene)
   return &found->renderer;
 }
 
-/* Renders a frame. renderer: the one of the page's renderers that is for moving scenes, or for scenes at
- * rest. */
+/* Renders a frame. renderer: the page's renderer for moving scenes, or for scenes at rest. */
 static hl_status render(server *s, server_page *page, hl_renderer **renderer, const hl_scene *scene,
                         const frame_request *request, server_answer *answer, hl_error *error) {
   const hl_scene_description *d = hl_scene_describe(scene);
@@ -446,7 +446,7 @@ bool film_progress(server *s, const char *name, int *done, int *frames) {
   return found;
 }
 
-/* Adds a scene to the open ones, and answers with its start.json or with the error. Releases the scene. */
+/* Adds a scene to the open scenes, and answers with its start.json or with the error. Releases the scene. */
 static void answer_opened(server *s, hl_scene *scene, const char *title, hl_status status, hl_error *error,
                           server_answer *answer) {
   if (status == HL_OK) {

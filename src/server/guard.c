@@ -1,12 +1,12 @@
-/* server/guard.c - whether a request is allowed. Every request must pass these checks before its body is
- * read. */
+/* server/guard.c - checks whether a request is allowed. Every request must pass these checks before its body
+ * is read. */
 #define _GNU_SOURCE
 #include <string.h>
 #include <strings.h>
 
 #include "parts.h"
 
-/* Whether the text is up to five digits and nothing else. */
+/* Returns whether the text consists of one to five digits. */
 static bool is_port(const char *text) {
   size_t digits = strspn(text, "0123456789");
   return digits >= 1 && digits <= 5 && text[digits] == '\0';

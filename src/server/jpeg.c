@@ -1,4 +1,4 @@
-/* server/jpeg.c - pictures as JPEG, for frames that are seen only for a moment. */
+/* server/jpeg.c - encodes pictures as JPEG, for frames that are seen only for a moment. */
 #include <setjmp.h>
 #include <stdio.h>
 #include <stdlib.h>

@@ -1,4 +1,4 @@
-/* server/module.h - the viewer as a module: its functions that `halflight view` calls.
+/* server/module.h - declares the functions of the viewer's module that `halflight view` calls.
  *
  * The server's libraries (libmicrohttpd, and with it GnuTLS) make a thousand allocations before main(). So
  * the server is no part of the program, and only `halflight view` loads it. */

@@ -1,8 +1,8 @@
-/* server/opened.c - scenes that are open: the program's input, and scenes that pages have opened.
+/* server/opened.c - keeps the open scenes: the program's input, and scenes that pages have opened.
  *
- * A frame's scene may name the volumes of one open scene. The scene that was used longest ago makes room for
- * another, if no request holds it. A thread for each scene makes its preview, and then reads finer
- * resolutions of its volumes, if there are any. */
+ * A frame's scene may name the volumes of one open scene. If another scene needs room, the scene whose last
+ * use is the longest time ago is closed, unless a request holds it. A thread for each scene makes its
+ * preview, and then reads finer resolutions of its volumes, if there are any. */
 #define _GNU_SOURCE
 #include <pthread.h>
 #include <stdio.h>
@@ -30,7 +30,7 @@ server_opened *opened_enter(server *s, long long number) {
   return opened;
 }
 
-/* Releases a state, and those that it replaced. */
+/* Releases a state, and the states that it replaced. */
 static void release_states(opened_state *state) {
   while (state != NULL) {
     opened_state *before = state->before;
@@ -76,7 +76,7 @@ void opened_close(server *s, long long number) {
 
 /* ---- states ---- */
 
-/* Whether a volume is read at a coarser resolution than it is to be. */
+/* Returns whether a volume was read at a coarser resolution than the wanted one. */
 static bool is_coarse(const hl_scene *scene) {
   const hl_scene_description *d = hl_scene_describe(scene);
   for (size_t v = 0; v < d->volume_count; v++) {
@@ -135,7 +135,7 @@ static void make_preview(server *s, opened_state *state) {
   atomic_store(&state->prepared, true);
 }
 
-/* Replaces the state by one that is finer by one resolution. */
+/* Replaces the state by a state that is finer by one resolution. */
 static hl_status refine_once(server *s, server_opened *opened, hl_error *error) {
   opened_state *now = atomic_load(&opened->state);
   hl_scene *scene = NULL;
@@ -154,7 +154,7 @@ static hl_status refine_once(server *s, server_opened *opened, hl_error *error) 
   return HL_OK;
 }
 
-/* Reads finer resolutions until the last one is there, or one cannot be read. */
+/* Reads finer resolutions until the finest one is read, or until one of them cannot be read. */
 static void refine(server *s, server_opened *opened) {
   hl_error error = {0};
   hl_status status = HL_OK;
@@ -204,8 +204,8 @@ static void wait_for_preparations(server *s) {
   while (atomic_load(&s->preparing) > 0) nanosleep(&moment, NULL);
 }
 
-/* Finds a place for another scene. If necessary, closes the scene that was used longest ago. Returns null if
- * requests hold all scenes. */
+/* Finds a place for another scene. If necessary, closes the scene whose last use is the longest time ago.
+ * Returns null if requests hold all scenes. */
 static server_opened *make_room(server *s) {
   server_opened *best = NULL;
   for (int o = 0; o < MOST_OPENED; o++) {

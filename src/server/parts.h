@@ -1,4 +1,4 @@
-/* server/parts.h - data and functions that the files of the server share. */
+/* server/parts.h - declares the data and the functions that the files of the server share. */
 #ifndef HL_SERVER_PARTS_H
 #define HL_SERVER_PARTS_H
 
@@ -18,18 +18,20 @@
 enum {
   TOKEN_DIGITS = 32,
   PAGE_NAME_LENGTH = 32,
-  MOST_PAGES = 8, /* the most pages that keep a renderer; if there are more, a new page takes the place of the
-                   * one that was idle for longest */
+  MOST_PAGES = 8, /* the greatest number of pages that keep a renderer; if there are more pages, a new page
+                   * takes the place of the page that was idle for the longest time */
   QUICK_RENDERERS = 3, /* number of quick renderers of a page: one for each copy that a preview has of a
                         * volume */
-  MOST_OPENED = 6,     /* the most open scenes; if there are more, the one that was not used for longest is
-                        * closed */
-  PATH_BYTES = 4096,   /* bytes of a path: Linux's PATH_MAX, which realpath() fills */
+  MOST_OPENED = 6,     /* the greatest number of open scenes; if there are more, the scene that was not used
+                        * for the longest time is closed */
+  PATH_BYTES = 4096,   /* the greatest number of bytes of a path, which is Linux's PATH_MAX, as realpath()
+                        * requires */
   MOST_FILM_KEYS = 32,
   MOST_FILM_FRAMES = 100000,
-  IDLE_PAGE_SECONDS = 300,   /* seconds after which a page that has asked for nothing loses its renderer */
-  MOST_BODY_BYTES = 4 << 20, /* the most bytes of a scene's text */
-  MOST_PIXELS = 64 << 20,    /* the most pixels of a picture */
+  IDLE_PAGE_SECONDS = 300,   /* the number of seconds after which a page that has requested nothing loses its
+                              * renderer */
+  MOST_BODY_BYTES = 4 << 20, /* the greatest number of bytes of a scene's text */
+  MOST_PIXELS = 64 << 20,    /* the greatest number of pixels of a picture */
   LEAST_QUALITY = 10,
   MOST_QUALITY = 100 /* the greatest quality of a JPEG */
 };
@@ -47,16 +49,17 @@ typedef struct server_asset {
 extern const server_asset server_assets[];
 extern const size_t server_asset_count;
 
-/* A renderer for frames while something moves, for volumes at one of the coarser resolutions. There is one
- * for each resolution, because a renderer prepares a volume anew when the volume changes. */
+/* A renderer for frames while something moves. It renders volumes at one of the coarser resolutions. There is
+ * one such renderer for each resolution, because a renderer prepares a volume anew when the volume
+ * changes. */
 typedef struct quick_renderer {
   hl_renderer *renderer;       /* owned; null if it is not made yet */
   const hl_volume *volume;     /* borrowed; the first volume of the scenes that the renderer renders; only its
                                 * address is compared */
-  unsigned long long last_use; /* by server_page's quick_uses */
+  unsigned long long last_use; /* the value of server_page's quick_uses at the last use */
 } quick_renderer;
 
-/* What is made for a frame: first what the picture needs and later frames keep, then the picture. */
+/* The stages of making a frame. Labels and sky are made before the picture. Later frames use them again. */
 typedef enum frame_stage { STAGE_PICTURE = 0, STAGE_LABELS = 1, STAGE_SKY = 2 } frame_stage;
 
 /* A page in a browser. Its frames are rendered one after the other. */
@@ -67,19 +70,20 @@ typedef struct server_page {
   quick_renderer quick[QUICK_RENDERERS]; /* guarded by `rendering` */
   unsigned long long quick_uses;         /* guarded by `rendering` */
   atomic_ullong newest;                  /* the highest number of a requested frame */
-  atomic_int frame_part; /* how much of the current stage of the frame is finished, in thousandths */
+  atomic_int frame_part; /* the part of the frame's current stage that is finished, in thousandths */
   atomic_int stage;      /* the current stage, a frame_stage */
-  atomic_int film_done, film_frames; /* of the film that the page renders: number of finished frames, and
-                                      * number of all frames; 0 frames in all: there is no film */
+  atomic_int film_done, film_frames; /* film_done: the number of finished frames of the film that the page
+                                      * renders; film_frames: the number of all frames; 0 if the page renders
+                                      * no film */
   int users;                         /* number of requests that hold the page; guarded by
                                       * server.pages_lock */
-  bool leaving; /* the page was closed: its place becomes free when the last request that holds it ends;
-                 * guarded by server.pages_lock */
+  bool leaving; /* whether the page was closed; its place becomes free when the last request that holds it
+                 * ends; guarded by server.pages_lock */
   unsigned long long last_use; /* guarded by server.pages_lock */
-  double last_seen;            /* when the page last asked for something, by server_seconds();
-                                * guarded by server.pages_lock */
-  char *base; /* owned; the text of the newest scene that the page has sent whole, or null; guarded by
-               * server.pages_lock */
+  double last_seen;            /* the time of the page's last request, by server_seconds(); guarded by
+                                * server.pages_lock */
+  char *base; /* owned; the text of the newest scene that the page has sent as a whole; null if there is none;
+               * guarded by server.pages_lock */
   unsigned long long base_number; /* number of the frame of `base`; guarded by server.pages_lock */
 } server_page;
 
@@ -90,9 +94,11 @@ typedef struct opened_state opened_state;
 struct opened_state {
   hl_scene *scene;               /* owned */
   char *start;                   /* owned; the text of the scene's start.json */
-  int refined;                   /* how often a state was replaced by a finer one before this one */
-  _Atomic(hl_preview *) preview; /* owned; null until the preview is made, and where it cannot be made */
-  atomic_bool prepared;          /* the preview is made, or cannot be made */
+  int refined;                   /* the number of times that a state was replaced by a finer one before this
+                                  * state was made */
+  _Atomic(hl_preview *) preview; /* owned; null until the preview is made; it stays null if the preview cannot
+                                  * be made */
+  atomic_bool prepared;          /* whether the preview was made, or cannot be made */
   opened_state *before;          /* owned; the state that this one replaced; requests may still use it */
 };
 
@@ -102,11 +108,11 @@ typedef struct server_opened {
   _Atomic(opened_state *) state; /* owned; if null, the place is free. A state that was loaded stays while the
                                   * scene is entered */
   char *title;                   /* owned */
-  atomic_bool refining;          /* finer resolutions are still to be read */
-  char problem[1000];  /* why they were not read, an error line; "" where they were. It does not change once
-                        * `refining` is false */
+  atomic_bool refining;          /* whether finer resolutions will still be read */
+  char problem[1000];  /* the error line of finer resolutions that could not be read; "" if there was no
+                        * error. It does not change any more when `refining` is false */
   int users;           /* number of requests that use the scene; guarded by server.pages_lock */
-  atomic_bool leaving; /* the scene's page has gone; set while server.pages_lock is held */
+  atomic_bool leaving; /* whether the scene's page was closed; set while server.pages_lock is held */
   unsigned long long last_use; /* guarded by server.pages_lock */
 } server_opened;
 
@@ -133,16 +139,16 @@ typedef struct server {
 typedef struct server_answer {
   unsigned status;
   const char *type;
-  const void *borrowed; /* valid as long as the server; or null */
+  const void *borrowed; /* valid until the server ends; or null */
   size_t length;
   unsigned char *bytes;       /* owned, hl_bytes_release(); or null */
   char *text;                 /* owned, hl_text_release(); or null */
   unsigned char *from_malloc; /* owned, free(); or null */
   char problem[1000];         /* an error line, if the answer has neither bytes nor a text */
-  double seconds_read, seconds_render, seconds_encode; /* seconds that reading, rendering and encoding a frame
-                                                        * took; all 0 if the answer is no frame */
-  double seconds_once; /* of these seconds, those that later frames need not spend again: preparing a new
-                        * renderer, and waiting for coarser volumes */
+  double seconds_read, seconds_render, seconds_encode; /* the times, in seconds, for reading, rendering and
+                                                        * encoding a frame; all 0 if the answer is no frame */
+  double seconds_once; /* the part of these times that later frames do not need again: the time for preparing
+                        * a new renderer, and for waiting for coarser volumes */
 } server_answer;
 
 /* The parameters of a request for a frame. */
@@ -150,20 +156,21 @@ typedef struct frame_request {
   const char *page;
   unsigned long long number;
   long long opened;   /* the number of the open scene whose volumes the scene in the request uses */
-  const char *format; /* "jpeg", "png", "exr" or "npy". "depth": not a picture, but the depth at its middle.
-                       * "overlay": a PNG with only what is drawn over the picture */
+  const char *format; /* "jpeg", "png", "exr" or "npy". "depth" asks for the depth at the picture's middle in
+                       * place of a picture. "overlay" asks for a PNG with the overlays alone */
   int quality;        /* quality of a JPEG */
-  int depth;          /* bits of a PNG's channels: 8 or 16 */
-  int metadata;       /* 1: a PNG carries its scene; 0: it does not */
-  int scale_bar, legend, marks; /* 1: drawn over a PNG of 8 bits */
+  int depth;          /* number of bits of a PNG's channels: 8 or 16 */
+  int metadata;       /* 1 if a PNG carries its scene, else 0 */
+  int scale_bar, legend, marks; /* 1 if this overlay is drawn over a PNG of 8 bits, else 0 */
   int axes;                     /* an hl_axes; axes are drawn over a PNG of 8 bits, too */
   const char *unit; /* unit of lengths, used where the scene's files tell none; null if there is no such
                      * unit */
-  int moving;     /* 1: a quick frame, of coarser volumes where the sheets are wide; 0: the scene as it is */
-  int coarse;     /* 1: the volumes are taken as they were read so far; 0: the frame waits for the finest
-                   * resolutions that are to be read, and fails where they cannot be read */
-  long long base; /* 0: `text` is a whole scene; else `text` is a difference, from the scene of the page's
-                   * frame with this number */
+  int moving;       /* 1 for a quick frame, which uses coarser volumes if the sheets are far apart; 0 for a
+                     * frame of the scene as it is */
+  int coarse;       /* 1 if the frame uses the volumes that were read so far; 0 if the frame waits for the
+                     * finest resolutions, and fails if they cannot be read */
+  long long base;   /* 0 if `text` is a whole scene. Any other number is the number of a frame of the page;
+                     * `text` is then a difference from that frame's scene */
   const char *text; /* the scene */
   size_t length;
 } frame_request;
@@ -179,7 +186,8 @@ typedef struct film_request {
 
 /* A plane of voxels that a page asks for. */
 typedef struct slice_request {
-  long long refined; /* `refined` of the state whose voxels the plane is given in; -1: it is not told */
+  long long refined; /* the member `refined` of the state in whose voxels the plane is given; -1 if it is not
+                      * stated */
   long long opened, volume; /* number of the open scene, and index of the volume in it */
   slice_source source;
   hl_reslice_options plane;
@@ -199,32 +207,32 @@ void pages_end(server *s);
  * work is cancelled when the client has gone. */
 void work_begin(server *s, int socket);
 void work_end(void);
-/* From now on, this thread works for an open scene. Its work is cancelled when the page that opened the scene
- * was closed. */
+/* Notes that this thread works for an open scene from now on. The work is cancelled when the page that opened
+ * the scene was closed. */
 void work_begin_for(server *s, const server_opened *opened);
-/* Must be called when a page was closed. Ends the frames of the page and of its lanes (NAME-...), and their
- * renderers. */
+/* This function must be called when a page was closed. It ends the frames of the page and of its lanes
+ * (NAME-...), and their renderers. */
 void page_is_gone(server *s, const char *name);
-void pages_expire(server *s); /* ends the renderers of pages that have not asked for anything for long; must
-                               * be called now and then */
-/* Counts of the pages of a server and their work. */
+void pages_expire(server *s); /* ends the renderers of pages that have not sent a request for a long time;
+                               * must be called from time to time */
+/* The numbers of a server's pages, and of the frames and renderers of these pages. */
 typedef struct pages_state {
   int pages;     /* number of pages that may hold a renderer */
-  int rendering; /* number of frames that are being rendered, or wait to be */
+  int rendering; /* number of frames that are being rendered or that wait */
   int renderers; /* number of renderers of pages that are rendering nothing now */
 } pages_state;
 
 pages_state pages_count(server *s);
-/* The progress of the page's frame, in thousandths of its stage. *others: the number of other pages, and of
- * lanes of this page, that have frames under way. */
+/* The progress of the page's frame, in thousandths of its stage. *others: set to the number of other pages,
+ * and lanes of this page, whose frames are being rendered. */
 int page_progress(server *s, const char *name, frame_stage *stage, int *others);
 /* Answers with a frame. film: null for a picture. */
 void answer_frame(server *s, const frame_request *request, const film_request *film, server_answer *answer);
-/* Answers with the scene, its defaults written out and the page's choices applied. film: the scene is that of
- * this frame of the film; null if there is no film. */
+/* Answers with the scene, its defaults written out and the page's choices applied. film: if not null, the
+ * scene is the scene of the requested frame of this film. */
 void answer_scene(server *s, const frame_request *request, const composed_choices *choices,
                   const film_request *film, int frame, server_answer *answer);
-/* Makes the page's frames with lower numbers than this one outdated. */
+/* Marks the page's frames with lower numbers than this one as outdated. */
 void cancel_frames(server *s, const char *page, unsigned long long number);
 /* The progress of the page's film. Returns false if it has none. */
 bool film_progress(server *s, const char *page, int *done, int *frames);
@@ -236,16 +244,17 @@ void answer_open(server *s, const server_file *file, const char *title, server_a
 void answer_join(server *s, const frame_request *request, long long with, const char *title,
                  server_answer *answer);
 
-/* Sets an answer that is an error line. */
-extern const char closed_line[]; /* the error line for a scene that is not open any more: status 410 */
+/* Sets the answer to an error line. */
+extern const char closed_line[]; /* the error line for a scene that is not open any more; it is answered with
+                                  * status 410 */
 void refuse_line(server_answer *answer, unsigned status, const char *line);
 
 /* These functions are in bases.c. They lock server.pages_lock, except base_forget(), whose caller must hold
  * the lock. */
 void base_keep(server *s, server_page *page, const frame_request *request);
 void base_forget(server_page *page);
-/* Applies the request's difference to the page's base. Returns the text of the whole scene (free()); if null,
- * the request is refused, with status 409 if the page has another base. */
+/* Applies the request's difference to the page's base. Returns the text of the whole scene (free()). Returns
+ * null if the request is refused; the status is 409 if the page has another base. */
 char *base_changed(server *s, server_page *page, const frame_request *request, server_answer *answer);
 
 /* places.c */
@@ -278,8 +287,8 @@ server_opened *opened_enter(server *s, long long number);
 static inline const opened_state *opened_now(const server_opened *opened) {
   return atomic_load(&opened->state);
 }
-/* JSON of how far an open scene was read: {"refined": N, "refining": BOOL, "problem": TEXT} (free()); null if
- * there is no memory. */
+/* Returns a JSON text (free()) about the resolutions of an open scene that were read: {"refined": N,
+ * "refining": BOOL, "problem": TEXT}. Returns null if memory is short. */
 char *describe_refinement(const server_opened *opened);
 void opened_leave(server *s, server_opened *opened);
 /* Closes a scene that a page has opened, as soon as no request holds it. */
@@ -305,18 +314,18 @@ bool upload_add(server_upload *upload, const char *bytes, size_t count);
 bool upload_finish(server_upload *upload);
 void upload_end(server_upload *upload); /* removes the file and its folder */
 
-/* jpeg.c: makes a JPEG of a picture (free()). rgba: [height][width][4]. Null where there is no memory. */
+/* jpeg.c: makes a JPEG of a picture (free()). rgba: [height][width][4]. Null if there is no memory. */
 unsigned char *encode_jpeg(const uint8_t *rgba, int width, int height, int quality, size_t *length);
 
 /* guard.c */
-/* Whether a Host header names this machine's own address: 127.0.0.1, localhost or [::1]. Any port will do,
- * because a tunnel may end at another port. This refuses pages of other host names that resolve to this
- * machine. */
+/* Returns whether a Host header names this machine's own address: 127.0.0.1, localhost or [::1]. Any port is
+ * accepted, because a tunnel may end at another port. The check refuses pages with other host names that
+ * resolve to this machine. */
 bool host_is_local(const char *host);
-/* Whether an Origin header names the server's own page, or is absent (null). */
+/* Returns whether an Origin header names the server's own page, or is absent (null). */
 bool origin_is_own(const char *origin, const char *host);
-/* The rest of a path after "/TOKEN/"; null if the token is wrong. The time that it takes is the same for all
- * wrong tokens. */
+/* The rest of a path after "/TOKEN/"; null if the token is wrong. The check takes the same time for all wrong
+ * tokens. */
 const char *path_after_token(const char *path, const char *token);
 
 /* requests.c: sets up libmicrohttpd's callbacks for a server that listens on a socket. */

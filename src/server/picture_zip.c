@@ -1,7 +1,7 @@
 /* server/picture_zip.c - writes a zip archive of stored pictures.
  *
- * The format is that of PKWARE, APPNOTE.TXT, 4.3: for each file a header and then the file; after all files
- * the list of files, and the end of the list. Numbers are little-endian. */
+ * Source of the format: PKWARE's APPNOTE.TXT, 4.3. An archive has for each file a header and then the file;
+ * after all files the list of files, and the end of the list. Numbers are little-endian. */
 #include "picture_zip.h"
 
 #include <stdlib.h>
@@ -13,8 +13,8 @@ enum {
   LOCAL_HEADER = 0x04034b50,
   LIST_ENTRY = 0x02014b50,
   LIST_END = 0x06054b50,
-  VERSION = 10, /* version 1.0: stored files need no more */
-  DATE = 0x21,  /* 1 January 1980, where the format's calendar begins */
+  VERSION = 10, /* version 1.0 of the format, which is sufficient for stored files */
+  DATE = 0x21,  /* 1 January 1980, the first day of the format's calendar */
   NAME_BYTES = 32,
   BYTES_MOST = 1 << 30
 };

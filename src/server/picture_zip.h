@@ -1,5 +1,5 @@
-/* server/picture_zip.h - an archive of numbered pictures, stored without compression. It replaces a film
- * where ffmpeg is absent. */
+/* server/picture_zip.h - writes an archive of numbered pictures, which are stored without compression. The
+ * archive replaces a film if ffmpeg is absent. */
 #ifndef HL_SERVER_PICTURE_ZIP_H
 #define HL_SERVER_PICTURE_ZIP_H
 
@@ -24,9 +24,10 @@ typedef struct picture_zip {
 
 /* Begins an archive of `pictures` pictures, at most PICTURE_ZIP_MOST. */
 bool picture_zip_begin(picture_zip *zip, const char *path, int pictures);
-/* Adds the next picture, the bytes of a PNG. False where the file cannot be written or would exceed 1 GiB. */
+/* Adds the next picture, the bytes of a PNG. Returns false if the file cannot be written or would exceed 1
+ * GiB. */
 bool picture_zip_add(picture_zip *zip, const unsigned char *png, size_t length);
-/* Writes the list and closes the file; releases the memory in any case. */
+/* Writes the list of files, and closes the file. The memory is released also after a failure. */
 bool picture_zip_end(picture_zip *zip);
 
 #endif

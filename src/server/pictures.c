@@ -1,4 +1,4 @@
-/* server/pictures.c - rendered images as the files that a page asks for, with their overlays. */
+/* server/pictures.c - encodes rendered images as the files that a page requests, with their overlays. */
 #define _GNU_SOURCE
 #include <stdlib.h>
 #include <string.h>

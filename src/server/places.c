@@ -1,4 +1,5 @@
-/* server/places.c - answers about places: planes of voxels, and the depth of what the middle pixel shows. */
+/* server/places.c - answers requests about places in a scene: planes of voxels, and the depth of the surface
+ * that the middle pixel shows. */
 #define _GNU_SOURCE
 #include <math.h>
 #include <stdio.h>
@@ -28,8 +29,8 @@ void answer_slice(server *s, const slice_request *request, server_answer *answer
   opened_leave(s, opened);
 }
 
-/* Reads three numbers, as "1,2.5,-3", from a query. If the text is absent (null), the numbers stay. Returns
- * false if the text is something else. */
+/* Reads three numbers, as "1,2.5,-3", from a query. If the text is absent (null), the numbers are not
+ * changed. Returns false if the text is something else. */
 bool read_triple(const char *text, double numbers[3]) {
   if (text == NULL) return true;
   char copy[128];

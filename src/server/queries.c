@@ -50,7 +50,8 @@ static int query_choice(struct MHD_Connection *connection, const char *name, con
 }
 
 frame_request query_frame(struct MHD_Connection *connection, const char *text, size_t length) {
-  static const char *const axes[] = {"none", "arrows", "letters", NULL}; /* in the order of hl_axes */
+  static const char *const axes[] = {"none", "arrows", "letters", NULL}; /* the names of the axes, in the
+                                                                          * order of hl_axes */
   return (frame_request){.page = query_text(connection, "page"),
                          .number = (unsigned long long)query_number(connection, "number", 1, MOST_NUMBER, 0),
                          .opened = query_number(connection, "opened", 0, MOST_NUMBER, 0),
@@ -115,7 +116,7 @@ bool query_slice(struct MHD_Connection *connection, slice_request *wanted) {
   return true;
 }
 
-/* Whether the query has more keys than a film may have. */
+/* Returns whether the query has more keys than a film may have. */
 static bool has_too_many_keys(struct MHD_Connection *connection) {
   char name[16];
   snprintf(name, sizeof name, "key%d", MOST_FILM_KEYS);

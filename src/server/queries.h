@@ -1,4 +1,4 @@
-/* server/queries.h - what a request asks for, by the parameters of its address. */
+/* server/queries.h - reads the parameters in the address of a request. */
 #ifndef HL_SERVER_QUERIES_H
 #define HL_SERVER_QUERIES_H
 
@@ -20,11 +20,11 @@ bool is_film_format(const char *format);
  * become -1. If `number` cannot be read, it becomes 0 or more than MOST_NUMBER. body: [length]; it is
  * borrowed. */
 frame_request query_frame(struct MHD_Connection *connection, const char *body, size_t length);
-/* Whether a request for a frame names a page and has a number. */
+/* Returns whether a request for a frame names a page and has a number. */
 bool names_page(const frame_request *wanted);
-/* Whether the parameters of the overlays could be read. */
+/* Returns whether the parameters of the overlays could be read. */
 bool names_overlay(const frame_request *wanted);
-/* Whether the frame's format can have overlays, which are drawn with 8 bits per channel. */
+/* Returns whether the frame's format can have overlays, which are drawn with 8 bits per channel. */
 bool overlay_fits(const frame_request *wanted);
 /* Reads the plane that a query describes. Returns false if the query describes no plane, or a plane that is
  * too large. */

@@ -1,5 +1,4 @@
-/* server/requests.c - requests are checked, collected and answered. libmicrohttpd gives each connection a
- * thread. */
+/* server/requests.c - checks, collects and answers requests. libmicrohttpd gives each connection a thread. */
 #define _GNU_SOURCE
 #include <stdio.h>
 #include <stdlib.h>
@@ -12,7 +11,7 @@
 
 /* A request whose body is still arriving. */
 typedef struct request {
-  bool refused; /* the request was refused before its body was read */
+  bool refused; /* whether the request was refused before its body was read */
   const char *path;
   char *body; /* owned; [length] */
   size_t length, capacity;
@@ -94,7 +93,7 @@ static enum MHD_Result find_zero(void *found, enum MHD_ValueKind kind, const cha
   return zero ? MHD_NO : MHD_YES;
 }
 
-/* Whether a value in the query contains a zero byte, at which a name would be cut off. */
+/* Returns whether a value in the query contains a zero byte, which would cut off a name. */
 static bool has_zero(struct MHD_Connection *connection) {
   bool found = false;
   MHD_get_connection_values_n(connection, MHD_GET_ARGUMENT_KIND, find_zero, &found);
@@ -196,7 +195,8 @@ static void answer_film_progress(server *s, struct MHD_Connection *connection, s
 static void answer_progress(server *s, struct MHD_Connection *connection, server_answer *answer) {
   const char *page = query_text(connection, "page");
   char *text = NULL;
-  static const char *const names[] = {"picture", "labels", "sky"}; /* in the order of frame_stage */
+  static const char *const names[] = {"picture", "labels", "sky"}; /* the names of the stages, in the order of
+                                                                    * frame_stage */
   frame_stage stage;
   int others, part = page_progress(s, page != NULL ? page : "", &stage, &others);
   if (asprintf(&text, "{\"part\":%.3f,\"stage\":\"%s\",\"others\":%d}", part / 1000.0, names[stage], others) <
@@ -205,7 +205,7 @@ static void answer_progress(server *s, struct MHD_Connection *connection, server
   answer_json(answer, text);
 }
 
-/* Answers with start.json of an open scene, or with how far it was read. */
+/* Answers with the start.json of an open scene, or with the resolutions that were read of it. */
 static void answer_opened(server *s, struct MHD_Connection *connection, bool start, server_answer *answer) {
   long long number = query_number(connection, "opened", 0, MOST_NUMBER, 0);
   server_opened *opened = number >= 0 ? opened_enter(s, number) : NULL;
@@ -284,7 +284,7 @@ static void post_frame(server *s, struct MHD_Connection *connection, const reque
                    "&legend=0|1, &marks=0|1, &axes=none|arrows|letters, &unit=TEXT)\n");
 }
 
-/* Answers with the depth of the place that the middle of a small picture of the scene shows. */
+/* Answers with the depth of the surface that the middle pixel of a small picture of the scene shows. */
 static void post_depth(server *s, struct MHD_Connection *connection, const request *r,
                        server_answer *answer) {
   frame_request wanted = query_frame(connection, r->body, r->length);
@@ -356,7 +356,8 @@ static void post_cancel(server *s, struct MHD_Connection *connection, const requ
   else answer_problem(answer, 400, "?page=NAME&number=N is missing\n");
 }
 
-/* For a page that was closed, or that now shows another file: ends all that is open for this page. */
+/* Handles the message that a page was closed, or that it now shows another file. Ends the frames and
+ * renderers of this page, and closes its scene. */
 static void post_leave(server *s, struct MHD_Connection *connection, server_answer *answer) {
   const char *page = query_text(connection, "page");
   long long opened = query_number(connection, "opened", 0, MOST_NUMBER, 0);
@@ -379,7 +380,7 @@ static void post_open(server *s, struct MHD_Connection *connection, server_answe
   }
 }
 
-/* Opens a file that was dropped on the page. Nothing else lies in its folder. */
+/* Opens a file that was dropped on the page. The folder of this file contains no other file. */
 static void open_upload(server *s, const server_upload *upload, const char *name, server_answer *answer) {
   server_file file = {.name = name};
   if (hl_context_confine(s->options.context, upload->folder, &file.confined, NULL) == HL_OK)
@@ -461,7 +462,7 @@ static enum MHD_Result on_request(void *user_data, struct MHD_Connection *connec
     bool taken = !r->refused && (r->uploads ? upload_add(&r->upload, upload, *upload_size)
                                             : collect(r, upload, *upload_size));
     *upload_size = 0;
-    /* If the body is larger than the request's head said, the connection ends. */
+    /* If the body is larger than the request's head states, the connection is ended. */
     return taken ? MHD_YES : MHD_NO;
   }
   r->path = path_after_token(url, s->token);

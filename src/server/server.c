@@ -1,4 +1,4 @@
-/* server/server.c - the server's life: a socket, a token, requests, the end. */
+/* server/server.c - runs the server: opens its socket, makes its token, serves requests, and ends. */
 #define _GNU_SOURCE
 #include "server.h"
 
@@ -19,7 +19,7 @@
 
 #include "parts.h"
 
-/* A socket that listens on 127.0.0.1; -1, with an error line in `problem`, if there is none. */
+/* Opens a socket that listens on 127.0.0.1. Returns -1, with an error line in `problem`, on failure. */
 static int listen_on(int port, char *problem, size_t size) {
   enum { WAITING_CONNECTIONS = 64 };
   const int yes = 1;
@@ -50,8 +50,8 @@ static bool make_token(char token[TOKEN_DIGITS + 1]) {
   return true;
 }
 
-/* The GNU C library keeps freed memory for the thread that used it, which is much with many threads. By
- * default it keeps up to 64 MiB at the end of each thread's memory, and malloc_trim() does not give these
+/* The GNU C library keeps freed memory for the thread that used it. With many threads this is a large amount.
+ * By default it keeps up to 64 MiB at the end of each thread's memory, and malloc_trim() does not give these
  * back. With the settings here, each block of KEPT_BYTES or more is taken directly from the system, and of
  * smaller blocks no more than KEPT_BYTES are kept. */
 static void keep_little_memory(void) {

@@ -43,27 +43,30 @@
 typedef struct server_file {
   hl_context *confined; /* opens only files in the file's folder; if the file is a folder, only files in it */
   const char *name;     /* the file's name in that folder; "." if the file is a folder */
-  const char *folder;   /* the folder's absolute path, by which the scene names files; if null, the file was
-                         * dropped on the page, and its scene can be saved beside it */
+  const char *folder;   /* the folder's absolute path, by which the scene names files; null if the file was
+                         * dropped on the page; its scene can then be saved beside it */
 } server_file;
 
 typedef struct server_options {
   hl_context *context; /* its `cancelled` callback is server_is_outdated() */
   hl_scene *scene;
   const char *title;  /* the input's name, for the page's title */
-  const char *folder; /* absolute path; pages may open files below it; if null, they may open none */
+  const char *folder; /* absolute path; pages may open files below it; if null, pages may open no files */
   hl_status (*open)(void *files_data, const server_file *file, hl_scene **scene, hl_error *error);
   /* Reads volumes whose files have finer resolutions than were read (hl_volume_selection.aim), at the next
-   * finer one. *finer: the scene with these volumes; null if there is none to read. Null if no scene has
-   * one. */
+   * finer one. *finer: the scene with these volumes; null if there is none to read. If the function is null,
+   * no scene has finer resolutions. */
   hl_status (*refine)(void *files_data, const hl_scene *scene, hl_scene **finer, hl_error *error);
   void *files_data;                        /* data for `open` and `refine` */
-  uint64_t most_upload_bytes;              /* the most bytes of a dropped file; 0 if there is no limit */
+  uint64_t most_upload_bytes;              /* the greatest number of bytes of a dropped file; 0 if there is no
+                                            * limit */
   int port;                                /* 0: any free port */
-  bool (*token)(int port, char token[33]); /* sets the URL's token, 32 hexadecimal digits, to the one that was
-                                            * kept for this port. Called when the server has the port. If the
-                                            * function is null or returns false, the token is random */
-  bool (*stopped)(void);                   /* called some times a second; true ends server_run() */
+  bool (*token)(int port, char token[33]); /* sets the URL's token, 32 hexadecimal digits, to the token that
+                                            * was kept for this port. The server calls the function when it
+                                            * has the port. If the function is null or returns false, the
+                                            * token is random */
+  bool (*stopped)(void);                   /* called some times a second; the server ends when the function
+                                            * returns true */
   void *user_data;
   void (*ready)(void *user_data, const char *url); /* called once, as soon as the server answers requests */
   void (*visited)(void *user_data); /* called once after `ready`, by another thread, when a browser has loaded
@@ -74,12 +77,12 @@ typedef struct server_options {
  * has an error line. */
 bool server_run(const server_options *options, char *problem, size_t problem_size);
 
-/* A function for the context's `progress` callback. fraction: how much is done of the file that this thread
- * opens, or of the current stage of the frame that it renders. */
+/* A function for the context's `progress` callback. fraction: the part that is finished of the file that this
+ * thread opens, or of the current stage of the frame that it renders. */
 void server_progress(const char *stage, double fraction);
 
-/* A function for the context's `cancelled` callback: whether nobody wants the frame that this thread renders
- * any more. */
+/* A function for the context's `cancelled` callback. Returns whether nobody wants the frame that this thread
+ * renders any more. */
 bool server_is_outdated(void);
 
 #endif
