@@ -17,8 +17,8 @@ typedef struct hl_device {
   char interface_name[16]; /* the interface that finds the device: "cuda" or "opencl" */
   char version[128];       /* the versions of the device's driver and of its compiler */
   uint64_t memory_bytes;
-  int processor; /* non-zero: the device computes on the machine's processors; "gpu" and "auto" never
-                  * choose it */
+  int processor; /* non-zero if the device computes on the machine's processors; "gpu" and "auto" never choose
+                  * it */
 } hl_device;
 
 /* Finds the devices of the machine. For this it loads libcuda.so.1, nvrtc and libOpenCL.so.1, as far as the

@@ -30,7 +30,7 @@ typedef struct hl_annotation {
   const char *text;
   double at[3]; /* the place in the picture, as fractions of the picture's width and height, measured from its
                  * upper left corner; at[2] is not used */
-  int in_world; /* non-zero: `at` is a point of the scene's world instead, and a ring is drawn around the
+  int in_world; /* non-zero if `at` is a point of the scene's world instead, and a ring is drawn around the
                  * point */
 } hl_annotation;
 
@@ -42,7 +42,8 @@ typedef struct hl_annotation {
  * ground is drawn between the image and the bar, the legend or the arrows. */
 typedef struct hl_overlay {
   size_t struct_size;
-  int scale_bar;              /* non-zero: a scale bar is drawn at the lower left, with its length as text */
+  int scale_bar;              /* non-zero if a scale bar is drawn at the lower left, with its length as
+                               * text */
   double scale_bar_length;    /* the scale bar's length in scale_bar_unit; if 0, a length is chosen that is 1,
                                * 2 or 5 times a power of ten and at most a quarter of the picture's width */
   const char *scale_bar_unit; /* the unit of the scale bar's length and text; if null, world_unit, or another
@@ -54,14 +55,14 @@ typedef struct hl_overlay {
   double scale_bar_depth; /* the distance from the eye, in the scene's units, at which the scale bar is right,
                            * or HL_DEPTH_OF_TARGET. A perspective camera needs it, because its scale changes
                            * with depth; if 0, the scale bar is refused for such a camera */
-  int legend; /* non-zero: a legend is drawn at the right. It shows the colours and opacity of each visible
+  int legend; /* non-zero if a legend is drawn at the right. It shows the colours and opacity of each visible
                * volume over the volume's values, the colours of its isosurfaces, or the names of its
                * labels */
   const char *legend_title; /* the title of the first volume's legend, which replaces the volume's name; the
                              * unit of the values is added; may be null */
   hl_axes axes;
-  int marks; /* non-zero: the scene's marks (hl_mark) are drawn, with their lengths and angles in the world of
-              * the first volume's file. The unit of lengths is world_unit, or else the unit that this file
+  int marks; /* non-zero if the scene's marks (hl_mark) are drawn, with their lengths and angles in the world
+              * of the first volume's file. The unit of lengths is world_unit, or else the unit that this file
               * tells; without either, no unit is written. Refused if the scene has no marks */
   const hl_annotation *annotations; /* [annotation_count] */
   size_t annotation_count;
@@ -85,7 +86,7 @@ typedef struct hl_figure_panel {
                                     * only a letter, and annotations whose places are fractions */
   double left, top, width, height; /* the place and size of the panel on the page, in millimetres; left and
                                     * top are measured from the page's upper left corner */
-  int frame;                       /* non-zero: a thin line is drawn around the panel, as around an inset */
+  int frame;                       /* non-zero if a thin line is drawn around the panel, as around an inset */
   hl_overlay overlay;
 } hl_figure_panel;
 
@@ -125,7 +126,7 @@ HL_API HL_WARN_UNUSED hl_status hl_figure_draw(hl_context *context, const hl_fig
 
 /* Writes the figure in the format of the path's extension: .pdf, .svg, .png, .tif or .tiff. The file appears
  * whole or not at all. options: only the members scene_json and pixels_per_inch are used, which are stored in
- * PNG and TIFF files. options null: no scene is stored, and pixels_per_inch is the figure's. */
+ * PNG and TIFF files. If options is null, no scene is stored, and pixels_per_inch is the figure's. */
 HL_API HL_WARN_UNUSED hl_status hl_figure_write(hl_context *context, const hl_figure *figure,
                                                 const char *path, const hl_image_write_options *options,
                                                 hl_error *error);

@@ -15,7 +15,7 @@ extern "C" {
 typedef struct hl_file_format {
   size_t struct_size;  /* set by the caller: sizeof(hl_file_format) */
   const char *name;    /* "NRRD" */
-  int reads, writes;   /* non-zero: this build reads, or writes, the format */
+  int reads, writes;   /* non-zero if this build reads, or writes, the format */
   const char *missing; /* the library that the format needs and that this build lacks, as "libtiff"; if null,
                         * this build reads the format */
   /* The endings of file names for reading and for writing, separated by blanks, as ".nrrd .nhdr". Files with

@@ -30,8 +30,8 @@ typedef struct hl_cells_description {
   size_t corner_count;
   const double *values; /* [point_count] or [cell_count]; one value for each point, or for each cell; NaN:
                          * there is no value */
-  int of_cells;         /* non-zero: `values` belong to cells; a point then gets the mean of the cells around
-                         * it. 0 (default): they belong to points */
+  int of_cells;         /* non-zero if `values` belong to cells; a point then gets the mean of the cells
+                         * around it. 0, the default, if they belong to points */
 } hl_cells_description;
 
 HL_API void hl_cells_description_defaults(hl_cells_description *description);

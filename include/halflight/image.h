@@ -44,7 +44,7 @@ typedef struct hl_image_write_options {
   int png_depth;              /* number of bits of each channel in PNG and TIFF files: 8 or 16 */
   double background[3];       /* the background over which the picture is composited, linear RGB; only for PNG
                                * and TIFF */
-  int background_transparent; /* non-zero: PNG and TIFF files keep alpha; their colours are then not
+  int background_transparent; /* non-zero if PNG and TIFF files keep alpha; their colours are then not
                                * multiplied by alpha */
   const char *scene_json;     /* the scene's JSON, which a PNG stores as the text chunk "halflight:scene"; may
                                * be null */
@@ -84,7 +84,7 @@ HL_API void hl_bytes_release(hl_context *context, unsigned char *bytes); /* null
  * first. The codes are the same as in a .png file with png_depth 8. Pixels that are composited over a
  * background have A = 255. With options->background_transparent, alpha is kept, and colours are not
  * multiplied by alpha. bytes: the caller's, [height][row_stride], of which 4 x width are used in each row;
- * row_stride in bytes, at least 4 x width. options null: the picture is shown over black. */
+ * row_stride in bytes, at least 4 x width. If options is null, the picture is shown over black. */
 HL_API HL_WARN_UNUSED hl_status hl_image_to_srgb8(const hl_image *image,
                                                   const hl_image_write_options *options, uint8_t *bytes,
                                                   size_t row_stride, hl_error *error);
@@ -103,7 +103,7 @@ typedef struct hl_image_about {
   int channels, bits;     /* the number of values of a pixel, and the bits of each value. A palette's colours
                            * count as values of 8 bits; for OpenEXR, the bits are the bits of the widest
                            * channel */
-  int has_scene;          /* non-zero: the file carries a scene, which hl_image_find_scene() finds */
+  int has_scene;          /* non-zero if the file carries a scene, which hl_image_find_scene() finds */
 } hl_image_about;
 
 /* Finds facts about a picture from the bytes of its file, without its pixels. name: the file's name in

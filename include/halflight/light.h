@@ -125,7 +125,7 @@ typedef struct hl_sky {
   double rotation_deg; /* image: the angle by which the image is turned about up; positive: counterclockwise
                         * as seen from above */
   double up[3];        /* the direction of the zenith, a vector of any length in the world */
-  int hemisphere;      /* non-zero: the sky has no light below the horizon */
+  int hemisphere;      /* non-zero if the sky has no light below the horizon */
   double strength;     /* a factor by which the radiance of all colours is multiplied */
   int suns; /* image: non-zero (the default): in a scene with shadows, up to four compact bright spots of the
              * image shine as parallel lights, and are left out of the image's light. The sum of all light

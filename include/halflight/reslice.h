@@ -28,8 +28,8 @@ typedef struct hl_reslice_options {
                                           * and from one layer to the next, in voxels along i, j, k; default:
                                           * the unit steps along i, j, k */
   hl_blend blend;                        /* default HL_BLEND_MAXIMUM */
-  int interpolate; /* non-zero: values between voxels are interpolated linearly; 0 (default): a sample has the
-                    * value of the nearest voxel */
+  int interpolate; /* non-zero if values between voxels are interpolated linearly; 0, the default, if a sample
+                    * has the value of the nearest voxel */
 } hl_reslice_options;
 
 HL_API void hl_reslice_options_defaults(hl_reslice_options *options);

@@ -66,7 +66,7 @@ typedef struct hl_cut {
   double min[3], max[3];      /* box: its least and its greatest corner */
   double center[3], radius;   /* sphere: its centre and its radius */
   hl_cut_keep keep;           /* the side of the shape whose matter stays; default: the outside */
-  int world; /* non-zero: a volume's cut has its lengths in the scene's world, after the volume's transform;
+  int world; /* non-zero if a volume's cut has its lengths in the scene's world, after the volume's transform;
               * default 0 */
 } hl_cut;
 
@@ -132,7 +132,7 @@ typedef struct hl_scene_volume {
   hl_material material;
   double attenuation_color[3]; /* factors of the extinction in R, G and B */
   int visible, casts_shadow, receives_shadow;
-  int clipped;                     /* non-zero: the matter outside the box clip_min..clip_max is removed */
+  int clipped;                     /* non-zero if the matter outside the box clip_min..clip_max is removed */
   double clip_min[3], clip_max[3]; /* the box's least and greatest coordinates, in the world of the volume's
                                     * file, before the transform */
   double axis_scale[3];     /* factors of the volume's size along x, y and z of the world of its file, in
@@ -148,8 +148,8 @@ typedef struct hl_scene_volume {
   size_t iso_count;
   double albedo[3]; /* the scattering albedo in R, G and B: the fraction of the extinguished light that a
                      * medium scatters. It multiplies the medium's colour; default 1 */
-  int multiple_scattering; /* non-zero: light may be scattered several times in the medium; 0 (default): it is
-                            * scattered once */
+  int multiple_scattering; /* non-zero if light may be scattered several times in the medium; 0, the default,
+                            * if it is scattered once */
   /* [label_count]; sorted by value, the least first. A volume with labels is a label map. It shows its
    * visible labels, with smooth borders and in their colours. The transfer function of a label map is made
    * from the labels. */
@@ -158,7 +158,7 @@ typedef struct hl_scene_volume {
   const hl_cut *cuts; /* [cut_count]; matter stays only where none of the cuts removes it */
   size_t cut_count;
   hl_cut_shading cut_shading;
-  int cut_casts_shadow; /* non-zero: the matter that `cuts` remove still casts its shadow; default 0 */
+  int cut_casts_shadow; /* non-zero if the matter that `cuts` remove still casts its shadow; default 0 */
   hl_mask mask;         /* the volume's mask; a label map must not have one */
 } hl_scene_volume;
 
@@ -177,12 +177,12 @@ typedef struct hl_scene_mesh {
   double opacity;  /* the fraction of light that the surface takes, 0 to 1. It is multiplied by the opacity of
                     * the mesh's vertices, faces or spheres */
   hl_material material;
-  int smooth;    /* non-zero: normals are interpolated between vertices; 0: each triangle is flat */
-  int two_sided; /* non-zero: the back of a triangle is lit like its front; 0: the back is black */
+  int smooth;    /* non-zero if normals are interpolated between vertices; 0 if each triangle is flat */
+  int two_sided; /* non-zero if the back of a triangle is lit like its front; 0 if the back is black */
   int visible, casts_shadow, receives_shadow;
   double attenuation_color[3]; /* the fractions of red, green and blue light that the surface takes, by which
                                 * `opacity` is multiplied */
-  int cut;                     /* non-zero: the scene's cuts cut the mesh */
+  int cut;                     /* non-zero if the scene's cuts cut the mesh */
 } hl_scene_mesh;
 
 typedef enum hl_soft_method { HL_SOFT_CASCADE = 0, HL_SOFT_PAPER = 1, HL_SOFT_SUBLIGHTS = 2 } hl_soft_method;
@@ -266,7 +266,7 @@ typedef struct hl_scene_description {
   size_t struct_size;         /* set by hl_scene_description_defaults() */
   int width, height;          /* pixels */
   double background[3];       /* linear RGB */
-  int background_transparent; /* non-zero: a PNG of the picture keeps alpha */
+  int background_transparent; /* non-zero if a PNG of the picture keeps alpha */
   hl_camera camera;
   double ambient[3]; /* Ia of Phong's model: constant light that reaches all matter */
   const hl_light *lights;
@@ -286,7 +286,7 @@ typedef struct hl_scene_description {
   hl_tone tone; /* how picture files such as PNG show light that is brighter than white; default
                  * HL_TONE_CLIP */
   hl_sky sky;
-  int background_sky;   /* non-zero: pictures show the sky in place of the background, and have alpha 1
+  int background_sky;   /* non-zero if pictures show the sky in place of the background, and have alpha 1
                          * everywhere; default 0 */
   const hl_mark *marks; /* [mark_count]; marks, which change no picture; figures can draw them over a
                          * picture */
@@ -497,10 +497,10 @@ typedef enum hl_side {
                    * edges at this corner look alike */
 } hl_side;
 
-/* Finds the view from a side. up: the direction that is up, of any length. up null: the direction follows
- * from the patient's position if the file tells it, or else is guessed from the voxels. If the file does not
- * say how a patient lies, the view from the front has +x to its right (+y where up is along x); so where z is
- * up, the view from the front looks from -y. The camera of a scene file without a camera is
+/* Finds the view from a side. up: the direction that is up, of any length. If up is null, the direction
+ * follows from the patient's position if the file tells it, or else is guessed from the voxels. If the file
+ * does not say how a patient lies, the view from the front has +x to its right (+y where up is along x); so
+ * where z is up, the view from the front looks from -y. The camera of a scene file without a camera is
  * hl_camera_frame_view() of HL_SIDE_AUTOMATIC. */
 HL_API HL_WARN_UNUSED hl_status hl_view_choose(const hl_scene_description *description, hl_side side,
                                                const double up[3], hl_view *view, hl_error *error);

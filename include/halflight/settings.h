@@ -54,13 +54,13 @@ typedef struct hl_setting {
   const char *unit;                 /* "degrees", "world units", ...; "" for none */
   double low, high;                 /* the least and the greatest value of a number, or of each of three
                                      * numbers; both ends are allowed */
-  int open_low;                     /* non-zero: the value `low` itself is refused */
+  int open_low;                     /* non-zero if the value `low` itself is refused */
   double standard[3];               /* the default: one number in standard[0], or three numbers */
   const hl_setting_choice *choices; /* the choices, which a null name ends; null if the setting has none */
   size_t offset;                    /* the byte offset of the field in the struct */
   unsigned only_for; /* for lights, cameras and skies: the types that have the key, as bits (1 << type); if 0,
                       * all types have it */
-  int optional;      /* non-zero: hl_scene_to_json() leaves the key out if the field has its default */
+  int optional;      /* non-zero if hl_scene_to_json() leaves the key out if the field has its default */
   const char *sentence;
   const char *mend;   /* the part of an error's text that asks for a value in the range; {low} and {high}
                        * stand for the range's ends */

@@ -164,9 +164,9 @@ typedef struct hl_volume_load_options {
 
 HL_API void hl_volume_load_options_defaults(hl_volume_load_options *options);
 
-/* Reads a volume as hl_volume_load() does, but with options for reading; options null: the defaults. If the
- * file does not have the array or component, the error is HL_ERROR_INPUT, and its message lists the file's
- * arrays or components. */
+/* Reads a volume as hl_volume_load() does, but with options for reading. If options is null, the defaults are
+ * used. If the file does not have the array or component, the error is HL_ERROR_INPUT, and its message lists
+ * the file's arrays or components. */
 HL_API HL_WARN_UNUSED hl_status hl_volume_load_with(hl_context *context, const char *path,
                                                     const hl_volume_load_options *options, hl_volume **volume,
                                                     hl_error *error);
@@ -181,9 +181,9 @@ typedef struct hl_volume_save_options {
                             * end 0 (default): up to the last voxel */
   size_t shrink; /* a written voxel is the mean of a cube of shrink^3 voxels, without the voxels that are not
                   * finite; default 1 */
-  int labels;    /* non-zero: the volume holds labels. A written voxel then has the most frequent value of its
-                  * shrink^3 voxels instead of the mean, because a mean of labels would be another label. Of
-                  * equally frequent values, the first one counts. Default 0 */
+  int labels;    /* non-zero if the volume holds labels. A written voxel then has the most frequent value of
+                  * its shrink^3 voxels instead of the mean, because a mean of labels would be another label.
+                  * Of equally frequent values, the first one counts. Default 0 */
 } hl_volume_save_options;
 
 HL_API void hl_volume_save_options_defaults(hl_volume_save_options *options);
@@ -193,8 +193,8 @@ HL_API void hl_volume_save_options_defaults(hl_volume_save_options *options);
  * placement are kept. For NIfTI and MetaImage, the world is converted to the format's anatomical space. A
  * grid that MRC cannot hold is refused. If the written type holds whole numbers, values are rounded to the
  * nearest one, and values that are not finite become 0. Warnings tell the number of values that were beyond
- * the type's range or not finite, and the parts of the placement that the format cannot state. options null:
- * the defaults. The file appears whole or not at all. */
+ * the type's range or not finite, and the parts of the placement that the format cannot state. If options is
+ * null, the defaults. The file appears whole or not at all. */
 HL_API HL_WARN_UNUSED hl_status hl_volume_save_with(hl_context *context, const hl_volume *volume,
                                                     const char *path, const hl_volume_save_options *options,
                                                     hl_error *error);
@@ -271,7 +271,7 @@ typedef struct hl_volume_array {
   size_t components;  /* number of values of each voxel, or number of volumes of a series */
   hl_voxel_type type; /* the type of the values; if 0, this type cannot be read */
   int of_cells;       /* non-zero if VTK's values belong to cells, which lie between the points */
-  int chosen;         /* non-zero: the volume was read from this array */
+  int chosen;         /* non-zero if the volume was read from this array */
   int component;      /* only for the array that was read: the number of the component that was read, or an
                        * HL_COMPONENT_ value. HL_COMPONENT_LUMINANCE stands for colours whose luminance gives
                        * the opacity */
@@ -310,7 +310,7 @@ typedef struct hl_volume_channel {
   double srgb[3];   /* the channel's sRGB colour, 0 to 1; all 0 if the file has none */
   double window[2]; /* the range of data values that the file recommends for showing the channel; NaN: the
                      * file recommends none */
-  int chosen;       /* non-zero: the volume was read from this channel */
+  int chosen;       /* non-zero if the volume was read from this channel */
 } hl_volume_channel;
 
 /* Describes a channel of the volume's file. index: from 0 to the number of channels - 1
@@ -327,7 +327,7 @@ typedef struct hl_volume_series {
   double number;                            /* NaN: none */
   size_t dimensions[3];                     /* the numbers of columns and rows, and the number of the slices
                                              * of all time steps */
-  int chosen;                               /* non-zero: the volume was read from this series */
+  int chosen;                               /* non-zero if the volume was read from this series */
 } hl_volume_series;
 
 /* Returns the number of series in the input that the volume came from. Returns 0 if the volume came from

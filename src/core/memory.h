@@ -81,7 +81,7 @@ void hl_reserve_release(hl_reserve *reserve);
 typedef struct hl_layout {
   unsigned char *base; /* the block from which arrays are taken, aligned to 64 bytes; if null, bytes are only
                         * counted */
-  size_t bytes;        /* number of bytes that are taken at present; SIZE_MAX: overflow */
+  size_t bytes;        /* number of bytes that are taken at present; SIZE_MAX after an overflow */
   size_t most;         /* the greatest number of bytes that were taken at one time */
   /* the number of bytes that the first pass counted, which is the block's size; only hl_layout_pass() uses
    * it */

@@ -8,7 +8,7 @@
 
 /* The parts of a URL "scheme://user:password@host:port/...". */
 typedef struct url_parts {
-  bool secure;        /* https */
+  bool secure;        /* whether the scheme is https */
   const char *server; /* host and port; borrowed */
   size_t length;      /* bytes of `server` */
 } url_parts;

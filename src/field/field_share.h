@@ -36,7 +36,7 @@ static inline bool hl_field_share_turn(const field_share *share, int32_t slab) {
 }
 
 /* Completes an array of which each process has found its own slabs: afterwards all processes have all slabs.
- * array: [slabs][slab_bytes]. ranges: true: a process's own slabs are its range; false: the processes take
+ * array: [slabs][slab_bytes]. ranges: whether a process's own slabs are its range; if not, the processes take
  * slabs in turn. */
 void hl_field_share_complete(const field_share *share, bool ranges, void *array, int32_t slabs,
                              size_t slab_bytes);

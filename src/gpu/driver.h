@@ -52,7 +52,7 @@ typedef struct gpu_binary {
 
 /* An argument of a kernel: a buffer, or a value of four bytes. */
 typedef struct gpu_argument {
-  const gpu_buffer *buffer; /* null: the argument is a value */
+  const gpu_buffer *buffer; /* null if the argument is a value */
   uint32_t value;
 } gpu_argument;
 

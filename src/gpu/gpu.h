@@ -33,7 +33,7 @@ const char *hl_gpu_problem(const hl_gpu *gpu);
 
 /* The parts of a volume's mask (MASK_BRICKS and so on), borrowed. */
 typedef struct gpu_mask {
-  const void *part[PLAN_MASK_PARTS]; /* null: there is no such part */
+  const void *part[PLAN_MASK_PARTS]; /* null if there is no such part */
   size_t bytes[PLAN_MASK_PARTS];
 } gpu_mask;
 
@@ -62,7 +62,7 @@ typedef struct gpu_volume {
   const unsigned char *relevant;           /* [bricks] */
   const uint64_t *cell_bits;               /* [bricks]; null if there are no bits */
   const float *sums, *color, *shown;       /* [PLAN_TABLE_ROWS][4] */
-  const float *outside, *bent, *steepness; /* [PLAN_TABLE_ROWS]; bent and steepness may be null: there is no
+  const float *outside, *bent, *steepness; /* [PLAN_TABLE_ROWS]; bent and steepness are null if there is no
                                             * such table */
   gpu_mask mask;                           /* it belongs to tables_version */
   const float *plane_sums, *plane_color;   /* [PLAN_PLANE_FLOATS]; null if the function is not one of two
@@ -84,7 +84,7 @@ bool hl_gpu_try(hl_gpu *gpu, const float *numbers, uint32_t count, float *result
 /* The cells of the sky's field; borrowed. */
 typedef struct gpu_sky {
   uint64_t version;     /* of the cells */
-  const int16_t *cells; /* null: there is no sky */
+  const int16_t *cells; /* null if there is no sky */
   size_t bytes;
 } gpu_sky;
 

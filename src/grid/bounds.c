@@ -206,7 +206,7 @@ typedef struct cell_job {
   hl_context *context;
   size_t plane;                /* number of 2x2x2 cells in a slice */
   struct bound_slices *slices; /* [workers]; the scratch memory of each worker */
-  bool failed;                 /* set where memory is short; read and written atomically */
+  bool failed;                 /* whether memory was short; read and written atomically */
 } cell_job;
 
 /* Finds the bounds of 2x2 cells in one slice of voxels, along x and y. slice: [2][cells y][cells x]; receives

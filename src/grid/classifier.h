@@ -35,7 +35,7 @@ typedef struct classifier {
    * nearest least extinction before a second rise. If there is neither, it is the empty value. */
   float *outside;
   bool several_surfaces; /* whether the surfaces of visible values begin at more than one coordinate */
-  float only_beginning;  /* where several_surfaces is false: the integral of extinction up to the one
+  float only_beginning;  /* if several_surfaces is false, the integral of extinction up to the single
                           * coordinate at which all surfaces begin */
   float first_visible, last_visible; /* table coordinates; no value below first_visible or above last_visible
                                       * has extinction */

@@ -34,7 +34,8 @@ LANES_INLINE void table_values(float (*table)[4], table_coordinate at, lanes val
  * of extinction. */
 typedef struct way_sums {
   lanes extinction; /* the mean extinction, (I(b) - I(a)) / (b - a) */
-  lanes integral;   /* I(b) - I(a); 0 where a and b are close together */
+  lanes integral;   /* the integral of extinction from coordinate a to coordinate b, I(b) - I(a); 0 in lanes
+                     * whose a and b are close together */
   lanes moment;     /* the integral, from a to b, of extinction times the entry's number */
 } way_sums;
 

@@ -158,8 +158,8 @@ static bool is_floating(const hl_volume *volume) {
 typedef struct spread {
   double low, high;  /* nearly all voxels have values from `low` to `high` */
   double zero;       /* the data value 0 */
-  bool fills, signs; /* fills: there is no air around the matter; signs: there are many values on both sides
-                      * of the data value 0 */
+  bool fills, signs; /* fills: whether there is no air around the matter; signs: whether there are many values
+                      * on both sides of the data value 0 */
 } spread;
 
 static spread spread_of(const hl_sample *sample, double background) {

@@ -191,7 +191,7 @@ static hl_status name_channel(channel_scenes *made, const hl_volume *volume, hl_
   return HL_OK;
 }
 
-/* Makes the scene of a channel. *channels: the number of channels that the file has. */
+/* Makes the scene of a channel. *channels: set to the number of channels that the file has. */
 static hl_status add_channel(channel_scenes *made, int channel, size_t *channels, hl_error *error) {
   hl_volume *volume = NULL;
   hl_scene *scene = NULL;

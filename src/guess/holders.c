@@ -46,7 +46,7 @@ static const double levels[] = {0.02, 0.1};
 typedef struct body_cells {
   vec3 *point; /* owned; [count]; centres of cells */
   size_t count;
-  bool at_border; /* the body has cells at the grid's border */
+  bool at_border; /* whether the body has cells at the grid's border */
 } body_cells;
 
 /* A direction, and the lengths that are measured along it. */
@@ -177,8 +177,8 @@ static hl_status look_at_matter(const search *s, uint32_t body, const double *li
 
 /* ---- the object ---- */
 
-/* Finds the bodies at a level, and the object, which is the largest of them. *is_one: the object is nearly
- * everything that is seen. */
+/* Finds the bodies at a level, and the object, which is the largest of them. *is_one: set to whether nearly
+ * everything that is seen is the object. */
 static hl_status find_object(search *s, double level, bool *is_one, hl_error *error) {
   const hl_seen *seen = s->seen;
   const size_t cells = (size_t)seen->size[0] * (size_t)seen->size[1] * (size_t)seen->size[2];
@@ -363,7 +363,7 @@ static hl_status cut_holders_off(search *s, const unsigned char *other, hl_error
 }
 
 /* Finds the holders among the bodies. other: [bodies + 1]; set to whether a body is neither a holder nor a
- * speck. *any: there is a holder. */
+ * speck. *any: set to whether there is a holder. */
 static hl_status find_holders(search *s, unsigned char *other, bool *any, hl_error *error) {
   const double least = LEAST * s->bodies.places[s->bodies.largest];
   hl_status status = HL_OK;

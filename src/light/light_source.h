@@ -39,7 +39,7 @@ typedef struct sector_fraction {
   float least;
 } sector_fraction;
 
-/* Makes the fraction of a sector. sectors null: the fraction of a whole light. */
+/* Makes the fraction of a sector. If sectors is null, makes the fraction of a whole light. */
 sector_fraction hl_sector_fraction(const light_sectors *sectors, int sector);
 
 /* A picture that a light projects, or that is on the light's surface. */

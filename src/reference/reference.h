@@ -83,8 +83,8 @@ typedef struct reference_volume {
 typedef struct reference_light {
   const hl_light *described;
   bool directional;
-  bool sphere;                       /* the light is a sphere; its points depend on the sample, and are
-                                      * computed for each sample */
+  bool sphere;                       /* whether the light is a sphere; its points depend on the sample, and
+                                      * are computed for each sample */
   vec3 centre;                       /* world; not for directional lights */
   vec3 towards;                      /* unit vector towards the light; only for directional lights */
   double color[3];                   /* color * intensity */
@@ -398,7 +398,7 @@ typedef struct reference_sky_receiver {
                                * the direction to the eye */
   double diffuse;             /* a surface's factor of diffuse colour */
   double anisotropy;          /* the material's diffuse reflectance; for a surface */
-  const double *albedo;       /* [3]; the scattering albedo of a medium; null: 1 in each channel */
+  const double *albedo;       /* [3]; the scattering albedo of a medium; null stands for 1 in each channel */
   bool receives_shadow;
 } reference_sky_receiver;
 

@@ -32,7 +32,7 @@ typedef struct frame_cache {
 typedef struct renderer_device {
   struct hl_gpu *gpu; /* owned; if null, the processors make the frames */
   char wanted[128];   /* name of the wanted device; empty: the device that the context names is wanted */
-  bool tried;         /* the device was looked for */
+  bool tried;         /* whether the renderer has searched for the device */
   char problem[400];  /* the reason why the device makes no frames */
 } renderer_device;
 
@@ -56,7 +56,7 @@ struct hl_renderer {
 /* A caller's request for a frame: a picture of a scene, and its layers. */
 typedef struct frame_request {
   const hl_scene *scene;   /* borrowed until the frame ends */
-  const hl_layers *layers; /* null: none */
+  const hl_layers *layers; /* null if there is none */
   float *pixels;           /* the caller's memory */
   size_t row_stride;       /* counted in floats */
 } frame_request;

@@ -434,10 +434,10 @@ LANES_INLINE void join_parts(const block_density *densities, int count, block_sl
       slab->joined |= densities[i].way.part.length < slab->part.length;
 }
 
-/* Step 13 for several volumes. Each volume's extinction is found over the part of the slab in the volume's
- * own box. The position at which the slab is seen, and the light that the slab absorbs, are found over the
- * part that all boxes cover together. So a volume that is divided into several boxes looks the same as the
- * undivided volume. */
+/* Does step 13 for several volumes in one slab. Each volume's extinction is found over the part of the slab
+ * in the volume's own box. The position at which the slab is seen, and the light that the slab absorbs, are
+ * found over the part that all boxes cover together. So a volume that is divided into several boxes looks the
+ * same as the undivided volume. */
 LANES_INLINE void classify_joined(block_density *densities, int count, block_slab *slab) {
   join_parts(densities, count, slab);
   int joined = lanes_bits(slab->joined) != 0;
@@ -545,8 +545,8 @@ LANES_INLINE void weigh_slab(const shade_job *job, block_density *densities, int
   place_slab(job, densities, count, slab);
 }
 
-/* Steps 12 and 13 for a slab that slab_of_block() set up. Returns the pixels in which something is visible,
- * one bit each. If there are no such pixels, only the opacity is set, to 0. */
+/* Does steps 12 and 13 for a slab that slab_of_block() has set up. Returns the pixels in which something is
+ * visible, one bit each. If there are no such pixels, only the opacity is set, to 0. */
 LANES_INLINE uint32_t find_slab(const shade_job *job, const tile_slab *tile, block_density *densities,
                                 block_slab *slab) {
   const int count = tile->patch_count;

@@ -68,8 +68,8 @@ typedef struct layer_pass {
   const shade_light *lights; /* [light_count] */
   int light_count;
   float ambient[3], emission;
-  const scatter_field *scattered; /* null: none */
-  const sky_light *sky;           /* null: none */
+  const scatter_field *scattered; /* null if there is none */
+  const sky_light *sky;           /* null if there is none */
   layer_matter matter;
   float *pixels;
   size_t tile_floats;
@@ -158,8 +158,8 @@ typedef struct sweep_target {
   const int32_t *shown_from;     /* [tiles][16]; the first visible slab of each block; if null, opaque matter
                                   * hides nothing */
   const layer_pixels *layers;    /* the pixels of the layers; null if no layers are wanted */
-  const maximum_values *maximum; /* values of a maximum projection; null, or a struct whose `values` is null:
-                                  * the picture shows lit matter */
+  const maximum_values *maximum; /* values of a maximum projection. If `maximum` is null, or its member
+                                  * `values` is null, the picture shows lit matter */
 } sweep_target;
 
 /* The purpose of a sweep: to make a picture, or to search for hidden matter before the picture is made. A
@@ -246,9 +246,10 @@ hl_status hl_sweep_run(sweep *sweep, hl_error *error);
 
 /* The work on one tile in one slab. The comments beside the functions name the steps that they do
  * (sweep_stages.c). */
-void hl_sweep_shade(sweep *sweep, const shade_job *job, size_t tile, int worker); /* steps 6, 8 to 16 */
+void hl_sweep_shade(sweep *sweep, const shade_job *job, size_t tile, int worker); /* does steps 6 and 8 to
+                                                                                   * 16 */
 void hl_sweep_attenuate(sweep *sweep, int light, const attenuate_job *job, size_t tile,
-                        int worker); /* steps 7 to 11 and 17 */
+                        int worker); /* does steps 7 to 11 and 17 */
 
 /* A tile's column and row. */
 static inline int hl_tile_x(const sweep *sweep, size_t tile) {

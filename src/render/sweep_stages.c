@@ -149,7 +149,8 @@ static int fill_light_tile(sweep *sweep, sweep_light *light, slab_place place, i
   return count;
 }
 
-/* Step 17 for one tile of a light's shadow buffer. */
+/* Does step 17 for one tile of a light's shadow buffer: lets the matter of the slab absorb light in the
+ * pixels of the tile. */
 static void composite_light_tile(sweep *sweep, light_shadow *shadow, attenuate_job job, size_t tile,
                                  uint32_t need, fragment_range surfaces) {
   const shadow_method *method = shadow->method;

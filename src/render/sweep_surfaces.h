@@ -22,9 +22,9 @@ void hl_sweep_surfaces_count(sweep *sweep, hl_layout *layout);
 /* Finds the fragments of the eye's view in a slab of a tile. Call it once for each slab, in rising order. */
 fragment_range hl_sweep_surfaces_reach(const sweep *sweep, size_t tile, int slab);
 
-/* Steps 12 to 16 for a tile with fragments: each pixel's slab is cut at its fragments, and its pieces and the
- * fragments are composited in the order of their heights. slab->blocks: the blocks with density. blocks: all
- * blocks that must be shaded. Returns the blocks that stay open. */
+/* Does steps 12 to 16 for a tile with fragments: each pixel's slab is cut at its fragments, and its pieces
+ * and the fragments are composited in the order of their heights. slab->blocks: the blocks with density.
+ * blocks: all blocks that must be shaded. Returns the blocks that stay open. */
 uint32_t hl_sweep_surfaces_tile(const sweep *sweep, const tile_slab *slab, uint32_t blocks,
                                 fragment_range range);
 

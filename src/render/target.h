@@ -12,7 +12,7 @@ typedef struct frame_target {
   float *pixels; /* [sweeps][tiles][16][4][16]; zeros at the start; the target's own pixels, or the caller's
                   * pixels if in_place is true */
   bool in_place;
-  float *tile_rows; /* where in_place is true: [threads][tiles_x][16][4][16]; room to reorder rows of tiles */
+  float *tile_rows; /* if in_place is true: [threads][tiles_x][16][4][16]; room to reorder rows of tiles */
   layer_pixels layers;
   maximum_values maximum; /* the values of a maximum projection; if its member `values` is null, the picture
                            * shows lit matter */

@@ -19,7 +19,7 @@ typedef struct sheet_content {
   const grid *grids;           /* [volume_count], the frame's */
   int volume_count;
   const kernel *kernel;
-  bool splat;  /* true: densities are splatted; false: densities are gathered */
+  bool splat;  /* whether densities are splatted; if not, they are gathered */
   int stretch; /* the greatest number of slabs of a stretch */
 } sheet_content;
 
@@ -49,7 +49,7 @@ typedef struct slab_row {
 typedef struct view_sheets {
   const sheet_content *content;
   const view *view;
-  bool of_light; /* the view of a light; else the eye's */
+  bool of_light; /* whether the view is a light's; if not, it is the eye's */
   double beside; /* in the eye's view: the length of the longest way of a light through a slab, frame units;
                   * in a light's view: FACE_VOXELS if the light lights surfaces, else 0 */
   occupancy occupancy;

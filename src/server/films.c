@@ -17,7 +17,7 @@ enum { MOST_FILM_BYTES = 1 << 30 };
 /* The output of frames: a film, or an archive of pictures. */
 typedef struct film_output {
   bool zipped;
-  movie *movie; /* null: the film has ended */
+  movie *movie; /* null if the film has ended */
   picture_zip zip;
 } film_output;
 

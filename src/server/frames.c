@@ -20,11 +20,11 @@
 static _Thread_local struct {
   server *server;
   int socket;        /* the socket of the client that has requested the frame */
-  server_page *page; /* null: there is no page */
+  server_page *page; /* null if there is no page */
   unsigned long long number;
   const server_opened *opened; /* the open scene that this thread prepares; null if the thread prepares
                                 * none */
-  bool opening;                /* a file is being opened */
+  bool opening;                /* whether a file is being opened */
 } current;
 
 void work_begin(server *s, int socket) {

@@ -12,9 +12,11 @@
 #define SERVER_MODULE_NAME "halflight_viewer"
 
 typedef struct server_module {
-  bool (*run)(const server_options *options, char *problem, size_t problem_size); /* server_run() */
+  bool (*run)(const server_options *options, char *problem, size_t problem_size); /* the module's function
+                                                                                   * server_run() */
   void (*progress)(const char *stage, double fraction);                           /* server_progress() */
-  bool (*is_outdated)(void);                                                      /* server_is_outdated() */
+  bool (*is_outdated)(void);                                                      /* the module's function
+                                                                                   * server_is_outdated() */
 } server_module;
 
 #endif

@@ -123,8 +123,8 @@ typedef struct server {
   char token[TOKEN_DIGITS + 1];
   server_opened opened[MOST_OPENED];
   long long next_opened; /* guarded by pages_lock */
-  atomic_bool announced; /* options.ready has returned */
-  atomic_bool visited;   /* options.visited was called */
+  atomic_bool announced; /* whether options.ready has returned */
+  atomic_bool visited;   /* whether options.visited was called */
   /* Whether renderers or scenes were released since freed memory was last given back to the system. */
   atomic_bool released;
   atomic_int opening_part; /* the part of the volume that has been read, in thousandths */
@@ -300,7 +300,7 @@ int opened_count(server *s);
 void opened_end(server *s);
 
 /* folder.c */
-bool folder_can_open(const char *name); /* judges by the extension */
+bool folder_can_open(const char *name); /* tells by a name's ending whether the file can be opened */
 /* Finds a file below the server's folder. It may be a folder that holds a volume as slices, DICOM or Zarr.
  * The caller owns file->confined. path: set to the absolute path; file->name and file->folder point into it.
  * Returns false if the file does not lie there, after links were followed, or cannot be opened. */
@@ -308,7 +308,7 @@ bool folder_find(const server *s, const char *inside, char path[PATH_BYTES], ser
 /* Lists, as JSON (free()), everything that can be opened in a folder below the server's folder; null if there
  * is no such folder. */
 char *describe_folder(const server *s, const char *at);
-bool upload_folder(const char *name, server_upload *upload); /* makes the folder only */
+bool upload_folder(const char *name, server_upload *upload); /* makes the folder alone, and not the file */
 bool upload_begin(const char *name, server_upload *upload);
 bool upload_add(server_upload *upload, const char *bytes, size_t count);
 bool upload_finish(server_upload *upload);

@@ -135,8 +135,9 @@ typedef struct shadow_lookup {
   const float *transmittance[HL_CHANNELS]; /* pixel (0,0) of the planes that are looked up */
   const float *outside[HL_CHANNELS];       /* planes of the light at the outside of surfaces, laid out as
                                             * `transmittance`; null if there are none */
-  const float *older[HL_CHANNELS]; /* pixel (0,0) of each channel of the older light, from which samples fade
-                                    * to `transmittance`; null if there is none */
+  const float *older[HL_CHANNELS]; /* pixel (0,0) of the planes of the older light, one for each channel.
+                                    * Samples fade from the older light to `transmittance`. Null if there is
+                                    * no older light */
   float young;                     /* the weight of `transmittance` while samples fade from `older` to
                                     * `transmittance`, from 0 (beginning) to 1 (end) */
 } shadow_lookup;

@@ -179,8 +179,8 @@ struct shadow_method {
    * gets the light of the other tiles from the other parts (the setup's exchange). Each tile that any brick
    * touches is owned by one of the parts. This part needs the tile as long as bricks touch it. */
   bool exchanges;
-  /* Returns whether `advance` changes anything at a sheet. Null: `advance` may change something at every
-   * sheet. */
+  /* Returns whether `advance` changes anything at a sheet. If the function is null, `advance` may change
+   * something at every sheet. */
   bool (*advances)(const light_shadow *shadow, int sheet);
   void (*end)(light_shadow *shadow);
 };

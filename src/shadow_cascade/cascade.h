@@ -71,7 +71,7 @@ typedef struct cascade_field {
 
 /* The light that a group's slabs have absorbed. */
 typedef struct cascade_group {
-  cascade_field absorbed[HL_CHANNELS]; /* the sum G + F of "Haze" at the head of the file */
+  cascade_field absorbed[HL_CHANNELS]; /* the sum G + F of the paragraph "Haze" at the head of this file */
   cascade_field thin[HL_CHANNELS];     /* the fraction F of every ray that thin matter absorbs ("Haze" at
                                         * the head of the file) */
   /* the group's position, as omega ("Penumbrae" at the head of this file); pixels of the buffer */

@@ -27,9 +27,9 @@ static double divide(soft_cascade *cascade, double start, double end, bool withi
   cascade->chunk_start = start;
   cascade->chunk = cascade->shortest_chunk = fmax(thick, length / most);
   cascade->shrink = 0;
-  bool even = cascade->emission == NULL; /* for lights with an emission image all chunks have the same length:
-                                          * the errors of shadows behind an edge are then 0.024, and not
-                                          * 0.026 */
+  /* If a light has an emission image, all chunks have the same length, because the errors of shadows behind
+   * an edge are then 0.024 instead of 0.026. */
+  bool even = cascade->emission == NULL;
   if (cascade->parallel || !even || cascade->chunk <= thick) return length / cascade->chunk;
   cascade->shrink = 1 - pow(end / start, 1 / most);
   cascade->chunk = cascade->shrink * -start;

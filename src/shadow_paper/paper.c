@@ -264,8 +264,9 @@ static void convolve(const soft_paper *soft, const light_shadow *shadow, int she
 /* Convolves at a sheet, as section 5.2, (2) of the paper says: the widths dx are added up until the sum
  * exceeds two pixels. The buffer is then convolved by the integer part of the sum, and the rest is kept for a
  * later sheet. An emission image has one tap per pixel, and along an axis the number of taps is at most the
- * number of cells. So a greater width takes several convolutions. shadow null: nothing is convolved, and only
- * the reach is found. Returns the sum of the reaches of the convolutions at this sheet, in pixels. */
+ * number of cells. So a greater width takes several convolutions. If shadow is null, nothing is convolved,
+ * and only the reach is found. Returns the sum of the reaches of the convolutions at this sheet, in
+ * pixels. */
 static int pass_sheet(soft_paper *soft, const sheet_stack *sheets, int sheet, const light_shadow *shadow) {
   double next = hl_sheet_height(sheets, sheet + 1);
   double width = soft->remainder + width_between(soft, soft->last, next);

@@ -80,7 +80,7 @@ static mesh_held held_of(const surface_mesh *mesh, double distance) {
 
 /* Returns whether a tree holds primitive number i of a kind, counted from the mesh's first primitive of this
  * kind. near: for each primitive with corners, whether the tree holds it. A primitive without corners is held
- * if a cut cuts it. near null: the tree holds all primitives. */
+ * if a cut cuts it. If near is null, the tree holds all primitives. */
 static bool takes(const surfaces *all, const surface_mesh *mesh, int kind, uint32_t i, const bool *near) {
   if (near == NULL) return true;
   if (hl_primitive_kinds[kind]->has_corners) return near[i];

@@ -44,7 +44,7 @@ typedef struct surface_mesh {
   size_t first_vertex;             /* the number of the mesh's first vertex in positions and normals */
   size_t first_edge_normal;
   primitive_range primitives[PRIMITIVE_KINDS];
-  bool is_cut; /* the cuts may remove a part of the mesh */
+  bool is_cut; /* whether the cuts may remove a part of the mesh */
 } surface_mesh;
 
 typedef struct surface_cluster surface_cluster; /* see clusters.h */
@@ -79,7 +79,8 @@ typedef struct surfaces {
                                         * element is the number of all primitives */
 } surfaces;
 
-/* Adds to a key everything that decides how much light surfaces absorb. all null: there are no surfaces. */
+/* Adds to a key everything that decides how much light surfaces absorb. If all is null, there are no
+ * surfaces. */
 void hl_surfaces_key_add(hl_key *key, const surfaces *all);
 
 /* The number of primitives. */

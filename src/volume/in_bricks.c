@@ -92,8 +92,8 @@ typedef struct brick_tally {
   double counted;   /* cells of level 0 */
   double nonfinite; /* the number of voxels whose coefficient is not finite; each voxel counts as one cell of
                      * level 0 */
-  bool binned;      /* false in the first pass, which finds the range; true in the second, which counts the
-                     * values in the histogram */
+  bool binned;      /* whether this is the second pass, which counts the values in the histogram; the first
+                     * pass finds the range */
 } brick_tally;
 
 static void add_value(brick_tally *tally, float value, uint64_t weight, uint64_t *histogram) {

@@ -15,7 +15,8 @@ hl_status hl_next_number(hl_stream *stream, double *value, bool *found, hl_error
 /* The coding of numbers. */
 typedef struct hl_number_code {
   hl_voxel_type type;
-  bool text, big_endian; /* text: decimal numbers of any type */
+  bool text, big_endian; /* text: whether the numbers are decimal numbers in a text, which may have any
+                          * type */
 } hl_number_code;
 
 /* The number that these bytes of a type stand for. */

@@ -13,7 +13,8 @@ enum { HL_XML_TAG_BYTES = 8192, HL_XML_ATTRIBUTES = 32 };
 typedef struct hl_xml_tag {
   char text[HL_XML_TAG_BYTES]; /* the tag's text; names and values are pointers into it */
   const char *name;
-  bool is_start, is_end; /* both are set for <name/> */
+  bool is_start, is_end; /* whether the tag begins, and whether it ends, an element; both are true for
+                          * <name/> */
   int attribute_count;
   struct {
     const char *name, *value; /* the five predefined entities are resolved */

@@ -35,7 +35,7 @@ typedef struct hl_dicom_frame {
    * pictures. */
   double temporal, echo, b_value, diffusion[3], inversion, flip, trigger, kind, acquisition, time, instance;
   double segment;       /* the number of the segment that the frame shows */
-  uint32_t file, index; /* index of the file in the set, and of the frame in the file */
+  uint32_t file, index; /* index of the file in the set; index of the frame in the file */
   uint32_t tile;        /* number of its tile in a mosaic */
 } hl_dicom_frame;
 

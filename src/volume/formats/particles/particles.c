@@ -123,7 +123,7 @@ static float *weights_of(hl_context *context, const hl_particles_description *d,
 /* Spreads the particles, and adds up their kernels at the truth's places. sums: [truth's places]. */
 static hl_status spread(const making *m, const hl_particle_plan *plan, const hl_particle_truth *truth,
                         bool with_values, hl_particle_field *field, double *sums) {
-  float *weights = NULL; /* null: each weight is 1 */
+  float *weights = NULL; /* null if each weight is 1 */
   if (m->d->masses != NULL || with_values) {
     weights = weights_of(m->context, m->d, &m->set, with_values);
     if (weights == NULL) return hl_fail_memory(m->error, m->set.count * sizeof *weights, m->subject);

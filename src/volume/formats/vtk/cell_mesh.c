@@ -18,7 +18,7 @@ enum { TYPES = 82 };
  * tetrahedron. */
 typedef struct cell_kind {
   signed char points;                  /* least number of points of such a cell; 0 if the type is not read */
-  bool is_curved, is_flat;             /* is_flat: a vertex, line or face */
+  bool is_curved, is_flat;             /* is_flat: whether the cell is a vertex, a line or a face */
   signed char corner[HL_CELL_CORNERS]; /* -1 for the corners that a tetrahedron does not have */
 } cell_kind;
 
