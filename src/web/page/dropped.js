@@ -1,6 +1,7 @@
-// The files of a drop or of a file chooser, and which of them is opened.
+// Collects the files of a drop or of a file chooser, and chooses the file that is opened.
 
-const HEADERS = [".json", ".nhdr", ".nrrd", ".mhd", ".mha", ".vgi", ".hdr", ".pvti", ".vti", ".dat"]; // files that name others, first
+// Endings of files that name other files; the first one in this list is opened.
+const HEADERS = [".json", ".nhdr", ".nrrd", ".mhd", ".mha", ".vgi", ".hdr", ".pvti", ".vti", ".dat"];
 
 const readEntries = (reader) => new Promise((resolve, reject) => reader.readEntries(resolve, reject));
 const fileOf = (entry) => new Promise((resolve, reject) => entry.file(resolve, reject));
@@ -11,19 +12,21 @@ async function collect(entry, at, contents) {
     return;
   }
   const reader = entry.createReader();
-  for (let entries; (entries = await readEntries(reader)).length > 0;) // some at a time
+  for (let entries; (entries = await readEntries(reader)).length > 0;) // readEntries() gives only some of the entries at a time
     for (const one of entries) await collect(one, `${at}${entry.name}/`, contents);
 }
 
-// Of several files the one that names the others; else the folder that they lie in: DICOM, or slices.
+// Chooses the file that is opened. Of several files it is the one that names the others. If there is none, the folder
+// of the files is opened, as DICOM or as slices.
 function chosen(names, folder) {
   if (names.length === 1) return names[0];
   return HEADERS.map((ending) => names.find((name) => name.toLowerCase().endsWith(ending))).find((name) => name !== undefined) ?? folder;
 }
 
-// { contents: { "folder/name": Blob }, path, title }: what WorkerChannel.open() takes.
+// Returns { contents: { "folder/name": Blob }, path, title }, which WorkerChannel.open() takes.
 export async function droppedFiles(transfer) {
-  const entries = [...transfer.items].map((item) => item.webkitGetAsEntry?.()).filter((entry) => entry); // before the first wait
+  // This must come before the first wait, because the browser then empties the list.
+  const entries = [...transfer.items].map((item) => item.webkitGetAsEntry?.()).filter((entry) => entry);
   if (entries.length === 1 && entries[0].isDirectory) {
     const contents = {};
     await collect(entries[0], "", contents);

@@ -1,15 +1,15 @@
-// The files that the library sees, as WASI's calls (WebAssembly System Interface, preview 1): a tree of folders with
-// what was dropped on the page. Nothing can be written.
+// Gives files to the library by the calls of WASI (WebAssembly System Interface, preview 1). The files form a tree of
+// folders with the files that were dropped on the page. The library cannot write any file.
 
 const SUCCESS = 0, BAD_DESCRIPTOR = 8, INVALID = 28, IS_FOLDER = 31, NO_FILE = 44, NO_CALL = 52, NO_FOLDER = 54, READ_ONLY = 69;
-const FOLDER = 3, REGULAR = 4; // types of files
-const PIECE = 4 << 20; // bytes that are read ahead of a file of the disk
-const ROOT = 3; // the descriptor of "/"
+const FOLDER = 3, REGULAR = 4; // numbers of the types of files
+const PIECE = 4 << 20; // the number of bytes of a file on the disk that are read at once
+const ROOT = 3; // the descriptor of the folder "/"
 
-// Pointers of more than two gibibytes come as negative numbers.
+// Converts a pointer to a positive number. Pointers beyond two gibibytes arrive as negative numbers.
 const unsigned = (value) => (typeof value === "number" ? value >>> 0 : value);
 
-// Bytes of a Uint8Array, or of a Blob, which only a worker can read at once.
+// Makes a reader of the bytes of a Uint8Array or of a Blob. Only a worker can read a Blob at once.
 function reader(content) {
   if (content instanceof Uint8Array) return { size: content.length, read: (at, count) => content.subarray(at, at + count) };
   let begin = 0, piece = new Uint8Array(0);
@@ -26,12 +26,13 @@ function reader(content) {
 }
 
 export class Files {
-  #folders = new Map([["", new Map()]]); // by path: Map of names, to true (a folder) or what is read
-  #open = new Map([[ROOT, { path: "" }]]); // by descriptor
+  // For each folder's path, a Map from names to `true` for a folder, or to the reader of a file.
+  #folders = new Map([["", new Map()]]);
+  #open = new Map([[ROOT, { path: "" }]]); // the open files and folders by their descriptors
   #next = ROOT + 1;
   #memory = null;
 
-  // In place of all files: { "folder/name": Uint8Array or Blob }.
+  // Replaces all files. contents: { "folder/name": Uint8Array or Blob }.
   replace(contents) {
     this.#folders = new Map([["", new Map()]]);
     for (const [path, content] of Object.entries(contents)) {
@@ -45,7 +46,8 @@ export class Files {
     }
   }
 
-  // What `path` is below the folder of a descriptor: { path, entry }; entry: true (a folder), what is read, or undefined.
+  // Finds the file or folder that lies at a path below the folder of a descriptor. Returns { path, entry }; entry is
+  // `true` for a folder, the reader of a file, or undefined if there is neither.
   #find(descriptor, pointer, length) {
     const at = this.#open.get(descriptor), name = new TextDecoder().decode(this.#bytes(pointer, length).slice());
     const parts = [];
@@ -68,7 +70,7 @@ export class Files {
     return SUCCESS;
   }
 
-  // Reads to the buffers of a list from a place in a file. Returns the number of bytes.
+  // Reads bytes from a place of a file into the buffers of a list. Returns the number of bytes.
   #scatter(file, list, count, at) {
     let done = 0;
     for (let n = 0; n < count; n++) {
@@ -89,7 +91,8 @@ export class Files {
     return open === undefined ? undefined : open.file ?? true;
   }
 
-  // The imports of the WebAssembly file. memory(): its memory, once it is there.
+  // Makes the imports of the WebAssembly file. memory() returns the file's memory, which exists only after the file has
+  // been loaded.
   imports(memory) {
     const calls = {
       environ_sizes_get: (count, bytes) => { this.#view().setUint32(count, 0, true); this.#view().setUint32(bytes, 0, true); return SUCCESS; },
@@ -114,7 +117,7 @@ export class Files {
         if (entry === undefined) return BAD_DESCRIPTOR;
         this.#bytes(pointer, 24).fill(0);
         this.#view().setUint8(pointer, entry === true ? FOLDER : REGULAR);
-        this.#bytes(pointer + 8, 16).fill(0xff); // all rights
+        this.#bytes(pointer + 8, 16).fill(0xff); // the file has all rights
         return SUCCESS;
       },
       fd_filestat_get: (descriptor, pointer) => {
@@ -177,7 +180,7 @@ export class Files {
         this.#view().setUint32(used, at, true);
         return SUCCESS;
       },
-      poll_oneoff: (subscriptions, events, count, pointer) => { // all that is asked for is there
+      poll_oneoff: (subscriptions, events, count, pointer) => { // every event of the list has occurred already
         for (let n = 0; n < count; n++) {
           const from = subscriptions + 48 * n, to = events + 32 * n;
           this.#bytes(to, 32).fill(0);

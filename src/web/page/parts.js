@@ -1,5 +1,5 @@
-// What a page without a server consists of, beside its script: files next to it, or, where it is one file, elements that
-// hold them (src/web/assemble.py).
+// Reads the parts of a page without a server: the files that the page needs beside its script. The parts are files next
+// to the page. If the page is a single file, the parts are elements of the page (src/web/assemble.py).
 
 async function unpacked(element) {
   const packed = Uint8Array.from(atob(element.textContent.trim()), (letter) => letter.charCodeAt(0));
@@ -7,10 +7,10 @@ async function unpacked(element) {
   return new Uint8Array(await new Response(stream).arrayBuffer());
 }
 
-// Whether the parts are files beside the page.
+// Returns whether the parts are files next to the page.
 export const isFolder = () => document.querySelector("script[data-part]") === null;
 
-// The bytes of a part.
+// Returns the bytes of a part.
 export async function part(name) {
   const element = document.querySelector(`script[data-part="${name}"]`);
   if (element !== null) return unpacked(element);
@@ -19,7 +19,7 @@ export async function part(name) {
   return new Uint8Array(await response.arrayBuffer());
 }
 
-// The files of the scene that the page holds, by name; empty where it holds none.
+// Returns the files of the scene that the page contains, by their names; an empty object if the page contains none.
 export async function heldFiles() {
   const elements = [...document.querySelectorAll("script[data-file]")];
   return Object.fromEntries(await Promise.all(elements.map(async (element) => [element.dataset.file, await unpacked(element)])));

@@ -1,5 +1,5 @@
-// The page without a server: the viewer over the whole window, of files that are dropped on it or that it holds. They
-// do not leave the machine.
+// Runs the page without a server: the viewer fills the whole window, and shows files that are dropped on the page or
+// that the page contains. The files do not leave the machine.
 
 import { chosenFiles, droppedFiles } from "./dropped.js";
 import { heldFiles, isFolder, part } from "./parts.js";
@@ -26,7 +26,8 @@ const welcome = make("section", { className: "tab-welcome" },
 let channel = null;
 
 async function begin() {
-  // Workers share memory where the page's server isolates it; one file has one thread anywhere.
+  // Workers can share memory only if the server of the page isolates the page. A page in a single file always uses one
+  // thread.
   const threads = globalThis.crossOriginIsolated && isFolder() ? ["halflight-threads.wasm"] : [];
   const [script, ...modules] = await Promise.all(["worker.js", ...threads, "halflight-relaxed.wasm", "halflight.wasm"].map(part));
   const url = URL.createObjectURL(new Blob([script], { type: "text/javascript" }));
@@ -35,7 +36,7 @@ async function begin() {
   await channel.begin(modules);
 }
 
-// The channel of what is open now. The viewer's panel of a server's files has no use here.
+// Makes the channel to the open scene. The viewer's panel with the files of a server has no use here.
 const viewerChannel = () => Object.fromEntries(["completeScene", "fetchFrame", "slice", "depth"].map((name) => [name, (...values) => channel[name](...values)]));
 
 function say(text) {
@@ -43,9 +44,9 @@ function say(text) {
   else message.textContent = text;
 }
 
-let kept = keptSession(), keeping = null; // kept: what this tab has done before the page was loaded
+let kept = keptSession(), keeping = null; // kept: the session of this tab before the page was loaded again
 
-// Shows what is open, with a session to go on with, or null.
+// Shows the open scene. session: the session that continues, or null.
 function show(start, session = null) {
   const focused = document.activeElement?.id;
   globalThis.halflight?.end();
@@ -57,7 +58,7 @@ function show(start, session = null) {
   if (focused) document.getElementById(focused)?.focus();
 }
 
-// The session of before the page was loaded, once all its files are open again.
+// Returns the session of this tab before the page was loaded again, if all of its files are open again; otherwise null.
 function keptOf(start) {
   if (kept === null || kept.whole !== start.title || !isOfOpen(kept.scene, start)) return null;
   const session = kept;
@@ -76,7 +77,7 @@ async function open({ contents, path, title }) {
   }
 }
 
-// Adds files to what is open.
+// Adds files to the open scene.
 async function add({ contents, path, title }) {
   const { store } = globalThis.halflight;
   say(`opening ${title} …`);
@@ -88,7 +89,8 @@ async function add({ contents, path, title }) {
   }
 }
 
-// A session, or a scene of what is open; a scene of other files is opened.
+// Opens a file with a session or a scene. If it belongs to the open files, it is restored, and otherwise opened as a
+// new file.
 async function openSession(file) {
   if ((await restoreFrom(file, globalThis.halflight, channel)) === "other") await open(chosenFiles([file]));
 }

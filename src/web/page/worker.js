@@ -1,17 +1,19 @@
-// The worker of a page without a server: an engine, and what the page asks of it, in turn.
+// The worker of a page without a server. It holds an engine, and answers the requests of the page one after the other.
 //
-// Now and then a call waits for the messages that came meanwhile, as one of them may say that its frame is wanted no
-// longer, or ask for a slice. Where the browser's WebAssembly cannot wait in the middle of a call, frames run to their end.
+// From time to time, a call waits for the messages that have arrived meanwhile, because one of them may say that nobody
+// wants the frame any more, or may request a slice. If the browser's WebAssembly cannot wait in the middle of a call,
+// frames run to their end.
+//
 
 import { Engine } from "./engine.js";
 
-const ASK_EVERY = 25; // milliseconds
+const ASK_EVERY = 25; // the number of milliseconds between two such waits
 
 let engine = null, current = 0, asked = 0;
-const slices = []; // requests that came in the middle of a frame
-const gone = new Set(); // numbers of frames that are wanted no longer
+const slices = []; // requests for slices that arrived in the middle of a frame
+const gone = new Set(); // numbers of frames that nobody wants any more
 
-// Lets waiting messages be handled.
+// Lets the browser handle the messages that wait.
 const messagesHandled = () => new Promise((resolve) => {
   const { port1, port2 } = new MessageChannel();
   port1.onmessage = resolve;
@@ -23,17 +25,19 @@ function cancelled() {
   return between().then(() => +gone.has(current));
 }
 
-// In the middle of a frame: handles messages, and answers those for slices, which need none of what the frame has begun.
+// Handles messages in the middle of a frame, and answers requests for slices. A slice does not need anything of the
+// unfinished frame.
 async function between() {
   const frame = current;
   await messagesHandled();
-  current = 0; // a slice itself waits for nothing
+  current = 0; // while a slice is made, the call does not wait for messages
   await answerSlices();
   current = frame;
   asked = performance.now();
 }
 
-// A blob of a picture. The browser's own encoder makes JPEGs, for frames that are seen for a moment only.
+// Makes a blob of a picture. JPEGs, which are only used for frames that are seen for a moment, are made by the
+// browser's own encoder.
 async function blobOf(bytes, format, { width, height }, quality) {
   if (format !== "rgba") return new Blob([bytes], { type: format === "png" ? "image/png" : "application/octet-stream" });
   const canvas = new OffscreenCanvas(width, height);
@@ -41,7 +45,7 @@ async function blobOf(bytes, format, { width, height }, quality) {
   return canvas.convertToBlob({ type: "image/jpeg", quality: quality / 100 });
 }
 
-// A helper of the library's threads: this script in a worker of its own.
+// Starts a helper for the library's threads. A helper is this script in a worker of its own.
 const help = (work) => new Promise((ready, failed) => {
   const helper = new Worker(location.href);
   helper.onmessage = ready;

@@ -1,11 +1,11 @@
-// A viewer's requests to the library in a worker of the page, in place of a server: the methods of http_channel.js that
-// need none.
+// Sends a viewer's requests to the library in a worker of the page. It has the methods of http_channel.js that need no
+// server.
 
 export class WorkerChannel {
   #worker;
   #number = 0;
-  #waiting = new Map(); // by number: { resolve, reject }
-  #frames = new Map(); // by lane: the number of the frame under way
+  #waiting = new Map(); // for each request's number, { resolve, reject }
+  #frames = new Map(); // for each lane, the number of the frame that is being rendered
 
   constructor(worker) {
     this.#worker = worker;
@@ -33,17 +33,18 @@ export class WorkerChannel {
     });
   }
 
-  // modules: the WebAssembly files' bytes, the quickest first.
+  // Starts the engine. modules: the bytes of the WebAssembly files, beginning with the fastest.
   begin(modules) {
     return this.#ask("begin", { modules });
   }
 
-  // What is open: start.json's object. contents: { "folder/name": Uint8Array or Blob }; path: what of it is opened.
+  // Opens files, and returns the object of start.json. contents: { "folder/name": Uint8Array or Blob }; path: the file
+  // or folder among them that is opened.
   async open(contents, path, title) {
     return (await this.#ask("open", { contents, path, title })).start;
   }
 
-  // What is open when the same was added to a scene of what is open: start.json's object.
+  // Opens files as open() does, and adds them to a scene of the open volumes. Returns the object of start.json.
   async join(scene, contents, path, title) {
     return (await this.#ask("join", { scene, contents, path, title })).start;
   }
@@ -52,17 +53,18 @@ export class WorkerChannel {
     return (await this.#ask("complete", { scene, choices })).scene;
   }
 
-  // { values, width, height } of a plane of voxels.
+  // Returns { values, width, height } of a plane of voxels.
   slice(plane) {
     return this.#ask("slice", plane);
   }
 
-  // Null: cancelled.
+  // Returns the depth, or null if the request was cancelled.
   async depth(scene) {
     return (await this.#ask("depth", { scene })).found;
   }
 
-  // A new frame ends the frame of its lane that is under way. One that moves ends the probe's, too: there is one worker.
+  // Cancels the unfinished frame of a lane, because a new frame of this lane begins. A new frame of the main lane also
+  // cancels the frame of the lane "-probe", because there is only one worker.
   #cancel(lane) {
     for (const [other, number] of this.#frames)
       if (other === lane || (lane === "" && other === "-probe")) {
