@@ -1,4 +1,5 @@
-/* python/native.c - callbacks of the context, which are C as long as possible (python/native.h). */
+/* python/native.c - implements the callbacks of the Python package's context. They call Python only if they
+ * must (python/native.h). */
 #include <string.h>
 #include <time.h>
 
@@ -15,14 +16,16 @@ static void python_array_released(uintptr_t key);
 static hl_status python_convert(const char *path, const void **bytes, size_t *byte_count, hl_error *error);
 static void python_converted(const void *bytes);
 
-/* Between two questions to Python: Ctrl-C is answered as soon as a person can tell. */
+/* The time between two calls of Python. It is so short that a person notices no delay after Ctrl-C. */
 static const double SECONDS_BETWEEN_QUESTIONS = 0.05;
 
-/* The call that a thread is in. */
+/* The call of the library that the current thread is making. */
 typedef struct native_call {
-  double asked, told; /* when Python was asked last whether to stop, and told its progress; seconds */
+  double asked, told; /* the times, in seconds, at which Python was last asked whether to stop, and at which
+                       * it was last told the progress */
   int listening, stopped;
-  const char *url; /* the store that the call may ask a server for; null: none */
+  const char *url; /* the URL of the store whose files the call may fetch from a server; null if there is
+                    * none */
 } native_call;
 static _Thread_local native_call call;
 
@@ -73,7 +76,7 @@ static void on_converted(void *user_data, const void *bytes, size_t byte_count) 
   python_converted(bytes);
 }
 
-/* Fetches files of the store that the caller names. */
+/* Fetches files of the store that the Python caller has named. */
 static hl_status on_fetch(void *user_data, const char *url, const char *const *names,
                           const hl_fetch_range *ranges, size_t count, uint64_t most, hl_fetched_file *files,
                           hl_error *error) {

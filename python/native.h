@@ -1,13 +1,14 @@
-/* python/native.h - what python/native.c adds to the library's own functions, for cffi.
+/* python/native.h - declares for cffi the functions that python/native.c adds to the library's own functions.
  *
- * The library asks every few milliseconds whether to stop, and tells its progress about as often. Each of
- * these calls into Python would wait for the interpreter's lock; so C answers most of them itself.
- */
+ * The library asks every few milliseconds whether to stop, and reports its progress about as often. A call of
+ * Python would have to wait for the interpreter's lock each time. Therefore the C code answers most of these
+ * calls itself. */
 
 /* A context whose callbacks lead to the functions below. */
 hl_status python_context_create(hl_context **context, hl_error *error);
 
-/* Around each call that may take long, on the thread that calls. listening: whether progress is told. */
+/* Python calls these two functions before and after each call of the library that may take long, on the same
+ * thread. listening: whether the progress is reported to Python. */
 void python_call_begin(int listening);
 void python_call_end(void);
 
@@ -15,5 +16,6 @@ void python_call_end(void);
  * borrowed until the call ends. */
 void python_call_may_ask(const char *url);
 
-/* Makes a borrowing description tell python_array_released() when its voxels are no longer needed. */
+/* Sets a description of borrowed voxels so that the library calls python_array_released() when it no longer
+ * needs the voxels. */
 void python_lend(hl_volume_description *description, uintptr_t key);

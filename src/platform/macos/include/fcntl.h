@@ -1,4 +1,4 @@
-/* platform/macos/include/fcntl.h - <fcntl.h> with Linux's names. */
+/* platform/macos/include/fcntl.h - extends <fcntl.h> by Linux's names. */
 #ifndef HL_PLATFORM_MACOS_FCNTL_H
 #define HL_PLATFORM_MACOS_FCNTL_H
 
@@ -7,9 +7,11 @@
 #include <sys/types.h>
 
 #ifndef O_NOFOLLOW
-#define O_NOFOLLOW 0x100 /* the system declares it only if no version of POSIX is asked for */
+/* The system declares this name only if the program asks for no version of POSIX. */
+#define O_NOFOLLOW 0x100
 #endif
-#define O_PATH 0 /* 0 opens for reading, because macOS has no descriptors that only name a file */
+/* The value 0 opens a file for reading, because macOS has no descriptors that only name a file. */
+#define O_PATH 0
 
 /* Makes a file at least offset + bytes long, and reserves the space on its disk. Returns an error number or
  * 0. */

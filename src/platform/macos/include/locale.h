@@ -1,4 +1,4 @@
-/* platform/macos/include/locale.h - <locale.h> with POSIX's locales. */
+/* platform/macos/include/locale.h - extends <locale.h> by POSIX's locales. */
 #ifndef HL_PLATFORM_MACOS_LOCALE_H
 #define HL_PLATFORM_MACOS_LOCALE_H
 

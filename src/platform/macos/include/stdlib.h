@@ -1,4 +1,4 @@
-/* platform/macos/include/stdlib.h - <stdlib.h> with the functions of POSIX's locales. */
+/* platform/macos/include/stdlib.h - extends <stdlib.h> by the functions of POSIX's locales. */
 #ifndef HL_PLATFORM_MACOS_STDLIB_H
 #define HL_PLATFORM_MACOS_STDLIB_H
 

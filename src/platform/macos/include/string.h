@@ -1,4 +1,4 @@
-/* platform/macos/include/string.h - <string.h> with GNU's functions. */
+/* platform/macos/include/string.h - extends <string.h> by GNU's functions. */
 #ifndef HL_PLATFORM_MACOS_STRING_H
 #define HL_PLATFORM_MACOS_STRING_H
 

@@ -1,4 +1,4 @@
-/* platform/macos/include/unistd.h - <unistd.h> with Linux's pipe2(). */
+/* platform/macos/include/unistd.h - extends <unistd.h> by Linux's pipe2(). */
 #ifndef HL_PLATFORM_MACOS_UNISTD_H
 #define HL_PLATFORM_MACOS_UNISTD_H
 

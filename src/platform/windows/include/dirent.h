@@ -1,4 +1,5 @@
-/* platform/windows/include/dirent.h - POSIX's <dirent.h>, over a folder's handle. */
+/* platform/windows/include/dirent.h - declares the functions of POSIX's <dirent.h>, which work with a
+ * folder's handle. */
 #ifndef HL_PLATFORM_WINDOWS_DIRENT_H
 #define HL_PLATFORM_WINDOWS_DIRENT_H
 

@@ -1,4 +1,5 @@
-/* platform/windows/include/dlfcn.h - POSIX's <dlfcn.h>, for libraries in the system's own folder. */
+/* platform/windows/include/dlfcn.h - declares the functions of POSIX's <dlfcn.h> for libraries in the
+ * system's own folder. */
 #ifndef HL_PLATFORM_WINDOWS_DLFCN_H
 #define HL_PLATFORM_WINDOWS_DLFCN_H
 

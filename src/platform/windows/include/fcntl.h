@@ -1,4 +1,5 @@
-/* platform/windows/include/fcntl.h - POSIX's <fcntl.h>: files open as binary ones, by names in UTF-8. */
+/* platform/windows/include/fcntl.h - declares the functions of POSIX's <fcntl.h>. Files are opened as binary
+ * files, by names in UTF-8. */
 #ifndef HL_PLATFORM_WINDOWS_FCNTL_H
 #define HL_PLATFORM_WINDOWS_FCNTL_H
 
@@ -7,10 +8,10 @@
 #include <sys/types.h>
 
 #define O_CLOEXEC  _O_NOINHERIT
-#define O_NONBLOCK 0 /* ignored, because open() never waits here: a pipe without a writer fails */
+#define O_NONBLOCK 0 /* ignored, because open() fails for a pipe without a writer, and never waits */
 #define O_NOCTTY   0
 /* Flags of hl_posix_open() and hl_posix_openat() that the C library does not have. */
-/* the descriptor serves only for fstat(), and to open files below the folder */
+/* O_PATH: the descriptor can only be used by fstat(), and to open files below the folder */
 #define O_PATH      0x10000000
 #define O_DIRECTORY 0x20000000
 #define O_NOFOLLOW  0x40000000 /* links, junctions and mounted folders fail with ELOOP */

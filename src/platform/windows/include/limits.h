@@ -1,4 +1,4 @@
-/* platform/windows/include/limits.h - <limits.h> with the greatest length of names in UTF-8. */
+/* platform/windows/include/limits.h - extends <limits.h> by the greatest length of names in UTF-8. */
 #include_next <limits.h>
 
 #ifndef HL_PLATFORM_WINDOWS_LIMITS_H

@@ -1,5 +1,5 @@
-/* platform/windows/include/locale.h - <locale.h> with the part of POSIX's locales that text/plain.c uses. The
- * only object is the locale "C". */
+/* platform/windows/include/locale.h - extends <locale.h> by the part of POSIX's locales that text/plain.c
+ * uses. The only object is the locale "C". */
 #ifndef HL_PLATFORM_WINDOWS_LOCALE_H
 #define HL_PLATFORM_WINDOWS_LOCALE_H
 

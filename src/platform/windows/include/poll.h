@@ -1,4 +1,4 @@
-/* platform/windows/include/poll.h - POSIX's <poll.h>, for one descriptor that is read. */
+/* platform/windows/include/poll.h - declares POSIX's poll() for one descriptor that is read. */
 #ifndef HL_PLATFORM_WINDOWS_POLL_H
 #define HL_PLATFORM_WINDOWS_POLL_H
 

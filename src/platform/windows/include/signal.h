@@ -1,4 +1,5 @@
-/* platform/windows/include/signal.h - <signal.h> with POSIX's names. Threads have no masks of signals. */
+/* platform/windows/include/signal.h - extends <signal.h> by POSIX's names. Threads have no masks of
+ * signals. */
 #ifndef HL_PLATFORM_WINDOWS_SIGNAL_H
 #define HL_PLATFORM_WINDOWS_SIGNAL_H
 

@@ -1,4 +1,5 @@
-/* platform/windows/include/stdio.h - <stdio.h> with names in UTF-8, binary files and renaming over a file. */
+/* platform/windows/include/stdio.h - changes <stdio.h> so that names are in UTF-8, files are binary, and a
+ * file can be renamed over another one. */
 #ifndef HL_PLATFORM_WINDOWS_STDIO_H
 #define HL_PLATFORM_WINDOWS_STDIO_H
 

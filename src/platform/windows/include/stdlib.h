@@ -1,4 +1,4 @@
-/* platform/windows/include/stdlib.h - <stdlib.h> with POSIX's functions on names, in UTF-8. */
+/* platform/windows/include/stdlib.h - extends <stdlib.h> by POSIX's functions that take names, in UTF-8. */
 #ifndef HL_PLATFORM_WINDOWS_STDLIB_H
 #define HL_PLATFORM_WINDOWS_STDLIB_H
 

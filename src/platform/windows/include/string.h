@@ -1,4 +1,4 @@
-/* platform/windows/include/string.h - <string.h> with BSD's and GNU's functions. */
+/* platform/windows/include/string.h - extends <string.h> by functions of BSD and GNU. */
 #ifndef HL_PLATFORM_WINDOWS_STRING_H
 #define HL_PLATFORM_WINDOWS_STRING_H
 

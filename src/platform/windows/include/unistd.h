@@ -1,4 +1,5 @@
-/* platform/windows/include/unistd.h - POSIX's <unistd.h>: names in UTF-8, sizes and offsets of 64 bits. */
+/* platform/windows/include/unistd.h - declares functions of POSIX's <unistd.h>, with names in UTF-8, and with
+ * 64 bits for sizes and offsets. */
 #ifndef HL_PLATFORM_WINDOWS_UNISTD_H
 #define HL_PLATFORM_WINDOWS_UNISTD_H
 
@@ -18,8 +19,9 @@ int hl_posix_access(const char *path, int mode);
 int hl_posix_chdir(const char *path);
 char *hl_posix_getcwd(char *path, size_t size);
 int hl_posix_isatty(int descriptor);
-unsigned geteuid(void); /* 0: a process has no user's number */
-/* Always fails, because links are not read. So "/proc/self/exe" leads nowhere. */
+unsigned geteuid(void); /* returns 0, because a process has no user's number on this system */
+/* This function always fails, because links are not read. Therefore the link "/proc/self/exe" cannot be
+ * read. */
 ssize_t readlink(const char *path, char *text, size_t size);
 int symlink(const char *path, const char *name); /* fails */
 

@@ -1,4 +1,4 @@
-/* platform/macos/include/sys/prctl.h - Linux's <sys/prctl.h>: calls have no effect here. */
+/* platform/macos/include/sys/prctl.h - declares Linux's prctl(), which has no effect on this system. */
 #ifndef HL_PLATFORM_MACOS_SYS_PRCTL_H
 #define HL_PLATFORM_MACOS_SYS_PRCTL_H
 

@@ -1,4 +1,4 @@
-/* platform/macos/include/sys/random.h - Linux's <sys/random.h>. */
+/* platform/macos/include/sys/random.h - declares the function of Linux's <sys/random.h>. */
 #ifndef HL_PLATFORM_MACOS_SYS_RANDOM_H
 #define HL_PLATFORM_MACOS_SYS_RANDOM_H
 

@@ -1,4 +1,5 @@
-/* platform/macos/include/sys/resource.h - <sys/resource.h> with memory in KiB, as on Linux. */
+/* platform/macos/include/sys/resource.h - changes <sys/resource.h> so that memory is given in KiB, as on
+ * Linux. */
 #ifndef HL_PLATFORM_MACOS_SYS_RESOURCE_H
 #define HL_PLATFORM_MACOS_SYS_RESOURCE_H
 
@@ -8,7 +9,7 @@
 
 int hl_posix_getrusage(int who, struct rusage *usage);
 #define getrusage hl_posix_getrusage
-/* Always fails, because the limits of another process cannot be set. */
+/* This function always fails, because the limits of another process cannot be set. */
 int prlimit(pid_t process, int what, const struct rlimit *limit, struct rlimit *before);
 
 #endif

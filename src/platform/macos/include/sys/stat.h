@@ -1,4 +1,4 @@
-/* platform/macos/include/sys/stat.h - <sys/stat.h> with POSIX's name of the time at which a file was
+/* platform/macos/include/sys/stat.h - extends <sys/stat.h> by POSIX's name of the time at which a file was
  * changed. */
 #ifndef HL_PLATFORM_MACOS_SYS_STAT_H
 #define HL_PLATFORM_MACOS_SYS_STAT_H

@@ -1,4 +1,5 @@
-/* platform/windows/include/sys/mman.h - POSIX's <sys/mman.h>: whole files, and memory. */
+/* platform/windows/include/sys/mman.h - declares the part of POSIX's <sys/mman.h> that maps whole files and
+ * memory. */
 #ifndef HL_PLATFORM_WINDOWS_SYS_MMAN_H
 #define HL_PLATFORM_WINDOWS_SYS_MMAN_H
 

@@ -1,4 +1,4 @@
-/* platform/windows/include/sys/prctl.h - Linux's <sys/prctl.h>. prctl() does nothing here. */
+/* platform/windows/include/sys/prctl.h - declares Linux's prctl(), which does nothing on this system. */
 #ifndef HL_PLATFORM_WINDOWS_SYS_PRCTL_H
 #define HL_PLATFORM_WINDOWS_SYS_PRCTL_H
 

@@ -1,4 +1,4 @@
-/* platform/windows/include/sys/random.h - Linux's <sys/random.h>. */
+/* platform/windows/include/sys/random.h - declares the function of Linux's <sys/random.h>. */
 #ifndef HL_PLATFORM_WINDOWS_SYS_RANDOM_H
 #define HL_PLATFORM_WINDOWS_SYS_RANDOM_H
 

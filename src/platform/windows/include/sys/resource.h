@@ -1,5 +1,5 @@
-/* platform/windows/include/sys/resource.h - the part of POSIX's <sys/resource.h> that tells how much memory a
- * process held at most. */
+/* platform/windows/include/sys/resource.h - declares the part of POSIX's <sys/resource.h> that tells the
+ * greatest amount of memory that a process has held. */
 #ifndef HL_PLATFORM_WINDOWS_SYS_RESOURCE_H
 #define HL_PLATFORM_WINDOWS_SYS_RESOURCE_H
 

@@ -1,5 +1,5 @@
-/* platform/windows/include/sys/stat.h - POSIX's <sys/stat.h>: sizes and files' numbers of 64 bits, names in
- * UTF-8. It replaces the C library's header. */
+/* platform/windows/include/sys/stat.h - declares the functions of POSIX's <sys/stat.h>, with names in UTF-8,
+ * and with 64 bits for sizes and the numbers of files. It replaces the C library's header. */
 #ifndef _INC_STAT
 #define _INC_STAT
 
@@ -7,7 +7,8 @@
 #include <io.h>
 #include <sys/types.h>
 #include <time.h>
-/* declares structs with members of these names, and so comes before the names become macros */
+/* this header declares structs with members of these names, and so it is included before the names become
+ * macros */
 #include <wchar.h>
 
 struct stat {

@@ -1,4 +1,5 @@
-/* platform/windows/include/sys/statvfs.h - POSIX's <sys/statvfs.h>: the free space on the disk of a file. */
+/* platform/windows/include/sys/statvfs.h - declares the part of POSIX's <sys/statvfs.h> that finds the free
+ * space on the disk of a file. */
 #ifndef HL_PLATFORM_WINDOWS_SYS_STATVFS_H
 #define HL_PLATFORM_WINDOWS_SYS_STATVFS_H
 

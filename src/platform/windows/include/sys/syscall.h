@@ -1,2 +1,2 @@
-/* platform/windows/include/sys/syscall.h - Linux's <sys/syscall.h>, without numbers: no system call may be
- * made by its number. */
+/* platform/windows/include/sys/syscall.h - replaces Linux's <sys/syscall.h>. It defines no numbers, because
+ * no system call can be made by its number. */
