@@ -6,12 +6,27 @@
 #ifndef HL_PARTICLES_KERNEL_H
 #define HL_PARTICLES_KERNEL_H
 
+#include <stdint.h>
+
 /* W(q) without the factor 1 / (pi h^3). Derived: both pieces are (2 - q)^3 / 4 - (1 - q)^3, if negative bases
  * are replaced by 0. */
 static inline float hl_sph_kernel(float q) {
   float outer = 2 - q, inner = 1 - q;
   outer = outer > 0 ? outer : 0;
   inner = inner > 0 ? inner : 0;
+  return 0.25f * outer * outer * outer - inner * inner * inner;
+}
+
+/* The same for several distances at a time, with the same bits. Compilers do not turn a loop of the scalar
+ * function into vectors, because of its conditions. */
+enum { HL_SPH_KERNELS = 4 };
+typedef float hl_sph_group __attribute__((vector_size(4 * HL_SPH_KERNELS)));
+typedef int32_t hl_sph_masks __attribute__((vector_size(4 * HL_SPH_KERNELS)));
+
+static inline hl_sph_group hl_sph_kernels(hl_sph_group q) {
+  hl_sph_group outer = 2 - q, inner = 1 - q;
+  outer = (hl_sph_group)((hl_sph_masks)outer & (outer > 0));
+  inner = (hl_sph_group)((hl_sph_masks)inner & (inner > 0));
   return 0.25f * outer * outer * outer - inner * inner * inner;
 }
 

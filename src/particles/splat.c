@@ -21,6 +21,7 @@
 
 enum {
   ROW = HL_PARTICLE_ROW,
+  GROUP = HL_SPH_KERNELS, /* number of points along x that are sampled together; ROW is a multiple */
   LEAST_TILE = 16,
   BOX = 2 * LEAST_TILE + ROW /* the greatest number of points of a tile's box along an axis */
 };
@@ -41,14 +42,17 @@ typedef struct splatting {
   float *boxes;            /* owned; [threads][BOX^3] */
 } splatting;
 
+typedef hl_sph_group group;
+
 /* The samples of one particle's kernel, as rows along x. */
 typedef struct samples {
   float row[ROW * ROW][ROW];
   int first[3], count[3]; /* the first point and the number of points along each axis; along periodic axes
                            * some may lie outside of the field */
+  int groups;             /* number of groups of a row that have points which the kernel reaches */
   float squared[3][ROW];  /* along each axis: the squared distances from the particle to the points, in units
                            * of h'^2; points where their sum is 4 or more are out of reach */
-  float sums[ROW];        /* sums[n] is the sum of row[..][n] over all rows */
+  float sums[ROW];        /* sums[n] is the sum of row[..][n] over all rows; 0 beyond the groups */
 } samples;
 
 /* ---- tiles ---- */
@@ -97,9 +101,32 @@ static hl_status deal(hl_context *context, splatting *s, const char *subject, hl
 
 static float row_across(const samples *p, int j, int k) { return p->squared[1][j] + p->squared[2][k]; }
 
-static void sample_row(const float along[ROW], float across, float row[ROW], float sums[ROW]) {
-  for (int i = 0; i < ROW; i++) row[i] = hl_sph_kernel(sqrtf(along[i] + across));
-  for (int i = 0; i < ROW; i++) sums[i] += row[i];
+static group roots(group squares) {
+  float root[GROUP];
+  memcpy(root, &squares, sizeof root);
+  for (int i = 0; i < GROUP; i++)
+    root[i] = sqrtf(root[i]); /* the compiler makes one instruction of the loop */
+  memcpy(&squares, root, sizeof root);
+  return squares;
+}
+
+static void sample_group(const float along[GROUP], float across, float row[GROUP], float sums[GROUP]) {
+  group squares, sum;
+  memcpy(&squares, along, sizeof squares);
+  memcpy(&sum, sums, sizeof sum);
+  const group value = hl_sph_kernels(roots(squares + across));
+  sum += value;
+  memcpy(row, &value, sizeof value);
+  memcpy(sums, &sum, sizeof sum);
+}
+
+/* Samples the row (j, k). Many kernels are as narrow as the lattice can show and reach one group, so that
+ * whole rows would cost several times as much. */
+static void sample_row(samples *p, int j, int k) {
+  const float across = row_across(p, j, k);
+  float *row = p->row[k * ROW + j];
+  for (int i = 0; i < GROUP * p->groups; i += GROUP)
+    sample_group(p->squared[0] + i, across, row + i, p->sums + i);
 }
 
 /* Finds the points along an axis that the kernel reaches, and their distances. */
@@ -108,8 +135,8 @@ static void measure_axis(const hl_particle_level *grid, int axis, double at, dou
   hl_particle_range(grid, axis, at, narrowed, range);
   p->first[axis] = range[0];
   p->count[axis] = range[1] - range[0] + 1;
-  for (int i = 0; i < ROW; i++) {
-    float away = i < p->count[axis] ? (float)((range[0] + i - at) * grid->spacing[axis] / narrowed) : 2;
+  for (int i = 0; i < p->count[axis]; i++) {
+    float away = (float)((range[0] + i - at) * grid->spacing[axis] / narrowed);
     p->squared[axis][i] = away * away;
   }
 }
@@ -119,11 +146,12 @@ static float sample(const splatting *s, size_t n, samples *p) {
   const double narrowed = hl_particle_narrowed(s->set, &s->grid, n);
   for (int a = 0; a < 3; a++)
     measure_axis(&s->grid, a, hl_particle_coordinate(s->set, &s->grid, n, a), narrowed, p);
+  p->groups = (p->count[0] + GROUP - 1) / GROUP;
+  for (int i = p->count[0]; i < GROUP * p->groups; i++) p->squared[0][i] = 4;
   memset(p->sums, 0, sizeof p->sums);
   for (int k = 0; k < p->count[2]; k++)
     for (int j = 0; j < p->count[1]; j++)
-      if (row_across(p, j, k) < 4)
-        sample_row(p->squared[0], row_across(p, j, k), p->row[k * ROW + j], p->sums);
+      if (row_across(p, j, k) < 4) sample_row(p, j, k);
   float sum = 0;
   for (int i = 0; i < ROW; i++) sum += p->sums[i];
   return sum;
