@@ -24,27 +24,42 @@ __all__ = ["open_amr"]
 Patch = tuple[int, tuple[int, ...], Any]
 
 
-def open_amr(path: str | os.PathLike[str], field: str | None = None, **look: Unpack[Look]) -> Volume:
+def open_amr(path: str | os.PathLike[str], field: str | None = None, *, finest: int | None = None, **look: Unpack[Look]) -> Volume:
     """An adaptive grid of FLASH, Chombo or Enzo in HDF5 files, which needs h5py. Plotfiles of AMReX are opened by `Volume`.
 
     Parameters
     ----------
     path : path
-        FLASH's and Chombo's file, or Enzo's `.hierarchy` file.
+        FLASH's and Chombo's file, or Enzo's file of parameters or its `.hierarchy` file.
     field : str, optional
         The variable's name; without it the density, or else the first one, and a warning tells which.
+    finest : int, optional
+        The finest level of refinement that is taken, where 0 is the coarsest one; by default all. Cells of finer levels than a
+        picture can show cost time, since a picture has sheets as near to each other as the finest cells.
+    **look
+        Keywords of `Volume`.
     """
     from .volume import Volume
 
+    if finest is not None and finest < 0:
+        raise ValueError(f"finest is {finest}: levels begin at 0, the coarsest one")
     path = Path(path)
-    if path.name.endswith(".hierarchy"):
-        return Volume.from_amr(**_enzo(path, field), **look)
+    hierarchy = path if path.name.endswith(".hierarchy") else path.with_name(path.name + ".hierarchy")
+    if hierarchy == path or hierarchy.is_file():
+        return Volume.from_amr(**_until(_enzo(hierarchy, field), finest), **look)
     with open_file(path) as file:
         if "refine level" in file and "bounding box" in file:
-            return Volume.from_amr(**_flash(file, field), **look)
+            return Volume.from_amr(**_until(_flash(file, field, finest), finest), **look)
         if "num_levels" in file.attrs and "level_0" in file:
-            return Volume.from_amr(**_chombo(file, field), **look)
+            return Volume.from_amr(**_until(_chombo(file, field), finest), **look)
     raise InputError(f"{path}: is no file of FLASH or Chombo: give one, or Enzo's .hierarchy file")
+
+
+def _until(grid: dict[str, Any], finest: int | None) -> dict[str, Any]:
+    """The grid without the levels beyond the finest one."""
+    if finest is None:
+        return grid
+    return {**grid, "patches": (patch for patch in grid["patches"] if patch[0] <= finest)}
 
 
 def _chosen(names: list[str], field: str | None, path: Any) -> str:
@@ -66,8 +81,8 @@ def _text(value: Any) -> str:
     return value.decode("latin-1").strip() if isinstance(value, bytes) else str(value).strip()
 
 
-def _flash(file: Any, field: str | None) -> dict[str, Any]:
-    """Blocks of equal numbers of cells in an octree; level 1 has the largest."""
+def _flash(file: Any, field: str | None, finest: int | None) -> dict[str, Any]:
+    """Blocks of equal numbers of cells in an octree; level 1 has the largest. Leaves are taken, and other blocks of the finest level."""
     names = [_text(name) for name in np.asarray(file["unknown names"]).ravel()] if "unknown names" in file else []
     values = file[_chosen([name for name in names if name in file], field, file.filename)]
     levels, bounds = np.asarray(file["refine level"]), np.asarray(file["bounding box"], float)
@@ -81,7 +96,7 @@ def _flash(file: Any, field: str | None) -> dict[str, Any]:
 
     def patches() -> Iterator[Patch]:
         for block, level in enumerate(levels - coarsest):
-            if kinds[block] == 1 or level == 0:
+            if kinds[block] == 1 or level in (0, finest):
                 first = np.rint((bounds[block, :, 0] - low) / step * 2.0**level).astype(int)
                 yield int(level), tuple(first.tolist()), values[block]
 

@@ -37,6 +37,11 @@ def test_chombo(tmp_path: Path) -> None:
         volume = hl.open_amr(tmp_path / "a.hdf5")
     np.testing.assert_array_equal(np.asarray(volume), np.asarray(hl.Volume.from_amr(patches())))
     np.testing.assert_allclose(hl.info(volume).origin, 1 / 128)
+    coarse = hl.open_amr(tmp_path / "a.hdf5", "density", finest=0)
+    np.testing.assert_array_equal(np.asarray(coarse), np.asarray(hl.Volume.from_amr([patch for patch in patches() if patch[0] == 0])))
+    assert hl.info(coarse).dimensions == (32, 32, 32)
+    with pytest.raises(ValueError, match="finest is -1"):
+        hl.open_amr(tmp_path / "a.hdf5", "density", finest=-1)
     with pytest.raises(hl.InputError, match="choose one of vx, density"):
         hl.open_amr(tmp_path / "a.hdf5", "temperature")
 
@@ -53,6 +58,8 @@ def test_flash(tmp_path: Path) -> None:
     same = [(level - 1, tuple(8 * n for n in at), part) for (level, at), part in zip(blocks, values, strict=True)]
     np.testing.assert_array_equal(np.asarray(volume), np.asarray(hl.Volume.from_amr(same, spacing=1 / 16)))
     assert hl.info(volume).dimensions == (32, 32, 32)
+    coarse = hl.open_amr(tmp_path / "a.h5", finest=0)  # also the block that finer blocks cover
+    np.testing.assert_array_equal(np.asarray(coarse), np.asarray(hl.Volume.from_amr([patch for patch in same if patch[0] == 0], spacing=1 / 16)))
 
 
 def test_enzo(tmp_path: Path) -> None:
@@ -67,6 +74,10 @@ def test_enzo(tmp_path: Path) -> None:
     (tmp_path / "data.hierarchy").write_text(text)
     volume = hl.open_amr(tmp_path / "data.hierarchy")
     np.testing.assert_array_equal(np.asarray(volume), np.asarray(hl.Volume.from_amr(patches())))
+    (tmp_path / "data").write_text("InitialTime = 0\n")  # the file of parameters, by which other programs open the data
+    np.testing.assert_array_equal(np.asarray(hl.open_amr(tmp_path / "data")), np.asarray(volume))
+    coarse = hl.open_amr(tmp_path / "data", finest=0)
+    np.testing.assert_array_equal(np.asarray(coarse), np.asarray(hl.Volume.from_amr([patch for patch in patches() if patch[0] == 0])))
 
 
 def test_other_files_are_refused(tmp_path: Path) -> None:
