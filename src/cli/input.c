@@ -17,6 +17,7 @@
 
 #include "output.h"
 #include "platform/memory.h"
+#include "text/plain.h"
 
 #define STANDARD_INPUT "/dev/stdin" /* the volume's file in a scene made from standard input */
 
@@ -265,8 +266,8 @@ hl_status input_load(hl_context *context, const cli_input *input, const hl_volum
 }
 
 bool is_mesh_file(hl_context *context, const char *path) {
-  return hl_mesh_reads_name(context, path) && !hl_volume_reads_cells(context, path) &&
-         !hl_volume_reads_particles(context, path);
+  return !hl_plain_is_url(path) && hl_mesh_reads_name(context, path) &&
+         !hl_volume_reads_cells(context, path) && !hl_volume_reads_particles(context, path);
 }
 
 int compare_by_number(const void *a, const void *b) {

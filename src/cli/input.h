@@ -114,7 +114,7 @@ hl_status input_load(hl_context *context, const cli_input *input, const hl_volum
                      hl_scene **scene, hl_error *error);
 
 /* Whether a file holds a mesh. A VTK file of particles, or of cells that enclose a volume and have values, is
- * a volume. */
+ * a volume. A URL is no mesh, because only volumes are read from servers. */
 bool is_mesh_file(hl_context *context, const char *path);
 
 /* Orders names (char **) by the numbers in them, for qsort(). */

@@ -467,6 +467,11 @@ def who_is_asked(case, server):
     case.ok("a URL's query goes with every request", picture == right, said)
     server.forget()
     case.refused("no store there: refused", server, server.url + "/none", "the server has no Zarr store there")
+    for name in ("none.nrrd", "none.vtu", "none.ply"):  # single files, also of names that meshes have
+        case.refused(f"{name}: refused", server, f"{server.url}/{name}", "the server has no Zarr store there: download other files")
+        done = case.run("info", f"{server.url}/{name}")
+        case.ok(f"info of {name}: refused", done.returncode != 0 and "the server has no Zarr store there: download other files" in done.stderr,
+                (done.stdout, done.stderr))
     case.refused("no server there: refused", server, "http://127.0.0.1:9/v2.zarr", "it does not arrive, after 4 tries")
     case.refused("no curl: refused", server, store, "there is no program curl", PATH=str(case.folder))
     done = case.run("info", "--json", store)
