@@ -24,7 +24,7 @@ __all__ = ["open_amr"]
 Patch = tuple[int, tuple[int, ...], Any]
 
 
-def open_amr(path: str | os.PathLike[str], field: str | None = None, *, finest: int | None = None, **look: Unpack[Look]) -> Volume:
+def open_amr(path: str | os.PathLike[str], field: str | None = None, *, log: bool = False, finest: int | None = None, **look: Unpack[Look]) -> Volume:
     """An adaptive grid of FLASH, Chombo or Enzo in HDF5 files, which needs h5py. Plotfiles of AMReX are opened by `Volume`.
 
     Parameters
@@ -33,6 +33,9 @@ def open_amr(path: str | os.PathLike[str], field: str | None = None, *, finest: 
         FLASH's and Chombo's file, or Enzo's file of parameters or its `.hierarchy` file.
     field : str, optional
         The variable's name; without it the density, or else the first one, and a warning tells which.
+    log : bool
+        Whether the logarithms to base 10 of the cells' values are taken. A transfer function has 4096 steps over all values, which
+        is too few for densities that differ by many powers of ten. Cells whose value is not above 0 are empty.
     finest : int, optional
         The finest level of refinement that is taken, where 0 is the coarsest one; by default all. Cells of finer levels than a
         picture can show cost time, since a picture has sheets as near to each other as the finest cells.
@@ -46,20 +49,27 @@ def open_amr(path: str | os.PathLike[str], field: str | None = None, *, finest: 
     path = Path(path)
     hierarchy = path if path.name.endswith(".hierarchy") else path.with_name(path.name + ".hierarchy")
     if hierarchy == path or hierarchy.is_file():
-        return Volume.from_amr(**_until(_enzo(hierarchy, field), finest), **look)
+        return Volume.from_amr(**_taken(_enzo(hierarchy, field), log, finest), **look)
     with open_file(path) as file:
         if "refine level" in file and "bounding box" in file:
-            return Volume.from_amr(**_until(_flash(file, field, finest), finest), **look)
+            return Volume.from_amr(**_taken(_flash(file, field, finest), log, finest), **look)
         if "num_levels" in file.attrs and "level_0" in file:
-            return Volume.from_amr(**_until(_chombo(file, field), finest), **look)
+            return Volume.from_amr(**_taken(_chombo(file, field), log, finest), **look)
     raise InputError(f"{path}: is no file of FLASH or Chombo: give one, or Enzo's .hierarchy file")
 
 
-def _until(grid: dict[str, Any], finest: int | None) -> dict[str, Any]:
-    """The grid without the levels beyond the finest one."""
-    if finest is None:
-        return grid
-    return {**grid, "patches": (patch for patch in grid["patches"] if patch[0] <= finest)}
+def _taken(grid: dict[str, Any], log: bool, finest: int | None) -> dict[str, Any]:
+    """The grid without the levels beyond the finest one, and with logarithms if they are asked for."""
+    patches: Iterator[Patch] = (patch for patch in grid["patches"] if finest is None or patch[0] <= finest)
+    if log:
+        patches = ((level, first, _logarithms(values)) for level, first, values in patches)
+    return {**grid, "patches": patches}
+
+
+def _logarithms(values: Any) -> np.ndarray[Any, Any]:
+    values = np.asarray(values, dtype=np.float32)
+    with np.errstate(divide="ignore", invalid="ignore"):
+        return np.where(values > 0, np.log10(values), np.nan).astype(np.float32)
 
 
 def _chosen(names: list[str], field: str | None, path: Any) -> str:

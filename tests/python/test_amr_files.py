@@ -76,6 +76,8 @@ def test_enzo(tmp_path: Path) -> None:
     np.testing.assert_array_equal(np.asarray(volume), np.asarray(hl.Volume.from_amr(patches())))
     (tmp_path / "data").write_text("InitialTime = 0\n")  # the file of parameters, by which other programs open the data
     np.testing.assert_array_equal(np.asarray(hl.open_amr(tmp_path / "data")), np.asarray(volume))
+    logs = [(level, first, np.log10(values.astype(np.float32))) for level, first, values in patches()]
+    np.testing.assert_array_equal(np.asarray(hl.open_amr(tmp_path / "data", log=True)), np.asarray(hl.Volume.from_amr(logs)))
     coarse = hl.open_amr(tmp_path / "data", finest=0)
     np.testing.assert_array_equal(np.asarray(coarse), np.asarray(hl.Volume.from_amr([patch for patch in patches() if patch[0] == 0])))
 
