@@ -10,6 +10,7 @@
 #include "commands.h"
 #include "message.h"
 #include "platform/program.h"
+#include "ranks.h"
 #include "suggest.h"
 #include "text/edit_distance.h"
 
@@ -97,10 +98,8 @@ static void take_errors_for_signals(void) {
   signal(SIGXFSZ, SIG_IGN);
 }
 
-int main(int argc, char **argv) {
-  hl_program_begin(&argc, &argv);
-  keep_standard_streams();
-  take_errors_for_signals();
+/* Returns the exit code. *command becomes the command that was run; it stays null if there was none. */
+static int run_line(int argc, char **argv, const cli_command **command) {
   if (argc < 2) return fail(EXIT_CODE_USAGE, "a command is missing: see 'halflight --help'");
   const char *name = argv[1];
   bool asks_help = strcmp(name, "--help") == 0 || strcmp(name, "-h") == 0 || strcmp(name, "help") == 0;
@@ -113,6 +112,17 @@ int main(int argc, char **argv) {
   if (asks_help || strcmp(name, "--version") == 0)
     return fail(EXIT_CODE_USAGE, "'%s' is too much after %s", argv[argc - 1], name);
   if (name[0] == '-') return fail(EXIT_CODE_USAGE, "unknown option '%s': see 'halflight --help'", name);
-  const cli_command *command = find_command(name);
-  return command != NULL ? run_command(command, argc - 2, argv + 2) : refuse_command(name);
+  *command = find_command(name);
+  return *command != NULL ? run_command(*command, argc - 2, argv + 2) : refuse_command(name);
+}
+
+int main(int argc, char **argv) {
+  const cli_command *command = NULL;
+  hl_program_begin(&argc, &argv);
+  keep_standard_streams();
+  take_errors_for_signals();
+  int exit_code = run_line(argc, argv, &command);
+  if (exit_code != EXIT_CODE_OK && options_join(command != NULL ? command : &render_command, argc, argv))
+    ranks_end_others(exit_code);
+  return exit_code;
 }

@@ -234,10 +234,17 @@ static cli_option with_setting(const cli_option *option) {
   return full;
 }
 
+/* Copies the name in a long option: "size" of "--size=8x8". Returns its length; 0: the argument is no long
+ * option. */
+static size_t name_in(const char *argument, char *name, size_t size) {
+  size_t length = argument[0] == '-' && argument[1] == '-' ? strcspn(argument + 2, "=") : 0;
+  snprintf(name, size, "%.*s", (int)(length < size ? length : size - 1), length > 0 ? argument + 2 : "");
+  return length;
+}
+
 static int refuse_unknown(const cli_command *command, const char *argument) {
   char name[80];
-  size_t length = argument[1] == '-' ? strcspn(argument + 2, "=") : 0;
-  snprintf(name, sizeof name, "%.*s", (int)(length < sizeof name ? length : sizeof name - 1), argument + 2);
+  size_t length = name_in(argument, name, sizeof name);
   const char *meant = length > 0 ? hl_nearest_candidate(name, option_name, command) : NULL;
   const char *does = synonym_of(name, option_name, command);
   const bool differ = does != NULL && meant != NULL && strncmp(does, meant, strcspn(does, " ")) != 0;
@@ -306,6 +313,18 @@ static int parse_option(const cli_command *command, int argument_count, char **a
       return refuse_missing(option);
   }
   return parse_value(option, attached, value);
+}
+
+bool options_join(const cli_command *command, int argument_count, char **arguments) {
+  for (int i = 0; i < argument_count; i++) {
+    char name[80];
+    if (name_in(arguments[i], name, sizeof name) == 0) continue;
+    size_t row = find_option(command, name, strlen(name));
+    const char *meant = row == row_count(command) ? hl_nearest_candidate(name, option_name, command) : NULL;
+    if (meant != NULL) row = find_option(command, meant, strlen(meant));
+    if (row < row_count(command) && option_in(command, row)->joins) return true;
+  }
+  return false;
 }
 
 int options_parse(const cli_command *command, int argument_count, char **arguments, cli_value *values,

@@ -53,6 +53,7 @@ typedef struct cli_option {
   bool optional;   /* OPTION_NUMBERS: the numbers may be left out; they are then 0, and `count` is 0 */
   bool repeatable; /* OPTION_TEXT: may be given again; every text is kept */
   bool reserved;   /* not in this version yet: the option is not shown in help, and is refused when given */
+  bool joins;      /* processes of an MPI launcher that are given this option wait for each other */
 } cli_option;
 
 enum { MAXIMUM_REPEATS = 32 };
@@ -88,6 +89,10 @@ typedef struct cli_command {
 } cli_command;
 
 enum { MAXIMUM_OPTIONS = 128, MAXIMUM_OPERANDS = 16 };
+
+/* Whether one of the arguments is an option that joins processes, or is most like such an option. The
+ * arguments may be wrong. */
+bool options_join(const cli_command *command, int argument_count, char **arguments);
 
 /* Parses the arguments after the subcommand's name. Returns EXIT_CODE_OK, or another exit code after printing
  * an error. At --help or -h *help is set and parsing stops. */

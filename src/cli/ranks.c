@@ -2,8 +2,11 @@
 #define _GNU_SOURCE
 #include "ranks.h"
 
+#include <pthread.h>
 #include <stdlib.h>
 #include <string.h>
+#include <time.h>
+#include <unistd.h>
 
 #include "message.h"
 #include "text/hash.h"
@@ -30,6 +33,8 @@ hl_mpi launcher_mpi(void) {
   return launcher_of_process(&found) ? found.mpi : HL_MPI_AUTO;
 }
 
+static bool joined; /* whether ranks_begin() has joined the other processes */
+
 int ranks_begin(cli_host *host, const char *option, hl_ranks **ranks) {
   hl_error error = {0};
   launcher found;
@@ -37,6 +42,7 @@ int ranks_begin(cli_host *host, const char *option, hl_ranks **ranks) {
     return fail(EXIT_CODE_USAGE, "--%s: mpirun has not started this process: start it so", option);
   if (hl_ranks_join(host->context, NULL, ranks, &error) != HL_OK)
     return fail(EXIT_CODE_FAILURE, "--%s: %s", option, error.message);
+  joined = true;
   if (atoi(found.size) != hl_ranks_size(*ranks))
     return fail(
         EXIT_CODE_FAILURE,
@@ -114,4 +120,30 @@ void ranks_check(hl_ranks *ranks, int exit_code) {
   if (exit_code != EXIT_CODE_INTERRUPTED)
     fail(exit_code, "rank %d of %d has failed and ends them all", hl_ranks_rank(ranks), hl_ranks_size(ranks));
   hl_ranks_abort(ranks, exit_code);
+}
+
+/* ---- failing before the ranks have joined ---- */
+
+/* Ends this process after a while, since the other processes may be no ranks, and never join. */
+static void *stop_waiting(void *exit_code) {
+  nanosleep(&(struct timespec){.tv_sec = 60}, NULL);
+  _exit(*(const int *)exit_code);
+}
+
+void ranks_end_others(int exit_code) {
+  static int code; /* lives as long as the thread */
+  pthread_t clock;
+  hl_context_options options;
+  hl_context *context = NULL;
+  hl_ranks *ranks = NULL;
+  if (joined || launcher_mpi() == HL_MPI_AUTO) return;
+  hl_context_options_defaults(&options);
+  options.mpi = launcher_mpi();
+  code = exit_code;
+  if (pthread_create(&clock, NULL, stop_waiting, &code) == 0 &&
+      hl_context_create(&options, &context, NULL) == HL_OK &&
+      hl_ranks_join(context, NULL, &ranks, NULL) == HL_OK)
+    ranks_check(ranks, exit_code);
+  hl_ranks_leave(ranks);
+  hl_context_destroy(context);
 }

@@ -30,4 +30,9 @@ int ranks_compare(cli_host *host, hl_ranks *ranks, const hl_scene *scene);
  * it before anything that the other ranks use is released. ranks: may be null. */
 void ranks_check(hl_ranks *ranks, int exit_code);
 
+/* For a process that has failed: if ranks_begin() has not joined the processes of its launcher, joins them
+ * now, so that it can end them. Otherwise they would wait for this process: MPICH's launcher does not end a
+ * job one of whose processes exits before it has joined. */
+void ranks_end_others(int exit_code);
+
 #endif

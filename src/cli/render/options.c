@@ -516,9 +516,11 @@ const cli_option render_options[RENDER_OPTION_COUNT] = {
     [RENDER_RANKS] = FRAMES_OPTION_RANKS,
     [RENDER_STRIPS] = {.name = "strips-over-ranks",
                        .kind = OPTION_SWITCH,
+                       .joins = true,
                        .help = "under mpirun: its processes make one picture together,\neach a part of it"},
     [RENDER_VOLUME] = {.name = "volume-over-ranks",
                        .kind = OPTION_SWITCH,
+                       .joins = true,
                        .help =
                            "and each reads and holds its own slices of the\nvolumes, and asks the others for "
                            "theirs; up to\n--max-memory of them is kept"},

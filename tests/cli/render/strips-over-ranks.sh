@@ -43,6 +43,16 @@ cmp whole.npy shared.npy && rm shared.npy
 export one= more=none/shared.npy
 ! run 3 timeout 60 sh different.sh
 grep -o -m 1 "its folder 'none' cannot be written\|rank 1 of 3 has failed" mpirun.txt
+# A rank whose command line is wrong, or that lacks the memory to join, fails before it has joined the others.
+cat >wrong.sh <<'END'
+if [ "${OMPI_COMM_WORLD_RANK-$PMI_RANK}" = 1 ]; then more=$wrong; fi
+exec "$HALFLIGHT" render rings.nrrd --size 60x100 --sheet-spacing 2 --quiet --strips-over-ranks -o shared.npy $more
+END
+for wrong in "--shadows nonsense" --strip-over-ranks --layers "--max-memory 1"; do
+  export wrong
+  ! run 3 timeout 60 sh wrong.sh
+  grep -o -m 1 "rank 1 of 3 has failed and ends them all" mpirun.txt || { echo "$wrong"; cat mpirun.txt; }
+done
 ! run 4 sh failing.sh
 grep -o -m 1 "rank 2 of 4 has failed and ends them all" mpirun.txt
 ! run 4 sh killed.sh
