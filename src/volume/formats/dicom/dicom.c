@@ -20,13 +20,9 @@ static bool has_content(const unsigned char *bytes, size_t length) {
 
 /* Claims files by the extensions of their names, as old DICOM files lack the mark "DICM". */
 static hl_status claim_name(hl_stream **stream, bool *claimed, hl_error *error) {
-  static const char *const endings[] = {".dcm", ".dicom", ".ima"};
   const unsigned char *bytes;
   size_t length;
-  bool named = false;
-  for (size_t n = 0; n < sizeof endings / sizeof *endings; n++)
-    named = named || hl_text_ends((*stream)->path, endings[n]);
-  if (!named) return HL_OK;
+  if (!hl_dicom_is_named((*stream)->path)) return HL_OK;
   hl_status status = hl_stream_peek(*stream, HL_FORMAT_SNIFFED_BYTES, &bytes, &length, error);
   *claimed = status == HL_OK && hl_dicom_may_begin(bytes, length);
   return status;
@@ -34,9 +30,9 @@ static hl_status claim_name(hl_stream **stream, bool *claimed, hl_error *error) 
 
 static void tell_damage(const hl_dicom_set *set) {
   const char *path = set->bundle->path;
-  if (set->damaged > 0)
+  if (set->damaged + set->remnants > 0)
     hl_log(set->context, HL_LOG_WARNING, "%s: %zu DICOM files cannot be read and are left out; the first: %s",
-           path, set->damaged, set->first_damage);
+           path, set->damaged + set->remnants, set->first_damage);
   if (set->bundle->links_passed > 0)
     hl_log(set->context, HL_LOG_WARNING,
            "%s: %zu links or names that lead elsewhere, or to nothing, are left out", path,

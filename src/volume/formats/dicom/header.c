@@ -25,8 +25,22 @@ bool hl_dicom_has_mark(const unsigned char *bytes, size_t length) {
   return length >= PREAMBLE_BYTES + 4 && memcmp(bytes + PREAMBLE_BYTES, "DICM", 4) == 0;
 }
 
-/* Returns whether the bytes begin a DICOM file, also one without the mark "DICM". Such a file begins with an
- * element of group 2 or 8 that has a short value. */
+bool hl_dicom_is_named(const char *path) {
+  static const char *const endings[] = {".dcm", ".dicom", ".ima"};
+  bool named = false;
+  for (size_t n = 0; n < sizeof endings / sizeof *endings; n++)
+    named = named || hl_text_ends(path, endings[n]);
+  return named;
+}
+
+bool hl_dicom_is_remnant(const char *path, const unsigned char *bytes, size_t length) {
+  size_t zeros = 0;
+  while (zeros < length && bytes[zeros] == 0) zeros++;
+  return length < PREAMBLE_BYTES + 4 && (zeros == length || hl_dicom_is_named(path));
+}
+
+/* Whether the bytes begin a DICOM file, also one without the mark "DICM". Such a file begins with an element
+ * of group 2 or 8 that has a short value. */
 bool hl_dicom_may_begin(const unsigned char *bytes, size_t length) {
   if (hl_dicom_has_mark(bytes, length)) return true;
   if (length < 16 || (bytes[0] != 2 && bytes[0] != 8) || bytes[1] != 0 || bytes[3] != 0) return false;

@@ -269,7 +269,14 @@ static hl_status add_file(hl_dicom_set *set, hl_dicom_header *header, size_t ent
   return HL_OK;
 }
 
+/* Counts a file that cannot be read. */
+static void add_damaged(hl_dicom_set *set, size_t *count, const char *why) {
+  if (set->damaged + set->remnants == 0) snprintf(set->first_damage, sizeof set->first_damage, "%.299s", why);
+  ++*count;
+}
+
 static hl_status read_file(hl_dicom_set *set, size_t entry, bool strict, hl_error *error) {
+  const char *name = set->bundle->entries[entry].name;
   hl_source *source = NULL;
   hl_dicom_header header = {.frames = NULL};
   const unsigned char *bytes;
@@ -277,15 +284,21 @@ static hl_status read_file(hl_dicom_set *set, size_t entry, bool strict, hl_erro
   hl_status status = hl_bundle_entry_open(set->bundle, &set->bundle->entries[entry], false, &source, error);
   if (status == HL_OK) status = hl_source_peek(source, 0, 132, &bytes, &available, error);
   bool is_dicom = status == HL_OK && hl_dicom_may_begin(bytes, available);
-  bool has_mark = is_dicom && hl_dicom_has_mark(bytes, available);
+  bool is_known = is_dicom && (hl_dicom_has_mark(bytes, available) || hl_dicom_is_named(name));
+  bool is_remnant = status == HL_OK && !is_dicom && !strict && hl_dicom_is_remnant(name, bytes, available);
   if (is_dicom || (status == HL_OK && strict)) status = hl_dicom_header_read(&source, &header, error);
   if (status == HL_OK && header.has_pixels) status = check_length(source, &header, error);
   if (status == HL_OK && header.has_pixels) status = add_file(set, &header, entry, error);
+  if (is_remnant) {
+    char why[300];
+    snprintf(why, sizeof why, "%.200s: the file ends after %zu bytes, before its first element",
+             hl_source_path(source), available);
+    add_damaged(set, &set->remnants, why);
+  }
   hl_dicom_header_release(set->context, &header);
   hl_source_close(source);
   if (status == HL_OK || status == HL_ERROR_MEMORY || status == HL_ERROR_CANCELLED || strict) return status;
-  if (has_mark && set->damaged++ == 0)
-    snprintf(set->first_damage, sizeof set->first_damage, "%.299s", error != NULL ? error->message : "");
+  if (is_known) add_damaged(set, &set->damaged, error != NULL ? error->message : "");
   return HL_OK;
 }
 
