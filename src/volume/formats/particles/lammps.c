@@ -16,9 +16,10 @@ typedef struct lammps_dump {
   int number; /* of the line */
   char line[HL_LINE_BYTES];
   bool ended;
-  size_t atoms;  /* number of atoms of the step that is being read */
-  size_t steps;  /* begun so far */
-  size_t wanted; /* the step that is read */
+  size_t atoms;   /* of the step that is being read */
+  bool has_atoms; /* whether the step's atoms have been read */
+  size_t steps;   /* begun so far */
+  size_t wanted;  /* the step that is read */
   hl_particle_columns columns;
 } lammps_dump;
 
@@ -69,6 +70,10 @@ static hl_status read_box(lammps_dump *dump, const char *kinds, hl_error *error)
 /* Reads the names of the columns. names: the rest of the line "ITEM: ATOMS". */
 static hl_status read_atoms(lammps_dump *dump, char *names, hl_error *error) {
   bool wanted = dump->steps == dump->wanted + 1;
+  if (dump->has_atoms)
+    return HL_FAIL_LINE(error, HL_ERROR_INPUT, dump->stream, dump->number, "%s",
+                        "the step has atoms already: \"ITEM: TIMESTEP\" is expected");
+  dump->has_atoms = true;
   char *words[HL_PARTICLE_COLUMNS_MOST];
   int count = hl_particle_words(names, words);
   for (int n = 0; n < count && wanted; n++) hl_particle_columns_add(&dump->columns, words[n]);
@@ -91,6 +96,7 @@ static hl_status read_item(lammps_dump *dump, hl_error *error) {
   static const char bounds[] = "ITEM: BOX BOUNDS", atoms[] = "ITEM: ATOMS";
   if (hl_text_starts(dump->line, "ITEM: TIMESTEP")) {
     dump->steps++;
+    dump->has_atoms = false;
     return next_line(dump, error);
   }
   if (hl_text_starts(dump->line, "ITEM: NUMBER OF ATOMS")) return next_number(dump, error);

@@ -45,7 +45,7 @@ int hl_particle_words(char *line, char *words[HL_PARTICLE_COLUMNS_MOST]);
 /* Returns the role of a column with this name, such as a coordinate or the mass. */
 hl_particle_role hl_particle_role_of(const char *name);
 
-/* Adds a column by its name. Columns beyond HL_PARTICLE_COLUMNS_MOST are left out. */
+/* Adds a column by its name, before the first row. Columns beyond HL_PARTICLE_COLUMNS_MOST are left out. */
 void hl_particle_columns_add(hl_particle_columns *columns, const char *name);
 
 /* Returns whether the columns include x, y and z. */
