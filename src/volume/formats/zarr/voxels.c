@@ -252,7 +252,11 @@ static hl_status find_chunk(const reading *r, const worker *w, const part *p, ui
   uint64_t size = w->source != NULL ? hl_source_size(w->source) : 0;
   *offset = 0;
   *length = size;
-  if (w->source == NULL || !r->array->shards.are_used) return HL_OK;
+  if (w->source == NULL) return HL_OK;
+  if (size == 0)
+    return hl_zarr_fail(r->bundle, w->key, error, HL_ERROR_INPUT,
+                        "a chunk of no bytes: it is cut short, as a chunk that is left out has no file");
+  if (!r->array->shards.are_used) return HL_OK;
   return hl_zarr_index_find(r->array, w->index, p->inner, size, offset, length)
              ? HL_OK
              : hl_zarr_fail(r->bundle, w->key, error, HL_ERROR_INPUT, "a chunk lies outside of its shard");
