@@ -285,6 +285,7 @@ hl_status hl_mesh_read_vtp(mesh_text text, mesh_parts *parts, hl_error *error) {
                                            &file.xml.stream, error);
   if (status == HL_OK) status = hl_vtk_xml_read_tags(&file.xml, read_tag, &file, error);
   if (status == HL_OK) status = read_pieces(&file, &whole, error);
+  if (status == HL_OK) status = hl_vtk_xml_check_end(&file.xml, error);
   if (status == HL_OK) status = hl_polydata_to_parts(&whole, parts, error);
   hl_polydata_release(&whole);
   release(&file);

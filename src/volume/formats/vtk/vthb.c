@@ -111,7 +111,7 @@ static hl_status read_tags(amr_list *list, hl_error *error) {
   hl_status status = hl_vtk_xml_read_tags(&list->xml, read_tag, list, error);
   if (status == HL_OK && list->box_count == 0)
     status = hl_fail(error, HL_ERROR_INPUT, "%s: lists no box with a file", list->xml.stream->path);
-  return status;
+  return status == HL_OK ? hl_vtk_xml_check_end(&list->xml, error) : status;
 }
 
 /* ---- the shape ---- */

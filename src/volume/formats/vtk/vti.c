@@ -51,8 +51,6 @@ typedef struct vti_header {
   vti_piece *pieces;  /* owned; [piece_count] */
   vti_entry *entries; /* owned; [entry_count]; the arrays of all pieces */
   size_t piece_count, piece_room, entry_count, entry_room;
-  bool is_whole; /* whether all arrays are known, because the last tag of the section, or the appended data,
-                  * have been read */
   section section;
   char active[HL_VTK_NAME_BYTES];  /* name of the section's active scalars */
   int active_points, active_cells; /* indices of the active scalars at points and at cells; -1 if there are
@@ -170,7 +168,6 @@ static hl_status read_tag(void *data, const hl_xml_tag *tag, hl_error *error) {
     if (strcmp(tag->name, "PointData") == 0 || strcmp(tag->name, "CellData") == 0 ||
         strcmp(tag->name, "Coordinates") == 0)
       header->section = SECTION_NONE;
-    if (strcmp(tag->name, "VTKFile") == 0) header->is_whole = true;
     return HL_OK;
   }
   if (header->xml.header_bytes == 0 && strcmp(tag->name, "VTKFile") != 0)
@@ -224,10 +221,7 @@ static hl_status choose_array(const vti_header *header, hl_error *error) {
                                         error);
     const hl_array_entry *chosen = &header->request->arrays[header->request->chosen];
     bool is_last_resort = header->request->array == NULL && (chosen->of_cells || chosen->components > 1);
-    if (status == HL_OK && is_last_resort && !header->is_whole && header->xml.appended == 0)
-      return hl_fail(error, HL_ERROR_INPUT, "%s: the file is cut short: it ends before </VTKFile>",
-                     header->xml.stream->path);
-    return status;
+    return status == HL_OK && is_last_resort ? hl_vtk_xml_check_end(&header->xml, error) : status;
   }
   return hl_fail(error, HL_ERROR_INPUT, "%s: the file has no %s", header->xml.stream->path,
                  header->grid.has_extent ? "DataArray in PointData or CellData" : "WholeExtent or Extent");

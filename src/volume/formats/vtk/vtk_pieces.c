@@ -120,7 +120,8 @@ static hl_status read_tag(void *data, const hl_xml_tag *tag, hl_error *error) {
 
 hl_status hl_vtk_pieces_read(hl_vtk_pieces *pieces, hl_error *error) {
   pieces->section = HL_VTK_NO_SECTION;
-  return hl_vtk_xml_read_tags(&pieces->xml, read_tag, pieces, error);
+  hl_status status = hl_vtk_xml_read_tags(&pieces->xml, read_tag, pieces, error);
+  return status == HL_OK && pieces->piece_count > 0 ? hl_vtk_xml_check_end(&pieces->xml, error) : status;
 }
 
 void hl_vtk_pieces_release(hl_vtk_pieces *pieces) {

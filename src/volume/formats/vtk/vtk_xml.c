@@ -34,8 +34,15 @@ hl_status hl_vtk_xml_read_tags(hl_vtk_xml *xml, hl_vtk_xml_tag_fn *read_tag, voi
     hl_status status = hl_xml_next_tag(xml->stream, &tag, &ended, error);
     if (status == HL_OK && !ended) status = read_tag(data, &tag, error);
     if (status != HL_OK) return status;
+    if (!ended && tag.is_end && strcmp(tag.name, "VTKFile") == 0) xml->is_closed = true;
   }
   return HL_OK;
+}
+
+hl_status hl_vtk_xml_check_end(const hl_vtk_xml *xml, hl_error *error) {
+  if (xml->is_closed || xml->appended != 0) return HL_OK;
+  return hl_fail(error, HL_ERROR_INPUT, "%s: the file is cut short: it ends before </VTKFile>",
+                 xml->stream->path);
 }
 
 hl_status hl_vtk_xml_count(const hl_vtk_xml *xml, const hl_xml_tag *tag, const char *name, size_t *count,

@@ -17,6 +17,7 @@ typedef struct hl_vtk_xml {
                            * tag has been read */
   uint64_t appended;      /* position in the file of the appended data's first byte; 0 if there are none */
   bool appended_is_base64;
+  bool is_closed; /* whether the end of the element VTKFile has been read */
 } hl_vtk_xml;
 
 typedef enum hl_vtk_encoding { HL_VTK_ASCII, HL_VTK_BINARY, HL_VTK_APPENDED } hl_vtk_encoding;
@@ -39,6 +40,8 @@ bool hl_vtk_xml_is_of(const unsigned char *bytes, size_t length, const char *con
 /* Reads the tags up to the appended data, or to the file's end, and calls the function for each of them. */
 typedef hl_status hl_vtk_xml_tag_fn(void *data, const hl_xml_tag *tag, hl_error *error);
 hl_status hl_vtk_xml_read_tags(hl_vtk_xml *xml, hl_vtk_xml_tag_fn *read_tag, void *data, hl_error *error);
+/* Refuses a file that ends before its appended data and before its element VTKFile is closed. */
+hl_status hl_vtk_xml_check_end(const hl_vtk_xml *xml, hl_error *error);
 
 /* Reads an attribute that is a count. If the attribute is absent, *count is not changed. */
 hl_status hl_vtk_xml_count(const hl_vtk_xml *xml, const hl_xml_tag *tag, const char *name, size_t *count,
