@@ -52,7 +52,9 @@ static int run_figures(const cli_value *values, char **operands) {
   const char *only = operands[0] != NULL ? operands[0] : "";
   if (strlen(only) >= NAME_BYTES - sizeof "/fig**.json" || strchr(only, '/') != NULL)
     return fail(EXIT_CODE_USAGE, "'%.80s' is no part of a figure's name", only);
-  snprintf(pattern + length, NAME_BYTES, "/fig*%s*.json", only);
+  /* All names begin with "fig", and so may the text. */
+  const bool begins = strncmp(only, "fig", 3) == 0;
+  snprintf(pattern + length, NAME_BYTES, begins ? "/%s*.json" : "/fig*%s*.json", only);
   glob_t found = {0};
   int exit_code = glob(pattern, 0, NULL, &found) != 0
                       ? fail(EXIT_CODE_INPUT,

@@ -12,4 +12,7 @@ halflight figures a/b 2>error || echo "exit $?"
 cat error
 # --list names figures.
 halflight figures 12 --list
+# The text may be a name as --list writes it, or its beginning.
+halflight figures fig01 --list
+halflight figures fig23-hole --list
 halflight figures --list | grep -c '^fig'
