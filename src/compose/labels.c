@@ -7,6 +7,7 @@
 #include "core/context.h"
 #include "core/door.h"
 #include "core/memory.h"
+#include "volume/load_beside.h"
 
 /* The number of label layers in the volume's file. Components that are neither time steps nor channels are
  * such layers. */
@@ -21,15 +22,18 @@ static size_t layers_of(const hl_volume *volume) {
 }
 
 /* Loads one layer and its labels. reading: the options for reading the file; a layer is read as a component
- * of the file. */
+ * of the file. over: the volume that the labels lie over; null: none. */
 static hl_status load_layer(hl_context *context, const char *file, const char *table,
-                            const hl_volume_load_options *reading, hl_label_layers *layers, hl_error *error) {
+                            const hl_volume_load_options *reading, const hl_scene_volume *over,
+                            hl_label_layers *layers, hl_error *error) {
   hl_volume_load_options options = *reading;
   if (options.time < 0 && options.channel < 0) options.component = (int)layers->count;
   hl_scene_volume *made = &layers->volumes[layers->count];
   hl_scene_volume_defaults(made);
   const int none = made->component;
-  hl_status status = hl_volume_load_with(context, file, &options, &made->volume, error);
+  hl_status status = hl_volume_load_beside(context, file, over != NULL ? over->volume : NULL,
+                                           over != NULL ? over->spacing : options.spacing, &options,
+                                           &made->volume, error);
   if (status != HL_OK) return status;
   layers->count++;
   made->file = file;
@@ -45,10 +49,10 @@ static hl_status load_layer(hl_context *context, const char *file, const char *t
 
 /* Loads the layers that have labels, and shows the labels that the list names. */
 static hl_status load_layers(const hl_composer *composer, const char *path, const char *table,
-                             const hl_volume_load_options *reading, hl_shown_list *show,
-                             hl_label_layers *layers) {
+                             const hl_volume_load_options *reading, const hl_scene_volume *over,
+                             hl_shown_list *show, hl_label_layers *layers) {
   for (size_t count = 1; layers->count < count;) {
-    hl_status status = load_layer(composer->context, path, table, reading, layers, composer->error);
+    hl_status status = load_layer(composer->context, path, table, reading, over, layers, composer->error);
     if (status != HL_OK) return status;
     count = layers_of(layers->volumes[0].volume);
     if (count > HL_MOST_LABEL_LAYERS)
@@ -166,8 +170,8 @@ static hl_status add_mask(const hl_composer *composer, hl_shown_list *show, hl_l
   if (description->volume_count == 0)
     return hl_fail(composer->error, HL_ERROR_ARGUMENT, "--mask is for volumes: the scene has none");
   const hl_volume_load_options reading = reading_of(description, false);
-  hl_status status = load_layers(composer, path, composer->asked[HL_ASK_LABEL_TABLE].text, &reading, show,
-                                 layers);
+  hl_status status = load_layers(composer, path, composer->asked[HL_ASK_LABEL_TABLE].text, &reading,
+                                 &description->volumes[0], show, layers);
   if (status == HL_OK) status = hl_check_shown(show, layers, composer->error);
   if (status != HL_OK) return status;
   if (layers->count > 1)
@@ -205,7 +209,9 @@ static hl_status add_map(const hl_composer *composer, hl_shown_list *show, hl_la
         path, asked[HL_ASK_SHOW].given ? "show" : "label-table");
   /* Without a mask, the item "rest" stands for all labels that the list does not name. */
   for (size_t s = 0; s < show->count; s++) show->labels[s].all |= show->labels[s].rest;
-  hl_status status = load_layers(composer, path, asked[HL_ASK_LABEL_TABLE].text, &reading, show, layers);
+  const hl_scene_volume *over = !itself && description->volume_count > 0 ? &description->volumes[0] : NULL;
+  hl_status status = load_layers(composer, path, asked[HL_ASK_LABEL_TABLE].text, &reading, over, show,
+                                 layers);
   if (status == HL_OK) status = hl_check_shown(show, layers, composer->error);
   return status == HL_OK ? add_layers(composer, layers, itself ? 0 : description->volume_count, scene)
                          : status;
@@ -287,7 +293,7 @@ hl_status hl_scene_for_label_map(hl_context *context, const char *path, const hl
                                           : hl_fail_memory(error, sizeof *show + sizeof *layers, "labels");
   if (status == HL_OK)
     status = load_layers(&composer, path, asked[HL_ASK_LABEL_TABLE].text, reading != NULL ? reading : &plain,
-                         show, layers);
+                         NULL, show, layers);
   if (status == HL_OK) status = make_of_layers(&composer, layers, scene);
   if (layers != NULL) release_layers(context, layers);
   hl_release(context, layers);

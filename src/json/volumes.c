@@ -10,6 +10,7 @@
 #include "json/settings.h"
 #include "json/shapes.h"
 #include "scene/scene.h"
+#include "volume/load_beside.h"
 #include "volume/volume.h"
 
 #define DATA_PREFIX "data:" /* begins the names of files that lie in the context's data folder */
@@ -258,15 +259,35 @@ static hl_status smooth_loaded(hl_json_reader *reader, double smooth, hl_volume 
   return status;
 }
 
-/* Loads a volume's file, or takes the volume from the shelf if it was loaded before. */
+/* Finds a mask that was already made from this file. over: the volume that it masks. A map with as many
+ * voxels as a volume with a stated spacing has this spacing, too (hl_volume_load_beside()). */
+static const hl_loaded_volume *find_mask(const hl_json_reader *reader, const hl_volume_shelf *shelf,
+                                         const char *path, const hl_volume_load_options *options,
+                                         const hl_scene_volume *over) {
+  const hl_loaded_volume *plain = find_loaded(shelf, path, options, 0);
+  if (!(over->spacing[0] > 0) || options->spacing[0] > 0) return plain;
+  hl_volume_load_options spaced = *options;
+  memcpy(spaced.spacing, over->spacing, sizeof spaced.spacing);
+  const hl_loaded_volume *found = find_loaded(shelf, path, &spaced, 0);
+  if (found != NULL || plain == NULL || reader->like != NULL) return found != NULL ? found : plain;
+  return memcmp(plain->volume->dimension, over->volume->dimension, sizeof over->volume->dimension) != 0
+             ? plain
+             : NULL;
+}
+
+/* Loads a volume's file, or takes the volume from the shelf if it was loaded before. over: the volume that
+ * the file's labels mask; null: it is no mask. */
 static hl_status load(hl_json_reader *reader, const char *file, const hl_volume_load_options *options,
-                      double smooth, hl_volume_shelf *shelf, hl_scene_volume *volume) {
+                      double smooth, hl_volume_shelf *shelf, const hl_scene_volume *over,
+                      hl_scene_volume *volume) {
+  static const double none[3] = {0};
   if (is_data(file) && reader->context->options.data_folder == NULL)
     return hl_json_fail(reader, HL_ERROR_INPUT, "file", "\"%.200s\": no data folder is known: name one",
                         file);
   char *path = hl_json_path(reader, file);
   if (path == NULL) return hl_fail_memory(reader->error, strlen(file) + 1, "a path");
-  const hl_loaded_volume *loaded = find_loaded(shelf, path, options, smooth);
+  const hl_loaded_volume *loaded = over != NULL ? find_mask(reader, shelf, path, options, over)
+                                                : find_loaded(shelf, path, options, smooth);
   if (loaded != NULL) {
     hl_release(reader->context, path);
   } else if (reader->like != NULL) {
@@ -278,7 +299,9 @@ static hl_status load(hl_json_reader *reader, const char *file, const hl_volume_
     hl_volume *made = NULL;
     hl_volume_load_options with_space = *options;
     if (stays_as_it_is(volume)) with_space.space = shelf->space;
-    hl_status status = hl_volume_load_with(reader->context, path, &with_space, &made, reader->error);
+    hl_status status = hl_volume_load_beside(reader->context, path, over != NULL ? over->volume : NULL,
+                                             over != NULL ? over->spacing : none, &with_space, &made,
+                                             reader->error);
     if (status != HL_OK) {
       hl_release(reader->context, path);
       hl_json_enter(reader, "file");
@@ -290,7 +313,7 @@ static hl_status load(hl_json_reader *reader, const char *file, const hl_volume_
       hl_release(reader->context, path);
       return status;
     }
-    loaded = put_on_shelf(shelf, path, options, made);
+    loaded = put_on_shelf(shelf, path, &with_space, made);
   }
   volume->volume = loaded->volume;
   if (shelf->space == HL_SPACE_UNKNOWN && stays_as_it_is(volume)) shelf->space = loaded->volume->space;
@@ -333,8 +356,9 @@ static hl_status read_shapes(hl_json_reader *reader, const json_t *value, hl_vol
   return HL_OK;
 }
 
+/* over: as for load(). */
 static hl_status read_source(hl_json_reader *reader, const json_t *value, hl_volume_shelf *shelf,
-                             hl_scene_volume *volume) {
+                             const hl_scene_volume *over, hl_scene_volume *volume) {
   const char *file = NULL;
   bool shapes = json_object_get(value, "shapes") != NULL;
   hl_status status = hl_json_text(reader, value, "file", &file);
@@ -354,7 +378,7 @@ static hl_status read_source(hl_json_reader *reader, const json_t *value, hl_vol
   double smooth = 0;
   status = read_load_options(reader, value, &options);
   if (status == HL_OK) status = hl_json_number(reader, value, "smooth", &smooth);
-  return status == HL_OK ? load(reader, file, &options, smooth, shelf, volume) : status;
+  return status == HL_OK ? load(reader, file, &options, smooth, shelf, over, volume) : status;
 }
 
 /* Reads the key "mask": a label map with its labels, "rest" and the keys of its file. Its labels are owned by
@@ -368,7 +392,7 @@ static hl_status read_mask(hl_json_reader *reader, const json_t *value, hl_volum
   hl_scene_volume_defaults(&map);
   size_t mark = hl_json_enter(reader, "mask");
   hl_status status = hl_json_object(reader, value, keys);
-  if (status == HL_OK) status = read_source(reader, value, shelf, &map);
+  if (status == HL_OK) status = read_source(reader, value, shelf, volume, &map);
   if (status == HL_OK && json_object_get(value, "labels") == NULL)
     status = hl_json_fail(reader, HL_ERROR_INPUT, "labels", "is missing: give true for all, or a list");
   if (status == HL_OK) status = hl_json_read_label_list(reader, value, &map);
@@ -466,7 +490,7 @@ hl_status hl_json_read_volume(hl_json_reader *reader, const json_t *value, hl_vo
   if (status == HL_OK)
     status = hl_json_read_cuts(reader, json_object_get(value, "cuts"), &volume->cuts, &volume->cut_count);
   if (status == HL_OK) status = read_scattering(reader, json_object_get(value, "scattering"), volume);
-  if (status == HL_OK) status = read_source(reader, value, shelf, volume);
+  if (status == HL_OK) status = read_source(reader, value, shelf, NULL, volume);
   if (status == HL_OK) status = hl_json_read_labels(reader, value, volume);
   if (status == HL_OK) status = read_mask(reader, json_object_get(value, "mask"), shelf, volume);
   if (status == HL_OK && volume->label_count == 0) status = choose_shading(reader, value, volume);
