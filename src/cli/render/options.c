@@ -78,12 +78,13 @@ const cli_option render_options[RENDER_OPTION_COUNT] = {
          .help =
              "each light, its shadow, ambient, depth, normals:\nchannels of an .exr, files beside an .npy"},
 
-    [RENDER_WIDTH] = {.name = "width",
-                      .kind = OPTION_TEXT,
-                      .argument = "LENGTH",
-                      .group = "Figure",
-                      .help = "width on paper: 89mm, 8.9cm, 3.5in, 252pt; without\n--size the picture has as "
-                              "many pixels as --dpi wants"},
+    [RENDER_WIDTH] =
+        {.name = "width",
+         .kind = OPTION_TEXT,
+         .argument = "LENGTH",
+         .group = "Figure",
+         .help = "width on paper: 89mm, 8.9cm, 3.5in, 252pt; of --views\nof the whole sheet; without "
+                 "--size the picture has\nas many pixels as --dpi wants"},
     [RENDER_DPI] = {.name = "dpi",
                     .kind = OPTION_NUMBERS,
                     .argument = "N",

@@ -9,13 +9,18 @@
 #include <string.h>
 
 #include "render.h"
+#include "text/plain.h"
 
-enum { MOST_VIEWS = 7, NAME_BYTES = 16, PATH_BYTES = 4096 };
+enum { MOST_VIEWS = 7, NAME_BYTES = 16, WIDTH_BYTES = 40, PATH_BYTES = 4096 };
+
+/* The gap between two pictures of a sheet, as a part of a picture's width. */
+static const double gap_part = 1.0 / 50;
 
 typedef struct views_job {
   cli_host host;
   cli_value values[RENDER_OPTION_COUNT]; /* --view is set for each side */
   char size_text[RENDER_SIZE_TEXT];
+  char width_text[WIDTH_BYTES]; /* the width of one side on the sheet */
   char **inputs;
   const char *output;
   bool files; /* there is a file for each side */
@@ -54,6 +59,20 @@ static int read_views(views_job *job) {
   return EXIT_CODE_OK;
 }
 
+/* Makes --width the width of each side: the option states the width of the whole sheet. */
+static int divide_width(views_job *job) {
+  cli_value *width = &job->values[RENDER_WIDTH];
+  const double sides = (double)job->count;
+  if (!width->given || job->files) return EXIT_CODE_OK;
+  int exit_code = render_overlay_read(job->values, &job->overlay);
+  if (exit_code == EXIT_CODE_OK)
+    hl_plain_print(job->width_text, WIDTH_BYTES, "%.17gmm",
+                   job->overlay.width / (sides + (sides - 1) * gap_part));
+  width->text = job->width_text;
+  overlay_release(&job->overlay);
+  return exit_code;
+}
+
 static int check_options(views_job *job) {
   static const int alone[] = {RENDER_VIEW,        RENDER_LAYERS,     RENDER_REFERENCE,
                               RENDER_PRINT_SCENE, RENDER_PRINT_PLAN, RENDER_JSON,
@@ -73,8 +92,9 @@ static int check_options(views_job *job) {
                 "name, for a file "
                 "of each side",
                 job->output);
-  int exit_code = render_check_options(job->values);
-  if (exit_code == EXIT_CODE_OK) exit_code = read_views(job);
+  int exit_code = read_views(job);
+  if (exit_code == EXIT_CODE_OK) exit_code = divide_width(job);
+  if (exit_code == EXIT_CODE_OK) exit_code = render_check_options(job->values);
   if (exit_code == EXIT_CODE_OK) exit_code = render_overlay_read(job->values, &job->overlay);
   if (exit_code == EXIT_CODE_OK && job->files) exit_code = output_make_folder_of(job->output);
   int count = 0;
@@ -146,7 +166,7 @@ static hl_status write_file(views_job *job, size_t v, hl_error *error) {
   return status;
 }
 
-/* Copies the pictures side by side; the gap between them is a fiftieth of their width, in whole pixels. */
+/* Copies the pictures side by side, with gaps of whole pixels. */
 static hl_status write_sheet(views_job *job, hl_error *error) {
   hl_figure figure;
   hl_figure_panel panels[MOST_VIEWS];
@@ -156,7 +176,7 @@ static hl_status write_sheet(views_job *job, hl_error *error) {
   hl_figure_of_picture(job->images[0], job->scenes[0], job->overlay.width, &figure, &panels[0]);
   if (job->overlay.pixels_per_inch > 0) figure.pixels_per_inch = job->overlay.pixels_per_inch;
   const double pixel = MILLIMETRES_PER_INCH / figure.pixels_per_inch, wide = hl_image_width(job->images[0]);
-  const double gap = ceil(wide / 50);
+  const double gap = ceil(wide * gap_part);
   for (size_t v = 0; v < job->count; v++) {
     panels[v] = (hl_figure_panel){.image = job->images[v],
                                   .scene = job->scenes[v],
