@@ -132,6 +132,7 @@ static const struct {
      "unit-distance opacity-unit-distance opacity-scale density density-scale extinction"},
     {"\"color\": [1, 0.5, 0.2] in a light", "light-color light-colour"},
     {"\"intensity\": 1 in a light", "light-intensity light-strength energy"},
+    {"\"seed\": 7 in the hypertexture of a shape", "seed random-seed rng-seed"},
     {"\"target\" in \"camera\"", "target look-at lookat focal-point center centre"},
     {"\"position\" in \"camera\"", "eye eye-position position"},
 };
