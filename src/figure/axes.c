@@ -99,6 +99,26 @@ static void name_direction(const hl_overlay_place *place, const axis_names *name
   (void)place;
 }
 
+/* Moves a text along the picture's edge, by steps to either side of its middle, to the first place that
+ * nothing has taken. Where there is none, the text stays. along_x: the edge is the upper or the lower one. */
+static void slide_clear(const hl_ink *ink, const hl_overlay_place *place, bool along_x,
+                        hl_line_of_text *line) {
+  const double length = along_x ? place->picture.width : place->picture.height;
+  double *at = along_x ? &line->x : &line->y;
+  const double middle = *at;
+  const double apart = 0.8 * ink->size;
+  if (hl_overlay_is_free(place, hl_ink_box(ink, line))) return;
+  for (double step = 0.5 * ink->size; step < 0.4 * length; step += 0.5 * ink->size)
+    for (int side = -1; side <= 1; side += 2) {
+      *at = middle + side * step;
+      hl_rectangle box = hl_ink_box(ink, line);
+      if (along_x) box.left -= apart, box.width += 2 * apart;
+      else box.top -= apart, box.height += 2 * apart;
+      if (hl_overlay_is_free(place, box)) return;
+    }
+  *at = middle;
+}
+
 static hl_status draw_letters(const hl_ink *ink, const hl_overlay_place *place, hl_error *error) {
   hl_space space = hl_scene_space(place->scene);
   if (space == HL_SPACE_UNKNOWN)
@@ -115,14 +135,16 @@ static hl_status draw_letters(const hl_ink *ink, const hl_overlay_place *place, 
   for (int edge = 0; edge < 4; edge++) {
     char name[8];
     name_direction(place, names, edges[edge].way, name);
-    hl_ink_text(ink,
-                &(hl_line_of_text){
-                    .text = name,
-                    .x = picture.left + place->margin + edges[edge].x * (picture.width - 2 * place->margin),
-                    .y = picture.top + place->margin + edges[edge].y * (picture.height - 2 * place->margin),
-                    .align_x = edges[edge].x,
-                    .align_y = edges[edge].y,
-                    .scale = 1.2});
+    hl_line_of_text line = {
+        .text = name,
+        .x = picture.left + place->margin + edges[edge].x * (picture.width - 2 * place->margin),
+        .y = picture.top + place->margin + edges[edge].y * (picture.height - 2 * place->margin),
+        .align_x = edges[edge].x,
+        .align_y = edges[edge].y,
+        .scale = 1.2,
+        .gap = 0.12}; /* "RA" would touch */
+    slide_clear(ink, place, edges[edge].x == 0.5, &line);
+    hl_ink_text(ink, &line);
   }
   return HL_OK;
 }

@@ -46,7 +46,6 @@ void hl_figure_of_picture(const hl_image *image, const hl_scene *scene, double w
   panel->left = panel->top = 0;
   panel->width = figure->width;
   panel->height = figure->height;
-  if (scene == NULL) return;
   hl_image_write_options options;
   hl_scene_write_options(scene, &options);
   figure->background_transparent = options.background_transparent;

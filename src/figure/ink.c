@@ -52,6 +52,12 @@ static PangoLayout *lay_out(const hl_ink *ink, const hl_line_of_text *line) {
     pango_layout_set_ellipsize(layout, PANGO_ELLIPSIZE_END);
   }
   if (line->align_x == 0.5) pango_layout_set_alignment(layout, PANGO_ALIGN_CENTER);
+  if (line->gap > 0) {
+    PangoAttrList *wider = pango_attr_list_new();
+    pango_attr_list_insert(wider, pango_attr_letter_spacing_new((int)(line->gap * ink->size * PANGO_SCALE)));
+    pango_layout_set_attributes(layout, wider);
+    pango_attr_list_unref(wider);
+  }
   pango_layout_set_text(layout, text, -1);
   g_free(text);
   pango_font_description_free(font);
@@ -69,6 +75,14 @@ void hl_ink_measure(const hl_ink *ink, const hl_line_of_text *line, double *widt
   PangoLayout *layout = lay_out(ink, line);
   size_of(layout, width, height);
   g_object_unref(layout);
+}
+
+hl_rectangle hl_ink_box(const hl_ink *ink, const hl_line_of_text *line) {
+  hl_rectangle box;
+  hl_ink_measure(ink, line, &box.width, &box.height);
+  box.left = line->x - line->align_x * box.width;
+  box.top = line->y - line->align_y * box.height;
+  return box;
 }
 
 static void set_grey(cairo_t *cairo, double grey, double alpha) {

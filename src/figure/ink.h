@@ -23,6 +23,7 @@ typedef struct hl_line_of_text {
   double align_x, align_y; /* the part of the text that lies at (x, y): 0 for its left or top edge, 1 for its
                             * right or bottom edge, and a number between for a place between the edges */
   double scale;            /* a factor on the size of letters; 0 counts as 1 */
+  double gap;              /* added between letters, in units of their size; default 0 */
   bool bold;
   bool paragraphs; /* whether a line break begins a new line; if not, a line break is drawn as a character */
   /* the greatest width of a line, points; a longer line is cut and ends in "..."; 0 if lines may have any
@@ -31,6 +32,8 @@ typedef struct hl_line_of_text {
 } hl_line_of_text;
 
 void hl_ink_text(const hl_ink *ink, const hl_line_of_text *line);
+/* The rectangle on the page that a text takes. */
+hl_rectangle hl_ink_box(const hl_ink *ink, const hl_line_of_text *line);
 /* The width and height that a text takes, points. */
 void hl_ink_measure(const hl_ink *ink, const hl_line_of_text *line, double *width, double *height);
 

@@ -130,17 +130,51 @@ static bool rises(const hl_mark *mark, const point_on_page first[3]) {
   return mark->kind == HL_MARK_RULER && (first[1].x - first[0].x) * (first[1].y - first[0].y) < 0;
 }
 
-static void draw_caption(const hl_ink *ink, const hl_overlay_place *place, const hl_mark *mark,
-                         point_on_page at, bool below) {
+/* One place of a caption. far: its distance from the usual place, in lines. On the side that rises() names,
+ * a ruler's caption begins at the ruler; on the other side it ends there. */
+static hl_line_of_text try_caption(const hl_ink *ink, const char *caption, point_on_page at, bool below,
+                                   bool left, int far) {
+  const double way = (0.4 + 1.3 * far) * ink->size;
+  return (hl_line_of_text){.text = caption,
+                           .x = at.x + (left ? -0.7 : 0.7) * ink->size,
+                           .y = at.y + (below ? way : -way),
+                           .align_x = left ? 1 : 0,
+                           .align_y = below ? 0 : 1};
+}
+
+/* Places a caption beside a mark: below or above its anchor, to the right or to the left, of a ruler also
+ * beside other points of its line. The first place that nothing has taken is chosen, or else the usual one.
+ */
+static hl_line_of_text lay_caption(const hl_ink *ink, const hl_overlay_place *place, const char *caption,
+                                   const hl_mark *mark, const point_on_page first[3], point_on_page anchor) {
+  static const double along[] = {0, -0.25, 0.25, -0.45, 0.45}; /* parts of the ruler's length */
+  enum { MOST_FAR = 4 };
+  const bool ruler = mark->kind == HL_MARK_RULER, below = rises(mark, first);
+  const int points = ruler ? (int)(sizeof along / sizeof *along) : 1, turns = ruler ? 2 : 4;
+  for (int n = 0; n < MOST_FAR * points * turns; n++) {
+    const int turn = n % turns, point = n / turns % points;
+    const bool other = turn % 2 == 1;
+    point_on_page at = anchor;
+    if (ruler)
+      at.x += along[point] * (first[1].x - first[0].x), at.y += along[point] * (first[1].y - first[0].y);
+    const hl_line_of_text line = try_caption(ink, caption, at, below != other, ruler ? other : turn >= 2,
+                                             n / turns / points);
+    if (hl_overlay_is_free(place, hl_ink_box(ink, &line))) return line;
+  }
+  return try_caption(ink, caption, anchor, below, false, 0);
+}
+
+static void draw_caption(const hl_ink *ink, hl_overlay_place *place, const hl_mark *mark,
+                         const point_on_page first[3], point_on_page at) {
   char measure[MEASURE_BYTES];
   write_measure(place, mark, measure);
   const char *text = mark->text != NULL ? mark->text : "", *between = *text && *measure ? ": " : "";
   char *caption = g_strconcat(text, between, measure, NULL);
-  if (*caption)
-    hl_ink_text(ink, &(hl_line_of_text){.text = caption,
-                                        .x = at.x + 0.7 * ink->size,
-                                        .y = at.y + (below ? 0.4 : -0.4) * ink->size,
-                                        .align_y = below ? 0 : 1});
+  if (*caption) {
+    const hl_line_of_text line = lay_caption(ink, place, caption, mark, first, at);
+    hl_ink_text(ink, &line);
+    hl_overlay_take(place, hl_ink_box(ink, &line));
+  }
   g_free(caption);
 }
 
@@ -168,6 +202,7 @@ static bool draw_path(const hl_ink *ink, const hl_map *map, const hl_mark *mark,
 hl_status hl_overlay_marks(const hl_ink *ink, const hl_overlay_place *place, hl_error *error) {
   const hl_scene_description *scene = place->scene;
   const hl_rectangle picture = place->picture;
+  hl_overlay_place own = *place; /* the captions take places, too */
   if (scene->mark_count == 0)
     return hl_fail(error, HL_ERROR_ARGUMENT,
                    "marks: the scene has none: measure in `halflight view`, and save the scene there");
@@ -177,8 +212,7 @@ hl_status hl_overlay_marks(const hl_ink *ink, const hl_overlay_place *place, hl_
   for (size_t m = 0; m < scene->mark_count; m++) {
     point_on_page first[3] = {{0, 0}}, last = {0, 0};
     if (draw_path(ink, &place->map, &scene->marks[m], first, &last))
-      draw_caption(ink, place, &scene->marks[m], anchor_of(&scene->marks[m], first, last),
-                   rises(&scene->marks[m], first));
+      draw_caption(ink, &own, &scene->marks[m], first, anchor_of(&scene->marks[m], first, last));
   }
   cairo_restore(ink->cairo);
   return HL_OK;

@@ -44,13 +44,17 @@ static void to_cairo(unsigned char *row, int width) {
   }
 }
 
-static hl_status make_surface(hl_context *context, const hl_figure_panel *panel, cairo_surface_t **surface,
-                              hl_error *error) {
+/* A picture without a scene lies over the page's background where it lets light through. */
+static hl_status make_surface(hl_context *context, const hl_figure *figure, const hl_figure_panel *panel,
+                              cairo_surface_t **surface, hl_error *error) {
   const int width = hl_image_width(panel->image), height = hl_image_height(panel->image);
   const size_t stride = 4 * (size_t)width, size = stride * (size_t)height;
   hl_image_write_options options;
-  hl_image_write_options_defaults(&options);
-  if (panel->scene != NULL) hl_scene_write_options(panel->scene, &options);
+  hl_scene_write_options(panel->scene, &options);
+  if (panel->scene == NULL) {
+    options.background_transparent = figure->background_transparent;
+    memcpy(options.background, figure->background, sizeof options.background);
+  }
   page_bytes *owned = hl_allocate(context, 1, sizeof *owned);
   unsigned char *bytes = hl_allocate(context, size, 1);
   hl_status status = owned != NULL && bytes != NULL ? HL_OK
@@ -89,10 +93,10 @@ static void snap(cairo_t *cairo, hl_rectangle *place) {
   place->height = fmax(1, round(bottom) - place->top);
 }
 
-static hl_status draw_picture(hl_context *context, cairo_t *cairo, const hl_figure_panel *panel, bool pixels,
-                              hl_error *error) {
+static hl_status draw_picture(hl_context *context, cairo_t *cairo, const hl_figure *figure,
+                              const hl_figure_panel *panel, bool pixels, hl_error *error) {
   cairo_surface_t *surface = NULL;
-  hl_status status = make_surface(context, panel, &surface, error);
+  hl_status status = make_surface(context, figure, panel, &surface, error);
   if (status != HL_OK) return status;
   hl_rectangle place = rectangle_of(panel);
   const int width = hl_image_width(panel->image), height = hl_image_height(panel->image);
@@ -120,14 +124,16 @@ static double luma(const double linear[3]) { /* the luma of a colour by BT.709 *
   return 0.2126 * linear[0] + 0.7152 * linear[1] + 0.0722 * linear[2];
 }
 
-/* The mean colour of a picture, linear, before black. */
-static void mean_of_picture(const hl_image *image, double mean[3]) {
+/* The mean colour of a picture, linear, before a ground. */
+static void mean_of_picture(const hl_image *image, const double ground[3], double mean[3]) {
   const size_t count = (size_t)hl_image_width(image) * (size_t)hl_image_height(image);
   const float *pixels = hl_image_pixels_const(image);
   for (int c = 0; c < 3; c++) mean[c] = 0;
   for (size_t n = 0; n < count; n++)
     for (int c = 0; c < 3; c++)
-      mean[c] += fmin(fmax((double)pixels[4 * n + (size_t)c], 0), 1) / (double)count;
+      mean[c] +=
+          fmin(fmax((double)pixels[4 * n + (size_t)c] + (1 - (double)pixels[4 * n + 3]) * ground[c], 0), 1) /
+          (double)count;
 }
 
 /* Chooses white ink on a dark ground, and black ink on a bright one. The limit is the middle of sRGB's scale,
@@ -138,7 +144,8 @@ static hl_ink ink_for(cairo_t *cairo, const hl_figure *figure, const hl_figure_p
   bool paper = figure->background_transparent != 0;
   const bool over_picture = panel->image != NULL || paper;
   if (panel->image != NULL && panel->scene == NULL) {
-    mean_of_picture(panel->image, mean);
+    static const double white[3] = {1, 1, 1};
+    mean_of_picture(panel->image, paper ? white : figure->background, mean);
     ground = mean;
     paper = false;
   }
@@ -163,6 +170,21 @@ static void draw_frame(const hl_ink *ink, hl_rectangle place) {
   cairo_stroke(ink->cairo);
 }
 
+/* Draws the overlay of a panel, beside the panels that will be drawn over it. */
+static hl_status draw_overlay(const hl_figure *figure, size_t index, const hl_ink *ink, hl_error *error) {
+  const hl_figure_panel *panel = &figure->panels[index];
+  const hl_rectangle picture = rectangle_of(panel);
+  hl_rectangle insets[HL_MOST_TAKEN];
+  size_t count = 0;
+  for (size_t p = index + 1; p < figure->panel_count && count < HL_MOST_TAKEN; p++) {
+    const hl_rectangle other = rectangle_of(&figure->panels[p]);
+    if (other.left < picture.left + picture.width && picture.left < other.left + other.width &&
+        other.top < picture.top + picture.height && picture.top < other.top + other.height)
+      insets[count++] = other;
+  }
+  return hl_overlay_draw(ink, &panel->overlay, panel->scene, panel->image, picture, insets, count, error);
+}
+
 static hl_status draw_panels(hl_context *context, const hl_figure *figure, cairo_t *cairo, bool pixels,
                              hl_error *error) {
   if (!figure->background_transparent) {
@@ -172,11 +194,10 @@ static hl_status draw_panels(hl_context *context, const hl_figure *figure, cairo
   hl_status status = HL_OK;
   for (size_t p = 0; status == HL_OK && p < figure->panel_count; p++) {
     const hl_figure_panel *panel = &figure->panels[p];
-    if (panel->image != NULL) status = draw_picture(context, cairo, panel, pixels, error);
+    if (panel->image != NULL) status = draw_picture(context, cairo, figure, panel, pixels, error);
     hl_ink ink = ink_for(cairo, figure, panel);
     if (panel->frame) draw_frame(&ink, rectangle_of(panel));
-    if (status == HL_OK)
-      status = hl_overlay_draw(&ink, &panel->overlay, panel->scene, panel->image, rectangle_of(panel), error);
+    if (status == HL_OK) status = draw_overlay(figure, p, &ink, error);
   }
   if (status == HL_OK && cairo_status(cairo) != CAIRO_STATUS_SUCCESS)
     status = hl_fail(error, HL_ERROR_INTERNAL, "figure: cairo says: %s",

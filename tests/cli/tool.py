@@ -237,6 +237,19 @@ def png_border(path):
           max(max(line) for line in lines))
 
 
+def drawn_over(plain, first, both):
+    """How many pixels a first drawing over a plain picture changes, a second one over both, and how many they share."""
+    rows = [png_rows(path) for path in (plain, first, both)]
+    width, height, step = rows[0][:3]
+    assert all(row[:3] == (width, height, step) for row in rows)
+
+    def changed(a, b):
+        return {(x, y) for y in range(height) for x in range(width)
+                if a[3][y][x * step:(x + 1) * step] != b[3][y][x * step:(x + 1) * step]}
+    one, other = changed(rows[0], rows[1]), changed(rows[1], rows[2])
+    print(len(one), len(other), len(one & other))
+
+
 def ppm_of_png(path, ppm):
     """The same picture without alpha as a PPM file."""
     width, height, step, lines = png_rows(path)
@@ -254,5 +267,5 @@ COMMANDS = {"atlas": atlas, "ball": ball, "stack": stacks.write, "npy-shape": np
             "shared-pixels": shared_pixels,
             "sum_layers": sum_layers, "exr-holds": exr_holds,
             "png-header": png_header, "png-scene": png_scene, "png-pixel": png_pixel, "png-border": png_border,
-            "ppm-of-png": ppm_of_png, "json": json_get}
+            "ppm-of-png": ppm_of_png, "drawn-over": drawn_over, "json": json_get}
 COMMANDS[sys.argv[1]](*sys.argv[2:])
