@@ -42,6 +42,7 @@ typedef struct figure_job {
   cli_host host;
   const cli_value *values;
   char *input, *output; /* output: owned, absolute */
+  char *shown;          /* owned; the output's name as messages show it */
   figure_page page;
 } figure_job;
 
@@ -80,6 +81,17 @@ static void take_shared(const figure_page *page, hl_scene_description *descripti
   }
 }
 
+/* Replaces the scene of a panel by a scene of the description. */
+static int replace_scene(figure_job *job, figure_panel *panel, const hl_scene_description *description) {
+  hl_scene *made = NULL;
+  hl_error error = {0};
+  hl_status status = hl_scene_create(job->host.context, description, &made, &error);
+  if (status != HL_OK) return host_fail(&job->host, PHASE_CHANGE, status, &error);
+  hl_scene_release(panel->scene);
+  panel->scene = made;
+  return EXIT_CODE_OK;
+}
+
 static int share(figure_job *job, figure_panel *panel) {
   const figure_page *page = &job->page;
   if (panel == page->panels || (!page->share_camera && !page->share_light && !page->share_function))
@@ -92,14 +104,22 @@ static int share(figure_job *job, figure_panel *panel) {
     memcpy(volumes, description.volumes, description.volume_count * sizeof *volumes);
   description.volumes = volumes;
   take_shared(page, &description, volumes);
-  hl_scene *shared = NULL;
-  hl_error error = {0};
-  hl_status status = hl_scene_create(job->host.context, &description, &shared, &error);
+  int exit_code = replace_scene(job, panel, &description);
   free(volumes);
-  if (status != HL_OK) return host_fail(&job->host, PHASE_CHANGE, status, &error);
-  hl_scene_release(panel->scene);
-  panel->scene = shared;
-  return EXIT_CODE_OK;
+  return exit_code;
+}
+
+/* Gives an inset the camera of its panel, and a picture whose middle is larger by the factor that the inset
+ * states. The eye stays where it is, so that the inset shows the panel's perspective. */
+static int magnify(figure_job *job, figure_panel *inset) {
+  const figure_panel *outer = inset->inset.of >= 0 ? &job->page.panels[inset->inset.of] : NULL;
+  if (outer == NULL || inset->inset.zoom == 0 || outer->scene == NULL) return EXIT_CODE_OK;
+  hl_scene_description description = *hl_scene_describe(inset->scene);
+  description.camera = hl_scene_describe(outer->scene)->camera;
+  const double degree = acos(-1) / 180, half = tan(description.camera.fovy_deg * degree / 2);
+  description.camera.fovy_deg = 2 / degree * atan(half / inset->inset.zoom);
+  description.camera.height /= inset->inset.zoom;
+  return replace_scene(job, inset, &description);
 }
 
 static int read_options(figure_job *job, figure_panel *panel) {
@@ -167,16 +187,17 @@ static double place_panels(figure_page *page) {
   return top + high;
 }
 
-/* Whether a file is a picture as it is: a PNG without a scene in it, OpenEXR or Radiance HDR. An .npy file is
- * a volume. */
+/* Whether a file is a picture as it is: a PNG without a scene in it, OpenEXR, Radiance HDR, or an .npy of
+ * R, G, B and A as `halflight render` writes it. Any other .npy is a volume. */
 static bool is_plain_picture(const char *path) {
   size_t length = 0;
   hl_image_about about = {.struct_size = sizeof about};
-  if (!has_extension(path, ".png") && !has_extension(path, ".exr") && !has_extension(path, ".hdr"))
+  const bool array = has_extension(path, ".npy");
+  if (!array && !has_extension(path, ".png") && !has_extension(path, ".exr") && !has_extension(path, ".hdr"))
     return false;
   unsigned char *bytes = frames_read_picture(path, &length);
   bool plain = bytes != NULL && hl_image_get_about(path, bytes, length, &about, NULL) == HL_OK &&
-               !about.has_scene;
+               !about.has_scene && (!array || about.channels == 4);
   free(bytes);
   return plain;
 }
@@ -197,7 +218,8 @@ static int fill_panel(figure_job *job, figure_panel *panel) {
   if (exit_code != EXIT_CODE_OK) return exit_code;
   size_panel(page, panel);
   exit_code = render_change_scene(&job->host, panel->values, panel->bare, &panel->scene);
-  return exit_code == EXIT_CODE_OK ? share(job, panel) : exit_code;
+  if (exit_code == EXIT_CODE_OK) exit_code = share(job, panel);
+  return exit_code == EXIT_CODE_OK ? magnify(job, panel) : exit_code;
 }
 
 static int make_scenes(figure_job *job) {
@@ -246,6 +268,16 @@ static hl_status try_out(figure_job *job, double height, hl_error *error) {
   return hl_figure_check(job->host.context, &figure, error);
 }
 
+static hl_status render_panel(figure_job *job, figure_panel *panel, hl_renderer *renderer, hl_error *error) {
+  const hl_scene_description *scene = hl_scene_describe(panel->scene);
+  float *pixels = hl_image_pixels(panel->image);
+  const size_t stride = 4 * (size_t)scene->width;
+  if (!panel->values[RENDER_REFERENCE].given)
+    return hl_renderer_render(renderer, panel->scene, pixels, stride, NULL, error);
+  const hl_reference_options options = render_reference_options(panel->values, scene);
+  return hl_reference_render(job->host.context, panel->scene, &options, pixels, stride, error);
+}
+
 static hl_status render_panels(figure_job *job, hl_error *error) {
   hl_renderer *renderer = NULL;
   hl_status status = hl_renderer_create(job->host.context, &renderer, error);
@@ -258,9 +290,7 @@ static hl_status render_panels(figure_job *job, hl_error *error) {
     snprintf(text, sizeof text, "panel %d of %d", p + 1, job->page.count);
     host_draw_bar(&job->host, (double)p / job->page.count, text);
     status = hl_image_create(job->host.context, scene->width, scene->height, &panel->image, error);
-    if (status == HL_OK)
-      status = hl_renderer_render(renderer, panel->scene, hl_image_pixels(panel->image),
-                                  4 * (size_t)scene->width, NULL, error);
+    if (status == HL_OK) status = render_panel(job, panel, renderer, error);
   }
   hl_renderer_destroy(renderer);
   host_clear_bar(&job->host);
@@ -286,7 +316,7 @@ static int make_and_write(figure_job *job) {
   }
   if (status != HL_OK) return host_fail(&job->host, PHASE_RUN, status, &error);
   if (!job->host.quiet)
-    say("%s: %d pictures on %.4g x %.4g mm, %.3g s", job->output, job->page.count, job->page.width, height,
+    say("%s: %d pictures on %.4g x %.4g mm, %.3g s", job->shown, job->page.count, job->page.width, height,
         clock_seconds() - started);
   return EXIT_CODE_OK;
 }
@@ -313,7 +343,7 @@ static int enter_folder(figure_job *job) {
   }
   free(folder);
   free(here);
-  free(name);
+  job->shown = name;
   return exit_code;
 }
 
@@ -338,6 +368,7 @@ static int run_figure(const cli_value *values, char **operands) {
   }
   free(data);
   free(job.output);
+  free(job.shown);
   return exit_code;
 }
 

@@ -51,7 +51,7 @@ static bool is_of_the_page(int which) {
                              RENDER_FONT_SIZE,   RENDER_VIEWS,  RENDER_RANGE_OF_ALL};
   for (size_t n = 0; n < sizeof kept / sizeof *kept; n++)
     if (which == kept[n]) return true;
-  return which >= RENDER_REFERENCE;
+  return which > RENDER_RAYS;
 }
 
 static bool names_a_file(int which) {
@@ -206,6 +206,32 @@ static int read_corner(const page_reading *reading, figure_panel *panel, const j
   return EXIT_CODE_OK;
 }
 
+/* Whether an inset states a direction or a projection of its own, and is therefore framed anew. */
+static bool has_own_view(const json_t *inset) {
+  static const int framing[] = {RENDER_VIEW, RENDER_UP,   RENDER_AZIMUTH, RENDER_ELEVATION,
+                                RENDER_ROLL, RENDER_FOVY, RENDER_ORTHO};
+  for (size_t n = 0; n < sizeof framing / sizeof *framing; n++)
+    if (json_object_get(inset, render_options[framing[n]].name) != NULL) return true;
+  return false;
+}
+
+/* Reads how many times as large as its panel an inset shows things. The inset then has the panel's camera,
+ * and its "zoom" is no option of `halflight render`: it is removed from the inset's keys. An inset with a
+ * view of its own keeps the option. */
+static int read_zoom(const page_reading *reading, figure_panel *panel, json_t *inset) {
+  if (has_own_view(inset)) return EXIT_CODE_OK;
+  const json_t *zoom = json_object_get(inset, "zoom");
+  const char *text = json_string_value(zoom);
+  char *rest = NULL;
+  panel->inset.zoom = zoom == NULL   ? 1
+                      : text != NULL ? hl_plain_number(text, &rest)
+                                     : json_number_value(zoom);
+  if ((text != NULL && *rest != '\0') || !(panel->inset.zoom > 0 && panel->inset.zoom <= 1e6))
+    return fail(EXIT_CODE_INPUT, "%s: \"zoom\" of an inset: give a factor above 0", reading->path);
+  json_object_del(inset, "zoom");
+  return EXIT_CODE_OK;
+}
+
 /* Joins two objects of options. Where both have an option of one name, the value in `above` counts. Both
  * objects may be null. */
 static json_t *join(const json_t *below, const json_t *above) {
@@ -250,9 +276,12 @@ static int add_panel(page_reading *reading, const json_t *given, const json_t *b
   const int index = page->count++;
   figure_panel *panel = &page->panels[index];
   panel->inset.of = inside;
-  json_t *keys = join(below, given);
+  json_t *own = json_copy((json_t *)given);
+  int exit_code = inside >= 0 ? read_corner(reading, panel, own) : EXIT_CODE_OK;
+  if (exit_code == EXIT_CODE_OK && inside >= 0) exit_code = read_zoom(reading, panel, own);
+  json_t *keys = join(below, own);
+  json_decref(own);
   if (keys == NULL) return fail(EXIT_CODE_FAILURE, "out of memory");
-  int exit_code = inside >= 0 ? read_corner(reading, panel, given) : EXIT_CODE_OK;
   if (exit_code == EXIT_CODE_OK) exit_code = fill_panel(reading, panel, keys);
   const json_t *inset = json_object_get(given, "inset");
   if (exit_code == EXIT_CODE_OK && inset != NULL && inside >= 0)

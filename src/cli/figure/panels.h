@@ -12,6 +12,8 @@ typedef struct figure_inset {
   int of;            /* the number of the panel in which this inset lies; -1: the panel is no inset */
   double part;       /* the inset's width divided by the width of the panel in which it lies */
   bool right, lower; /* whether the inset lies at the right and at the lower side of that panel */
+  double zoom;       /* the inset shows the middle of that panel this many times as large; 0: the inset has a
+                      * view of its own */
 } figure_inset;
 
 /* A rectangle of the page; millimetres from its top left corner. */

@@ -158,9 +158,8 @@ static const hl_layers *wanted_layers(const render_job *job) {
   return job->values[RENDER_LAYERS].given ? &job->layers.all : NULL;
 }
 
-static hl_status render_reference(render_job *job, const hl_scene_description *description, hl_error *error) {
-  const cli_value *values = job->values;
-  hl_render_statistics *statistics = &job->result.statistics;
+hl_reference_options render_reference_options(const cli_value *values,
+                                              const hl_scene_description *description) {
   hl_reference_options options;
   hl_reference_options_defaults(&options);
   if (values[RENDER_PATHS].given) options.paths = (int)values[RENDER_PATHS].number[0];
@@ -168,6 +167,13 @@ static hl_status render_reference(render_job *job, const hl_scene_description *d
   if (values[RENDER_STEP].given) options.step = values[RENDER_STEP].number[0];
   options.threads = description->render.threads;
   options.rays = values[RENDER_RAYS].given ? (int)values[RENDER_RAYS].number[0] : 0;
+  return options;
+}
+
+static hl_status render_reference(render_job *job, const hl_scene_description *description, hl_error *error) {
+  const cli_value *values = job->values;
+  hl_render_statistics *statistics = &job->result.statistics;
+  const hl_reference_options options = render_reference_options(values, description);
   job->host.stage.hint =
       "--reference marches every ray: a smaller --size, fewer --light-points or a greater --step "
       "is faster";

@@ -216,6 +216,9 @@ int render_overlay_check_options(const cli_value *values, const char *path);
 
 /* Sets --size to width x height, as if the user had typed it. text: the caller's room for the typed text, to
  * which the value of --size points afterwards. */
+/* The options of --reference for a scene. */
+hl_reference_options render_reference_options(const cli_value *values,
+                                              const hl_scene_description *description);
 void render_set_size(cli_value *size, double width, double height, char text[RENDER_SIZE_TEXT]);
 
 /* Sets --size, if it is not given, to the size that --width and --dpi ask for. The picture has the
