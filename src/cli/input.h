@@ -61,11 +61,11 @@ typedef struct cli_input {
 #define INPUT_OPTION_LEVEL                                                                                \
   INPUT_OPTION_INDEX("level", "the resolution to read; 0 is the finest (default: the\nfinest up to 2^30 " \
                               "voxels that fits into memory)")
-#define INPUT_OPTION_SPACING                                                                          \
-  {                                                                                                   \
-    .name = "spacing", .kind = OPTION_NUMBERS, .argument = "SX,SY,SZ",                                \
-    .help = "distance of voxels in world units (default: the\nfile's)", .count = 3, .separator = ',', \
-    .low = 0, .above = true, .high = INFINITY                                                         \
+#define INPUT_OPTION_SPACING                                                                             \
+  {                                                                                                      \
+    .name = "spacing", .kind = OPTION_NUMBERS, .argument = "SX,SY,SZ|S",                                 \
+    .help = "distance of voxels in world units, also as one\nnumber for all axes (default: the file's)", \
+    .count = 3, .separator = ',', .even = true, .low = 0, .above = true, .high = INFINITY                \
   }
 /* Rows for the table of options of a subcommand: all options of enum input_reading except the channel, from
  * row `first` on. */

@@ -63,8 +63,8 @@ static void describe_numbers(const cli_option *option, char *text, size_t size) 
   size_t used;
   if (option->count == 1) used = (size_t)snprintf(text, size, "a %s %s", kind, range);
   else
-    used = (size_t)snprintf(text, size, "%d %ss joined by '%c', each %s", option->count, kind,
-                            option->separator,
+    used = (size_t)snprintf(text, size, "%s%d %ss joined by '%c', each %s",
+                            option->even ? "one number, or " : "", option->count, kind, option->separator,
                             option->percent      ? "finite or a percentile from 0% to 100%"
                             : isinf(option->low) ? "finite"
                                                  : range);
@@ -132,6 +132,10 @@ static bool parse_numbers(const cli_option *option, const char *text, cli_value 
       return false;
     value->number[i] = number;
     end += value->percent[i];
+    if (option->even && i == 0 && *end == '\0') {
+      for (int other = 1; other < option->count; other++) value->number[other] = number;
+      return true;
+    }
     if (*end != (i + 1 < option->count ? option->separator : '\0')) return false;
     at = end + 1;
   }

@@ -44,6 +44,7 @@ typedef struct cli_option {
   int count;           /* OPTION_NUMBERS: how many numbers, 1 to 3 */
   char separator;      /* between the numbers: ',' or 'x' */
   bool whole;          /* whole numbers only */
+  bool even;           /* OPTION_NUMBERS: one number alone stands for all */
   bool above;          /* low itself is excluded */
   bool percent;        /* OPTION_NUMBERS: each number may also be a percentile, from 0% to 100% */
   double low, high;    /* the accepted range */

@@ -99,7 +99,7 @@ static part part_of_mesh(const hl_scene_mesh *mesh, size_t index) {
 }
 
 /* The name by which "tf" NAME=... and other options call a part: its name in the scene, or the name of its
- * file without folder and extensions, or "volume1" and so on. */
+ * file without folder and extensions (length_without_size() is allowed, too), or "volume1" and so on. */
 static void name_of(const part *part, char *name, size_t size) {
   if (part->name != NULL) {
     snprintf(name, size, "%s", part->name);
@@ -119,15 +119,25 @@ static const char *after_name(const hl_context *context, const char *text) {
   return equals == NULL || hl_file_kind(context, text) != 0 ? NULL : equals + 1;
 }
 
-/* Returns whether a value "NAME=..." names the part. *rest: the text after "NAME="; null if the value has no
- * name. */
+/* The length of a name without what the name of a file of bare voxels says of them: "engine" of
+ * "engine_256x256x128_uint8". */
+static size_t length_without_size(const char *name) {
+  for (const char *at = strchr(name, '_'); at != NULL; at = strchr(at + 1, '_')) {
+    const size_t digits = strspn(at + 1, "0123456789");
+    if (at > name && digits > 0 && at[1 + digits] == 'x' && strspn(at + 2 + digits, "0123456789") > 0)
+      return (size_t)(at - name);
+  }
+  return strlen(name);
+}
+
+/* Whether a value "NAME=..." names the part. *rest: the text after "NAME="; null: the value has no name. */
 static bool names_part(const hl_composer *composer, const char *text, part part, const char **rest) {
   char own[256];
   *rest = after_name(composer->context, text);
   if (*rest == NULL) return false;
   name_of(&part, own, sizeof own);
-  size_t length = strlen(own);
-  return length == (size_t)(*rest - text) - 1 && memcmp(own, text, length) == 0;
+  const size_t length = (size_t)(*rest - text) - 1;
+  return (length == strlen(own) || length == length_without_size(own)) && memcmp(own, text, length) == 0;
 }
 
 bool hl_text_is_for(const hl_composer *composer, const char *text, const hl_scene_volume *volume,

@@ -15,7 +15,7 @@
 #include "text/plain.h"
 #include "text/units.h"
 
-enum { STEPS_BETWEEN_POINTS = 8, CURVE_STEPS = 256, TICKS_MOST = 6, NUMBER_BYTES = 40 };
+enum { STEPS_BETWEEN_POINTS = 8, CURVE_STEPS = 256, TICKS_MOST = 6, NUMBER_BYTES = 40, NAME_BYTES = 64 };
 
 /* lengths in the legend, in units of the letters' size */
 static const double row = 1.35, strip_width = 1.1, curve_width = 1.6, gap = 0.45, swatch = 0.9;
@@ -47,8 +47,10 @@ static size_t count_rows(const hl_scene_volume *volume) {
   return count;
 }
 
-/* The title of a volume's part of the legend; null if the part has no title. */
-static const char *title_of(const hl_overlay_place *place, const hl_scene_volume *volume, bool first) {
+/* The title of a volume's part of the legend; null: the part has no title. Of several volumes, a volume
+ * without a name has the name of its file, without folder and extension. name: [NAME_BYTES], room for it. */
+static const char *title_of(const hl_overlay_place *place, const hl_scene_volume *volume, bool first,
+                            char *name) {
   if (first && place->overlay->legend_title != NULL) return place->overlay->legend_title;
   if (volume->name != NULL && volume->name[0] != '\0') return volume->name;
   for (size_t a = 0; a < hl_volume_array_count(volume->volume); a++) {
@@ -56,7 +58,11 @@ static const char *title_of(const hl_overlay_place *place, const hl_scene_volume
     if (hl_volume_get_array(volume->volume, a, &array) == HL_OK && array.chosen && array.name[0] != '\0')
       return array.name;
   }
-  return NULL;
+  if (place->scene->volume_count < 2 || volume->file == NULL) return NULL;
+  const char *slash = strrchr(volume->file, '/'), *base = slash != NULL ? slash + 1 : volume->file;
+  const size_t length = base[0] == '.' ? strlen(base) : strcspn(base, ".");
+  snprintf(name, NAME_BYTES, "%.*s", (int)length, base);
+  return name;
 }
 
 /* ---- rows: a colour and a name ---- */
@@ -259,7 +265,8 @@ static hl_status draw_strip(legend *made, const hl_scene_volume *volume, hl_erro
 /* ---- the whole ---- */
 
 static hl_status draw_volume(legend *made, const hl_scene_volume *volume, bool first, hl_error *error) {
-  const char *title = title_of(made->place, volume, first);
+  char name[NAME_BYTES];
+  const char *title = title_of(made->place, volume, first, name);
   if (volume->transfer_function.plane.second != HL_SECOND_NONE)
     return hl_fail(error, HL_ERROR_ARGUMENT,
                    "legend: the transfer function of '%.60s' takes two numbers: a strip of colours shows one",

@@ -23,6 +23,7 @@ enum info_option {
   INFO_TIME,
   INFO_CHANNEL,
   INFO_LEVEL,
+  INFO_SPACING,
   INFO_MAX_MEMORY,
   INFO_OPTION_COUNT
 };
@@ -37,6 +38,7 @@ static const cli_option info_options[INFO_OPTION_COUNT] = {
                       .help = "without FILE: list the formats that this program reads\nand writes"},
     INPUT_OPTIONS(INFO_ARRAY, NULL),
     [INFO_CHANNEL] = INPUT_OPTION_CHANNEL,
+    [INFO_SPACING] = INPUT_OPTION_SPACING,
     [INFO_MAX_MEMORY] = HOST_OPTION_MAX_MEMORY(NULL),
 };
 
@@ -45,7 +47,7 @@ static int info_of_volume(cli_host *host, const cli_value *values, const cli_inp
   hl_volume_load_options load;
   hl_error error = {0};
   json_writer json = {0};
-  input_load_options(&values[INFO_ARRAY], NULL, &load);
+  input_load_options(&values[INFO_ARRAY], &values[INFO_SPACING], &load);
   load.pixels = input_picture_side(); /* what is told is of the resolution that a picture shows */
   hl_status status = input_load_volume(host->context, input, &load, &volume, &error);
   int exit_code = status == HL_OK
@@ -94,7 +96,7 @@ static int tell_scene(cli_host *host, bool as_json, const char *title, const hl_
 
 /* Refuses the options that choose among what a volume file holds. */
 static int refuse_reading(const cli_value *values, const char *title, const char *what) {
-  for (int which = INFO_ARRAY; which <= INFO_LEVEL; which++)
+  for (int which = INFO_ARRAY; which <= INFO_SPACING; which++)
     if (values[which].given)
       return fail(EXIT_CODE_USAGE, "--%s is for volume files, and '%s' is %s", info_options[which].name,
                   title, what);
