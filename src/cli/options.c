@@ -75,6 +75,15 @@ static void describe_numbers(const cli_option *option, char *text, size_t size) 
   }
 }
 
+/* Whether a text ends like the name of a picture's file. */
+static bool names_picture(const char *text) {
+  static const char *const endings[] = {".png", ".jpg", ".jpeg", ".exr", ".hdr", ".tif", ".tiff"};
+  const char *dot = strrchr(text, '.');
+  for (size_t n = 0; dot != NULL && n < sizeof endings / sizeof *endings; n++)
+    if (hl_plain_equal(dot, endings[n])) return true;
+  return false;
+}
+
 static int refuse_value(const cli_option *option, const char *text) {
   for (const cli_choice *choice = option->choices; choice != NULL && choice->name != NULL; choice++)
     if (choice->value == CHOICE_RESERVED && strcmp(choice->name, text) == 0)
@@ -97,6 +106,11 @@ static int refuse_value(const cli_option *option, const char *text) {
       return fail(EXIT_CODE_USAGE, "--%s: '%s' is not a whole number above 0 with an optional K, M, G or T",
                   option->name, text);
     case OPTION_COLOR:
+      if (strcmp(option->name, "background") == 0 && names_picture(text))
+        return fail(EXIT_CODE_USAGE,
+                    "--background: '%s' is no colour: to lay the picture over another one, give transparent, "
+                    "or an .exr as the output",
+                    text);
       return fail(
           EXIT_CODE_USAGE,
           "--%s: '%s' is no colour: give linear R,G,B each from %.9g to %.9g, #rrggbb, or a CSS name%s",

@@ -8,6 +8,8 @@
 #include <string.h>
 
 #include "scene/settings.h"
+#include "text/color.h"
+#include "text/plain.h"
 
 enum { MOST_KEYS = 48, MOST_NAMES = 16 };
 
@@ -60,6 +62,20 @@ static hl_status read_whole_or_word(hl_json_reader *reader, const json_t *object
                       json_is_string(member) ? "another word" : hl_json_type_name(member), mend);
 }
 
+/* Reads a colour, which is linear in a scene. A colour's name or code is sRGB, as options take it: the error
+ * says which numbers it stands for. */
+static hl_status read_color(hl_json_reader *reader, const json_t *object, const char *key, double *color) {
+  const char *text = json_string_value(json_object_get(object, key));
+  double meant[3];
+  if (text == NULL) return hl_json_numbers(reader, object, key, 3, color);
+  if (!hl_parse_color(text, 0, 1, meant))
+    return hl_json_fail(reader, HL_ERROR_INPUT, key, "is a string: give linear [r, g, b]");
+  char numbers[80];
+  hl_plain_print(numbers, sizeof numbers, "%.3g, %.3g, %.3g", meant[0], meant[1], meant[2]);
+  return hl_json_fail(reader, HL_ERROR_INPUT, key,
+                      "is a string: give linear [r, g, b]; \"%.40s\" is [%s]", text, numbers);
+}
+
 static hl_status read_setting(hl_json_reader *reader, const json_t *object, const hl_setting *setting,
                               void *target) {
   const char *slash = strrchr(setting->key, '/'), *key = slash != NULL ? slash + 1 : setting->key;
@@ -69,8 +85,8 @@ static hl_status read_setting(hl_json_reader *reader, const json_t *object, cons
     case HL_SETTING_CHOICE: return read_choice(reader, object, key, setting, field);
     case HL_SETTING_NUMBER: return hl_json_number(reader, object, key, field);
     case HL_SETTING_POINT:
-    case HL_SETTING_DIRECTION:
-    case HL_SETTING_COLOR: return hl_json_numbers(reader, object, key, 3, field);
+    case HL_SETTING_DIRECTION: return hl_json_numbers(reader, object, key, 3, field);
+    case HL_SETTING_COLOR: return read_color(reader, object, key, field);
     case HL_SETTING_WHOLE: break;
   }
   return setting->choices != NULL ? read_whole_or_word(reader, object, key, setting, field)

@@ -1,0 +1,1 @@
+halflight render x.nrrd --background plate.png
