@@ -145,6 +145,23 @@ HL_API HL_WARN_UNUSED hl_status hl_transfer_function_spread(hl_context *context,
                                                             const double old[2], const double range[2],
                                                             hl_range_scale scale, hl_transfer_function *to,
                                                             hl_error *error);
+/* What hl_transfer_function_spread_over() spreads a function for. */
+typedef enum hl_spread_use {
+  HL_SPREAD_ALONE = 0,     /* the function's own colours are shown */
+  HL_SPREAD_COLORMAP = 1,  /* a colormap over the range takes the place of the colours */
+  HL_SPREAD_PROJECTION = 2 /* a maximum projection */
+} hl_spread_use;
+/* Spreads a volume's function over a range, as the option "range" does: the value from which opacity rises
+ * becomes range[0], and the value at which opacity ends becomes range[1]. The same holds for colours. Evenly
+ * spread opacity does not move to an end of the range that chooses no values: an end beyond the volume's
+ * values, or with a colormap an end at values that the function keeps clear. Clear values between such an end
+ * and the visible values stay clear. In a maximum projection the range of the colours becomes range[0] to
+ * range[1]. The caller owns the points of *to. */
+HL_API HL_WARN_UNUSED hl_status hl_transfer_function_spread_over(hl_context *context, const hl_volume *volume,
+                                                                 const hl_transfer_function *from,
+                                                                 const double range[2], hl_range_scale scale,
+                                                                 hl_spread_use use, hl_transfer_function *to,
+                                                                 hl_error *error);
 /* Replaces the colours as hl_transfer_function_colormap() does, but spreads the colormap over the values from
  * range[0] to range[1] evenly or by their logarithms. */
 HL_API HL_WARN_UNUSED hl_status hl_transfer_function_colormap_scaled(hl_context *context, const char *name,

@@ -25,6 +25,10 @@ _NAMED = {
 }
 
 
+# Names that other programs have for the library's colormap "grays", although they are CSS colours, too.
+_GRAYS = ("gray", "grey")
+
+
 def colormaps() -> list[str]:
     """The library's own colormaps.
 
@@ -97,13 +101,18 @@ def linear_color(place: str, color: Any) -> list[float]:
     return numbers_of(place, color)
 
 
+def own_name(cmap: str) -> bytes:
+    """The library's name of a colormap of which `sampled` makes no points."""
+    return ("grays" if cmap in _GRAYS else cmap).encode()
+
+
 def sampled(place: str, cmap: Any, low: float, high: float) -> list[list[float]] | None:
     """Colour points [value, r, g, b] from `low` to `high` for a colormap that the library does not name.
 
     `cmap` is a matplotlib colormap, its name, a colour, or a sequence of colours. None: the library has it.
     """
     if isinstance(cmap, str):
-        if cmap in colormaps():
+        if cmap in colormaps() or cmap in _GRAYS:
             return None
         cmap = _by_name(place, cmap)
     if not callable(cmap) and (not hasattr(cmap, "__len__") or len(cmap) == 0):

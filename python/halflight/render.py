@@ -229,10 +229,10 @@ def _look(volume: Volume, projected: bool, cmap: Any, clim: Any, log_scale: Any,
         distance = float(info.spacing.min()) if unit_distance is None else unit_distance
         color = function.color
         if range_wanted is not None and cmap is None:
-            color = transfer.spread(function, range_wanted, log, volume._handle, projected).color
+            color = transfer.spread(function, cmap, range_wanted, log, volume._handle, projected).color
         function = transfer.TransferFunction(transfer.opacity_points(opacity, values, log), color, distance)
     elif range_wanted is not None:
-        function = transfer.spread(function, range_wanted, log, volume._handle, projected)
+        function = transfer.spread(function, cmap, range_wanted, log, volume._handle, projected)
     if unit_distance is not None:
         function = transfer.TransferFunction(function.opacity, function.color,
                                              _settings.number("opacity_unit_distance", unit_distance),
@@ -352,7 +352,8 @@ def render(volume: Source = None, *, spacing: arrays.Spacing | None = None, orig
         Halflight's colormaps, matplotlib's, or one colour; over `clim`, by default over the values that are seen.
     clim : (low, high), optional
         The data values that colours and, unless `opacity` has values of its own, opacities spread over; texts
-        such as "1%" and "99.5%" are percentiles of the data.
+        such as "1%" and "99.5%" are percentiles of the data. With a `cmap`, values that are clear without `clim`
+        stay clear.
     log_scale : bool, optional
         Spread colours and opacities evenly over the logarithms of the values; `clim` must be above 0.
     opacity : float, str or sequence, optional

@@ -147,7 +147,7 @@ class TransferFunction:
         low, high = numbers_of("clim", clim, 2)
         points = colors.sampled("cmap", cmap, low, high)
         if points is None:
-            points = function_from(_made(lib.hl_transfer_function_colormap, cmap.encode(), low, high)).color.tolist()
+            points = function_from(_made(lib.hl_transfer_function_colormap, colors.own_name(cmap), low, high)).color.tolist()
         if opacity is None and callable(cmap):
             alpha = np.asarray(cmap(np.linspace(0, 1, 256)), dtype=np.float64)[:, 3]
             opacity = alpha.tolist() if alpha.min() < 1 else None
@@ -233,7 +233,7 @@ def recolored(function: TransferFunction, cmap: Any, clim: list[float] | None, l
         clim = list(seen)
     points = colors.sampled("cmap", cmap, *clim)
     if points is None:
-        points = function_from(_made(lib.hl_transfer_function_colormap, cmap.encode(), *clim)).color.tolist()
+        points = function_from(_made(lib.hl_transfer_function_colormap, colors.own_name(cmap), *clim)).color.tolist()
     elif projected and len(points) == 1:
         points = [[clim[0], 0.0, 0.0, 0.0], [clim[1], *points[0][1:]]]
     if log:
@@ -247,15 +247,16 @@ def colormap_points(name: str) -> list[list[float]]:
     return points
 
 
-def spread(function: TransferFunction, clim: list[float], log: bool, volume: Any, projected: bool) -> TransferFunction:
+def spread(function: TransferFunction, cmap: Any, clim: list[float], log: bool, volume: Any, projected: bool) -> TransferFunction:
     """Opacity and colours moved so that what was seen, or in a maximum projection the range of its colours, lies between the
-    values of `clim`."""
-    if projected and len(function.color) > 1 and function.color[0][0] < function.color[-1][0]:
-        return _moved(function, [float(function.color[0][0]), float(function.color[-1][0])], clim, log)
-    struct, keep, old = ffi.new("hl_transfer_function *"), list[Any](), ffi.new("double[2]")
+    values of `clim`. `cmap`: the colours that will take the place of the function's own."""
+    points = None if cmap is None else colors.sampled("cmap", cmap, *clim)
+    mapped = cmap is not None and (points is None or len(points) > 1)
+    use = lib.HL_SPREAD_PROJECTION if projected else lib.HL_SPREAD_COLORMAP if mapped else lib.HL_SPREAD_ALONE
+    struct, keep = ffi.new("hl_transfer_function *"), list[Any]()
     function._fill(struct, keep)
-    call(lib.hl_transfer_function_visible_range, volume, struct, old)
-    return _moved(function, list(old), clim, log)
+    return function_from(_made(lib.hl_transfer_function_spread_over, volume, struct, clim,
+                               lib.HL_RANGE_LOG if log else lib.HL_RANGE_LINEAR, use))
 
 
 _SHAPES = ("linear", "sigmoid", "geom")

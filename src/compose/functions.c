@@ -34,7 +34,14 @@ static const char *find_known(const char *text, const char *(*known)(const void 
   return NULL;
 }
 
-/* Names of presets in other programs, each with the name that means nearly the same in this program. */
+/* The colormap that a text names; null: none. "gray" is the colormap that ParaView, matplotlib and Fiji have
+ * under this name, although CSS has a colour of this name. */
+static const char *find_colormap(const char *text) {
+  const bool gray = hl_plain_equal(text, "gray") || hl_plain_equal(text, "grey");
+  return find_known(gray ? "grays" : text, colormap_name);
+}
+
+/* Names that other programs use, each with the name that means nearly the same in this program. */
 static const char *const meanings[][2] = {
     {"jet", "turbo"},
     {"rainbow", "turbo"},
@@ -232,7 +239,7 @@ hl_status hl_color_meshes(const hl_composer *composer, const hl_scene_descriptio
       return hl_fail(
           composer->error, HL_ERROR_ARGUMENT,
           "--colormap: '%.200s': a mesh has one colour%s: give #rrggbb, linear R,G,B or a CSS name",
-          given->texts[n], find_known(color, colormap_name) != NULL ? " and no colour map" : "");
+          given->texts[n], find_colormap(color) != NULL ? " and no colour map" : "");
     }
   return HL_OK;
 }
@@ -382,16 +389,12 @@ static hl_status find_range(const hl_composer *composer, const hl_volume *volume
   return HL_OK;
 }
 
-/* Moves a function's points so that the range of values with opacity, or in a maximum projection the range of
- * its colours, becomes the range that "range" gives. */
+/* Spreads a function over the range that "range" gives. */
 static hl_status spread(const hl_composer *composer, const hl_volume *volume, const value_range *range,
-                        bool maximum, hl_transfer_function *function) {
+                        hl_spread_use use, hl_transfer_function *function) {
   hl_transfer_function moved = {0};
-  double graded[2];
-  hl_status status = hl_transfer_function_graded_range(volume, function, maximum, graded, composer->error);
-  if (status == HL_OK)
-    status = hl_transfer_function_spread(composer->context, function, graded, range->ends, range->scale,
-                                         &moved, composer->error);
+  hl_status status = hl_transfer_function_spread_over(composer->context, volume, function, range->ends,
+                                                      range->scale, use, &moved, composer->error);
   if (status == HL_OK) status = replace(composer, &moved, function);
   hl_transfer_function_release(composer->context, &moved);
   return hl_blame_options(status);
@@ -413,7 +416,7 @@ static hl_status color_by_name(const hl_composer *composer, const char *name, co
                                value_range range, bool maximum, hl_transfer_function *function) {
   hl_transfer_function colors = {0};
   double color[3];
-  const char *map = find_known(name, colormap_name);
+  const char *map = find_colormap(name);
   if (map == NULL && !hl_parse_color(name, 0, 1, color))
     return refuse_name("colormap", name, "colormap and no colour", "colormaps", colormap_name,
                        composer->error);
@@ -438,10 +441,12 @@ bool hl_asks_for_functions(const hl_asked *asked) {
 static hl_status change_function(const hl_composer *composer, const hl_volume *volume, const char *colormap,
                                  bool maximum, hl_transfer_function *function) {
   const hl_asked *threshold = &composer->asked[HL_ASK_THRESHOLD];
+  const bool mapped = colormap != NULL && find_colormap(colormap) != NULL;
+  const hl_spread_use use = maximum ? HL_SPREAD_PROJECTION : mapped ? HL_SPREAD_COLORMAP : HL_SPREAD_ALONE;
   value_range range;
   hl_status status = find_range(composer, volume, &range);
   if (status == HL_OK && range.given && !threshold->given)
-    status = spread(composer, volume, &range, maximum, function);
+    status = spread(composer, volume, &range, use, function);
   if (status == HL_OK && threshold->given)
     status = make_opaque_from(composer, volume, threshold->number[0], function);
   if (status == HL_OK && colormap != NULL)

@@ -149,18 +149,15 @@ static hl_status read_points(hl_json_reader *reader, const json_t *value, bool i
 static hl_status spread_start(hl_json_reader *reader, const json_t *value, hl_function_subject subject,
                               const hl_json_range *range, hl_transfer_function *function) {
   const hl_volume *volume = subject.volume;
-  double old[2];
+  const hl_spread_use use = subject.projected ? HL_SPREAD_PROJECTION : HL_SPREAD_ALONE;
   hl_transfer_function spread;
   if (!range->given || has(value, "colormap")) return HL_OK;
   if (volume == NULL || has(value, "opacity"))
     return hl_json_fail(reader, HL_ERROR_INPUT, has(value, "range") ? "range" : "scale",
                         "is for a colormap, a preset, a file or the automatic function: give one of them, or "
                         "remove it");
-  hl_status status = hl_transfer_function_graded_range(volume, function, subject.projected, old,
-                                                       reader->error);
-  if (status == HL_OK)
-    status = hl_transfer_function_spread(reader->context, function, old, range->ends, range->scale, &spread,
-                                         reader->error);
+  hl_status status = hl_transfer_function_spread_over(reader->context, volume, function, range->ends,
+                                                      range->scale, use, &spread, reader->error);
   if (status != HL_OK) return hl_json_prefix(reader, reader->place), status;
   hl_transfer_function_release(reader->context, function);
   *function = spread;

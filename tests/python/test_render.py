@@ -26,6 +26,8 @@ CASES = [
     ({"size": (64, 64), "cmap": "viridis", "clim": (10, 200)},
      ["--size", "64x64", "--colormap", "viridis", "--range", "10,200"]),
     ({"size": (64, 64), "clim": (10, 200)}, ["--size", "64x64", "--range", "10,200"]),
+    ({"size": (64, 64), "cmap": ["gray"], "clim": (2, 250)}, ["--size", "64x64", "--range", "2,250", "--colormap", "#808080"]),
+    ({"size": (64, 64), "cmap": "gray", "clim": (0, 255)}, ["--size", "64x64", "--range", "0,255", "--colormap", "gray"]),
     ({"size": (64, 64), "clim": ("20%", "99.5%")}, ["--size", "64x64", "--range", "20%,99.5%"]),
     ({"size": (64, 64), "cmap": "viridis", "clim": (10, 200), "log_scale": True},
      ["--size", "64x64", "--colormap", "viridis", "--range", "10,200", "--range-scale", "log"]),

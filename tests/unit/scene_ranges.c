@@ -133,12 +133,81 @@ static void points_by_logarithms(void **state) {
   hl_context_destroy(context);
 }
 
+static double opacity_at(const hl_transfer_function *function, double value) {
+  return hl_transfer_function_opacity(function, value);
+}
+
+/* Opacity over 300 to 1000 of values from 0 to 1000 moves to the ends of a range, except to an end that
+ * chooses no values. */
+static void clear_surroundings_stay_clear(void **state) {
+  (void)state;
+  static float values[COUNT];
+  for (unsigned n = 0; n < COUNT; n++) values[n] = 1000 * (float)n / (COUNT - 1) - 7;
+  hl_opacity_point opacity[] = {{300, 0}, {500, 0.4}, {900, 0.8}};
+  hl_color_point color[] = {{300, {0, 0, 0}}, {1000, {1, 1, 1}}};
+  const hl_transfer_function from = {
+      .unit_distance = 1, .opacity = opacity, .opacity_count = 3, .color = color, .color_count = 2};
+  /* range: from 0 to 1000 all values; value: where opacity has what `from` has at `was` */
+  static const struct {
+    double range[2];
+    hl_spread_use use;
+    double value, was;
+  } cases[] = {
+      {{100, 1000}, HL_SPREAD_ALONE, 100, 300},    /* a lower end shows fainter matter */
+      {{100, 1000}, HL_SPREAD_COLORMAP, 300, 300}, /* a colormap begins there */
+      {{0, 1000}, HL_SPREAD_ALONE, 300, 300},      /* the range of all values chooses none of them */
+      {{-1000, 1000}, HL_SPREAD_ALONE, -400, 300}, /* values of other files are less */
+      {{0, 4000}, HL_SPREAD_COLORMAP, 1200, 300},  /* values of other files are greater */
+      {{600, 1000}, HL_SPREAD_COLORMAP, 600, 300}, /* a higher end hides matter */
+      {{600, 800}, HL_SPREAD_COLORMAP, 800, 1000}, /* and a lower upper end shows more of it as opaque */
+      {{0, 1000}, HL_SPREAD_PROJECTION, 0, 300},   /* a projection's colours take all of the range */
+  };
+  hl_context *context = make_context();
+  hl_volume *volume = volume_of(context, HL_VOXEL_F32, values, 1);
+  for (size_t n = 0; n < sizeof cases / sizeof *cases; n++) {
+    hl_transfer_function to;
+    assert_int_equal(hl_transfer_function_spread_over(context, volume, &from, cases[n].range, HL_RANGE_LINEAR,
+                                                      cases[n].use, &to, NULL),
+                     HL_OK);
+    const double width = cases[n].range[1] - cases[n].range[0];
+    assert_near(opacity_at(&to, cases[n].value), opacity_at(&from, cases[n].was), 1e-3);
+    if (cases[n].was == 300) {
+      assert_true(opacity_at(&to, cases[n].value) < 1e-3);
+      assert_true(opacity_at(&to, cases[n].value + 0.1 * width) > 0.01);
+    }
+    for (int end = 0; end < 2; end++) assert_near(to.color[end].value, cases[n].range[end], 1e-9);
+    hl_transfer_function_release(context, &to);
+  }
+  hl_volume_release(volume);
+  assert_int_equal(hl_context_memory_held(context), 0);
+  hl_context_destroy(context);
+}
+
+/* Of a volume of one value, every range is allowed. */
+static void range_of_one_value(void **state) {
+  (void)state;
+  static float values[COUNT];
+  for (unsigned n = 0; n < COUNT; n++) values[n] = 5;
+  hl_opacity_point opacity[] = {{0, 0}, {1, 1}};
+  const hl_transfer_function from = {.unit_distance = 1, .opacity = opacity, .opacity_count = 2};
+  const double range[2] = {2, 30};
+  hl_context *context = make_context();
+  hl_volume *volume = volume_of(context, HL_VOXEL_F32, values, 1);
+  hl_transfer_function to;
+  assert_int_equal(hl_transfer_function_spread_over(context, volume, &from, range, HL_RANGE_LINEAR,
+                                                    HL_SPREAD_COLORMAP, &to, NULL),
+                   HL_OK);
+  assert_true(to.opacity[0].value == 2 && to.opacity[1].value == 30);
+  hl_transfer_function_release(context, &to);
+  hl_volume_release(volume);
+  hl_context_destroy(context);
+}
+
 int main(void) {
   const struct CMUnitTest tests[] = {
-      cmocka_unit_test(percentiles_of_a_ramp),
-      cmocka_unit_test(only_finite_voxels_count),
-      cmocka_unit_test(colormap_by_logarithms),
-      cmocka_unit_test(points_by_logarithms),
+      cmocka_unit_test(percentiles_of_a_ramp),         cmocka_unit_test(only_finite_voxels_count),
+      cmocka_unit_test(clear_surroundings_stay_clear), cmocka_unit_test(range_of_one_value),
+      cmocka_unit_test(colormap_by_logarithms),        cmocka_unit_test(points_by_logarithms),
   };
   return cmocka_run_group_tests_name("scene_ranges", tests, NULL, NULL);
 }

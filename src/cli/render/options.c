@@ -252,16 +252,16 @@ const cli_option render_options[RENDER_OPTION_COUNT] = {
                  "(a COLOR); or one for "
                  "each volume or\nchannel, in order (magma,viridis)",
          .repeatable = true},
-    [RENDER_RANGE] =
-        {.name = "range",
-         .kind = OPTION_NUMBERS,
-         .argument = "LO,HI",
-         .help = "values over which opacity and colours spread; or\npercentiles of the data (1%,99.5%)",
-         .count = 2,
-         .separator = ',',
-         .percent = true,
-         .low = -INFINITY,
-         .high = INFINITY},
+    [RENDER_RANGE] = {.name = "range",
+                      .kind = OPTION_NUMBERS,
+                      .argument = "LO,HI",
+                      .help = "values over which opacity and colours spread (what is\nclear stays clear, "
+                              "with --colormap); or percentiles of\nthe data (1%,99.5%)",
+                      .count = 2,
+                      .separator = ',',
+                      .percent = true,
+                      .low = -INFINITY,
+                      .high = INFINITY},
     [RENDER_RANGE_SCALE] = {.name = "range-scale",
                             .kind = OPTION_CHOICE,
                             .help = "linear: opacity and colours spread evenly over --range;\nlog: over the "

@@ -38,8 +38,11 @@ hl_status hl_transfer_function_visible_range(const hl_volume *volume, const hl_t
   return HL_OK;
 }
 
-hl_status hl_transfer_function_graded_range(const hl_volume *volume, const hl_transfer_function *function,
-                                            bool projected, double range[2], hl_error *error) {
+/* The range of values over which a transfer function grades what it shows. In pictures with light, it is the
+ * visible range. In a maximum projection, where opacity only says whether a value counts, it goes from the
+ * value of the first colour to the value of the last one; if these are the same, it is the visible range. */
+static hl_status graded_range(const hl_volume *volume, const hl_transfer_function *function, bool projected,
+                              double range[2], hl_error *error) {
   const size_t count = function->color_count;
   if (!projected || count < 2 || !(function->color[0].value < function->color[count - 1].value))
     return hl_transfer_function_visible_range(volume, function, range, error);
@@ -119,15 +122,17 @@ static hl_status spread_rows(hl_context *context, rows *r, const double old[2], 
   return HL_OK;
 }
 
+/* Moves all points to a new range. old: the values of colours that become the range's ends; held: the values
+ * of opacities that do. */
 static hl_status spread_all(hl_context *context, const hl_transfer_function *from, const double old[2],
-                            const double range[2], hl_range_scale scale, hl_transfer_function *to,
-                            hl_error *error) {
+                            const double held[2], const double range[2], hl_range_scale scale,
+                            hl_transfer_function *to, hl_error *error) {
   rows opacity = {.from = (const double *)from->opacity, .count = from->opacity_count, .width = 2};
   rows color = {.from = (const double *)from->color, .count = from->color_count, .width = 4};
   rows gradient = {
       .from = (const double *)from->gradient_opacity, .count = from->gradient_opacity_count, .width = 2};
-  const double none[2] = {0, old[1] - old[0]}, widths[2] = {0, range[1] - range[0]};
-  hl_status status = spread_rows(context, &opacity, old, range, scale, error);
+  const double none[2] = {0, held[1] - held[0]}, widths[2] = {0, range[1] - range[0]};
+  hl_status status = spread_rows(context, &opacity, held, range, scale, error);
   if (status == HL_OK) status = spread_rows(context, &color, old, range, scale, error);
   if (status == HL_OK) status = spread_rows(context, &gradient, none, widths, HL_RANGE_LINEAR, error);
   to->opacity = (hl_opacity_point *)opacity.to, to->opacity_count = opacity.made;
@@ -139,14 +144,10 @@ static hl_status spread_all(hl_context *context, const hl_transfer_function *fro
 _Static_assert(sizeof(hl_opacity_point) == 2 * sizeof(double), "opacity points are rows of two numbers");
 _Static_assert(sizeof(hl_color_point) == 4 * sizeof(double), "colour points are rows of four numbers");
 
-hl_status hl_transfer_function_spread(hl_context *context, const hl_transfer_function *from,
-                                      const double old[2], const double range[2], hl_range_scale scale,
-                                      hl_transfer_function *to, hl_error *error) {
-  HL_DOOR;
-  if (context == NULL || from == NULL || old == NULL || range == NULL || to == NULL)
-    return hl_fail(error, HL_ERROR_ARGUMENT, "hl_transfer_function_spread: null argument");
-  if (!(old[0] < old[1] && isfinite(old[1] - old[0])))
-    return hl_fail(error, HL_ERROR_ARGUMENT, "hl_transfer_function_spread: the old range is empty");
+/* Spreads a function after checking the range. old, held: as for spread_all(). */
+static hl_status spread_checked(hl_context *context, const hl_transfer_function *from, const double old[2],
+                                const double held[2], const double range[2], hl_range_scale scale,
+                                hl_transfer_function *to, hl_error *error) {
   if (!(range[0] < range[1]) || !isfinite(range[1] - range[0]))
     return hl_fail(error, HL_ERROR_INPUT, "range %.9g to %.9g is empty: give two values, the lower one first",
                    range[0], range[1]);
@@ -156,10 +157,49 @@ hl_status hl_transfer_function_spread(hl_context *context, const hl_transfer_fun
                    "the linear scale",
                    range[0], range[1]);
   hl_transfer_function made = {.unit_distance = from->unit_distance};
-  hl_status status = spread_all(context, from, old, range, scale, &made, error);
+  hl_status status = spread_all(context, from, old, held, range, scale, &made, error);
   if (status == HL_OK) *to = made;
   else hl_transfer_function_release(context, &made);
   return status;
+}
+
+hl_status hl_transfer_function_spread(hl_context *context, const hl_transfer_function *from,
+                                      const double old[2], const double range[2], hl_range_scale scale,
+                                      hl_transfer_function *to, hl_error *error) {
+  HL_DOOR;
+  if (context == NULL || from == NULL || old == NULL || range == NULL || to == NULL)
+    return hl_fail(error, HL_ERROR_ARGUMENT, "hl_transfer_function_spread: null argument");
+  if (!(old[0] < old[1] && isfinite(old[1] - old[0])))
+    return hl_fail(error, HL_ERROR_ARGUMENT, "hl_transfer_function_spread: the old range is empty");
+  return spread_checked(context, from, old, old, range, scale, to, error);
+}
+
+/* Moves the ends of a function's visible range that stay clear: these ends become the values that keep their
+ * place. all: the range of the volume's values. mapped: a colormap is given, so that ends at clear values are
+ * chosen for its colours. */
+static void hold_clear_ends(const double all[2], const double range[2], bool mapped, double visible[2]) {
+  const bool low = mapped || range[0] <= all[0], high = mapped || range[1] >= all[1];
+  if (low && range[0] < visible[0]) visible[0] = fmax(range[0], all[0]);
+  if (high && range[1] > visible[1]) visible[1] = fmin(range[1], all[1]);
+}
+
+hl_status hl_transfer_function_spread_over(hl_context *context, const hl_volume *volume,
+                                           const hl_transfer_function *from, const double range[2],
+                                           hl_range_scale scale, hl_spread_use use, hl_transfer_function *to,
+                                           hl_error *error) {
+  HL_DOOR;
+  hl_volume_info info = {.struct_size = sizeof info};
+  if (context == NULL || from == NULL || range == NULL || to == NULL ||
+      hl_volume_get_info(volume, &info) != HL_OK)
+    return hl_fail(error, HL_ERROR_ARGUMENT, "hl_transfer_function_spread_over: null argument");
+  double old[2], held[2];
+  const bool projected = use == HL_SPREAD_PROJECTION;
+  hl_status status = graded_range(volume, from, projected, old, error);
+  if (status != HL_OK) return status;
+  memcpy(held, old, sizeof held);
+  if (!projected && scale == HL_RANGE_LINEAR && info.range[0] < info.range[1])
+    hold_clear_ends(info.range, range, use == HL_SPREAD_COLORMAP, held);
+  return spread_checked(context, from, old, held, range, scale, to, error);
 }
 
 hl_status hl_transfer_function_colormap_scaled(hl_context *context, const char *name, const double range[2],

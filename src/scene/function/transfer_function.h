@@ -25,13 +25,6 @@ int hl_transfer_function_visible(const hl_transfer_function *function, double lo
 bool hl_transfer_function_transparent(const hl_transfer_function *function, double low, double high,
                                       double target, double *nearest);
 
-/* Finds the range of values over which the look of a transfer function changes. The key "range" of a scene
- * moves this range. In pictures with light, it is the visible range. In a maximum projection, where opacity
- * only says whether a value counts, it goes from the value of the first colour to the value of the last
- * colour; if these two values are the same, it is the visible range. */
-hl_status hl_transfer_function_graded_range(const hl_volume *volume, const hl_transfer_function *function,
-                                            bool projected, double range[2], hl_error *error);
-
 /* Copies a transfer function. *to owns its points. */
 hl_status hl_transfer_function_copy(hl_context *context, const hl_transfer_function *from,
                                     hl_transfer_function *to, hl_error *error);
