@@ -1,9 +1,10 @@
 /* figure/bar.c - draws the scale bar, which shows the length of a line in the world.
  *
- * The unit of lengths is the unit in the volumes' files, or the unit that the overlay names. If neither is
- * known, the bar is refused. All visible volumes must have the same unit, after the scales that the scene
- * gives them. In a perspective picture the scale changes with depth. The bar is then correct at one depth
- * only. The overlay chooses this depth, and the bar's text names it. */
+ * The unit is the one in the volumes' files, or the one that the overlay names; without either, the bar is
+ * refused. All visible volumes whose files tell a unit must have the same unit, after the scales that the
+ * scene gives them. A volume whose file tells none, such as a mask over a scan, lies in their world. In a
+ * perspective picture the scale changes with depth. The bar is then right at one depth, which the overlay
+ * chooses and the bar's text names. */
 #include <stdio.h>
 #include <string.h>
 
@@ -24,16 +25,15 @@ static const char *name_of(const hl_scene_volume *volume) {
   return volume->name != NULL ? volume->name : volume->file != NULL ? volume->file : "volume";
 }
 
-/* Takes the unit of the first volume, and refuses a volume with a different unit. */
-static hl_status add_volume(const hl_overlay *overlay, const hl_scene_volume *volume, bar_unit *unit,
+/* The unit of a volume's lengths; null: neither the overlay nor the volume's file tells it. */
+static const char *unit_of(const hl_overlay *overlay, const hl_scene_volume *volume) {
+  return overlay->world_unit != NULL ? overlay->world_unit : hl_volume_unit(volume->volume);
+}
+
+/* Takes the unit of the first volume, and refuses a volume whose unit is another. name: unit_of(). */
+static hl_status add_volume(const hl_scene_volume *volume, const char *name, bar_unit *unit,
                             hl_error *error) {
-  const char *name = overlay->world_unit != NULL ? overlay->world_unit : hl_volume_unit(volume->volume);
   const double *axes = volume->axis_scale;
-  if (name == NULL)
-    return hl_fail(
-        error, HL_ERROR_ARGUMENT,
-        "scale bar: the file of '%.60s' does not tell the unit of its lengths: say it, as --unit mm",
-        name_of(volume));
   if (axes[0] != axes[1] || axes[0] != axes[2])
     return hl_fail(error, HL_ERROR_ARGUMENT,
                    "scale bar: the scene stretches '%.60s' along its axes: no one scale is left",
@@ -49,11 +49,20 @@ static hl_status add_volume(const hl_overlay *overlay, const hl_scene_volume *vo
 }
 
 static hl_status find_unit(const hl_overlay_place *place, bar_unit *unit, hl_error *error) {
+  const hl_scene_volume *silent = NULL; /* a visible volume without a unit */
   hl_status status = HL_OK;
-  for (size_t v = 0; status == HL_OK && v < place->scene->volume_count; v++)
-    if (place->scene->volumes[v].visible)
-      status = add_volume(place->overlay, &place->scene->volumes[v], unit, error);
+  for (size_t v = 0; status == HL_OK && v < place->scene->volume_count; v++) {
+    const hl_scene_volume *volume = &place->scene->volumes[v];
+    const char *name = volume->visible ? unit_of(place->overlay, volume) : NULL;
+    if (name != NULL) status = add_volume(volume, name, unit, error);
+    else if (volume->visible) silent = volume;
+  }
   if (status != HL_OK || unit->name != NULL) return status;
+  if (silent != NULL)
+    return hl_fail(
+        error, HL_ERROR_ARGUMENT,
+        "scale bar: the file of '%.60s' does not tell the unit of its lengths: say it, as --unit mm",
+        name_of(silent));
   if (place->overlay->world_unit == NULL)
     return hl_fail(error, HL_ERROR_ARGUMENT,
                    "scale bar: no volume tells the unit of lengths: say it, as --unit mm");
