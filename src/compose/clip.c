@@ -1,9 +1,9 @@
 /* compose/clip.c - applies the option "clip" AXIS=LO:HI, which keeps a part of each volume along an axis of
  * its file's world.
  *
- * A bare number is a fraction of the box around the volume's voxels; a number with a unit is a coordinate. If
- * the option leaves out an end, the part ends where the scene's own clip box ends. Without a clip box, the
- * part ends where the volume ends. */
+ * A bare number is a fraction of the box around the volume's voxels; a number with a unit is a coordinate. An
+ * end that is left out stays where the scene's own clip box has it; without a clip box it is the end of the
+ * volume. NAME=AXIS=LO:HI clips the volume NAME alone. */
 #include <string.h>
 
 #include "compose/composer.h"
@@ -14,10 +14,17 @@ static bool read_range(const char *text, hl_axis_range *range) {
   return hl_read_range(&text, range) && *text == '\0';
 }
 
+/* Reads a range that may begin with NAME=. Returns the range's text; null: it is none. */
+static const char *read_clip(const char *text, hl_axis_range *range) {
+  const char *equals = strchr(text, '=');
+  if (read_range(text, range)) return text;
+  return equals != NULL && read_range(equals + 1, range) ? equals + 1 : NULL;
+}
+
 hl_status hl_check_clip(const hl_asked *clip, hl_error *error) {
   hl_axis_range range;
   for (int n = 0; n < clip->count; n++)
-    if (!read_range(clip->texts[n], &range))
+    if (read_clip(clip->texts[n], &range) == NULL)
       return hl_fail(
           error, HL_ERROR_ARGUMENT,
           "--clip: '%.300s' is not AXIS=LO:HI with LO below HI: fractions from 0 to 1 (x=0:0.5), or "
@@ -27,7 +34,17 @@ hl_status hl_check_clip(const hl_asked *clip, hl_error *error) {
   return HL_OK;
 }
 
-hl_status hl_compose_clip(const hl_composer *composer, hl_scene_volume *volume) {
+hl_status hl_check_clip_names(const hl_composer *composer, const hl_scene_description *description) {
+  const hl_asked *clip = &composer->asked[HL_ASK_CLIP];
+  hl_axis_range range;
+  hl_status status = HL_OK;
+  for (int n = 0; n < clip->count && status == HL_OK; n++)
+    if (read_clip(clip->texts[n], &range) != clip->texts[n])
+      status = hl_check_volume_name(composer, HL_ASK_CLIP, clip->texts[n], description);
+  return status;
+}
+
+hl_status hl_compose_clip(const hl_composer *composer, hl_scene_volume *volume, size_t index) {
   const hl_asked *clip = &composer->asked[HL_ASK_CLIP];
   hl_error *error = composer->error;
   double low[3], high[3];
@@ -36,14 +53,16 @@ hl_status hl_compose_clip(const hl_composer *composer, hl_scene_volume *volume) 
   if (hl_volume_get_info(volume->volume, &info) != HL_OK)
     return hl_fail(error, HL_ERROR_INTERNAL, "--clip: the volume's place is not known");
   hl_volume_world_box(&info, low, high);
-  if (!volume->clipped) {
-    memcpy(volume->clip_min, low, sizeof low);
-    memcpy(volume->clip_max, high, sizeof high);
-    volume->clipped = 1;
-  }
   for (int n = 0; n < clip->count; n++) {
     hl_axis_range range;
-    if (!read_range(clip->texts[n], &range)) continue; /* hl_check_clip() has refused such a text before */
+    const char *rest, *text = read_clip(clip->texts[n], &range);
+    if (text == NULL) continue; /* hl_check_clip() has refused such a text before */
+    if (text != clip->texts[n] && !hl_text_is_for(composer, clip->texts[n], volume, index, &rest)) continue;
+    if (!volume->clipped) {
+      memcpy(volume->clip_min, low, sizeof low);
+      memcpy(volume->clip_max, high, sizeof high);
+      volume->clipped = 1;
+    }
     double *least = &volume->clip_min[range.axis], *greatest = &volume->clip_max[range.axis];
     *least = hl_coordinate_of(&range.ends[0], *least, low[range.axis], high[range.axis], metres);
     *greatest = hl_coordinate_of(&range.ends[1], *greatest, low[range.axis], high[range.axis], metres);

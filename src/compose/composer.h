@@ -40,7 +40,11 @@ hl_status hl_check_volume_names(const hl_composer *composer, const hl_scene_desc
 bool hl_text_is_for(const hl_composer *composer, const char *text, const hl_scene_volume *volume,
                     size_t index, const char **rest);
 
-/* Returns whether a value of "colormap", of the form NAME=COLOR, names a mesh. */
+/* Refuses a value of an option with a NAME= that no volume has. */
+hl_status hl_check_volume_name(const hl_composer *composer, hl_ask option, const char *text,
+                               const hl_scene_description *description);
+
+/* "colormap" NAME=COLOR: whether one of its values names a mesh. */
 bool hl_colors_meshes(const hl_composer *composer, const hl_scene_description *description);
 
 /* Gives meshes the colours that "colormap" NAME=COLOR asks for. meshes: [description->mesh_count]. */
@@ -70,18 +74,29 @@ hl_status hl_compose_isosurfaces(const hl_composer *composer, size_t index, hl_s
 /* ---- clip.c and cuts.c: parts of a volume ---- */
 
 hl_status hl_check_clip(const hl_asked *clip, hl_error *error);
-hl_status hl_compose_clip(const hl_composer *composer, hl_scene_volume *volume);
+
+/* Clips volume number `index` by the values of "clip" that are for it. */
+hl_status hl_compose_clip(const hl_composer *composer, hl_scene_volume *volume, size_t index);
+
+/* Refuses values of "clip" with a NAME= that no volume has. */
+hl_status hl_check_clip_names(const hl_composer *composer, const hl_scene_description *description);
 
 hl_status hl_check_cuts(const hl_asked *asked, hl_error *error);
+
+/* Refuses cuts with a NAME= that no volume has. */
+hl_status hl_check_cut_names(const hl_composer *composer, const hl_scene_description *description);
 
 /* The number of cuts that the options ask for. */
 size_t hl_count_cuts(const hl_asked *asked);
 
-/* Adds the options' cuts to a volume's own cuts. cuts: an array with room for both; the volume borrows it. */
-hl_status hl_compose_cuts(const hl_composer *composer, hl_scene_volume *volume, hl_cut *cuts);
+/* Adds the options' cuts that name volume number `index` to its own cuts. alone: the scene has no other
+ * volume, and cuts without a name are the volume's, too. cuts: an array with room for all; the volume borrows
+ * it. */
+hl_status hl_compose_cuts(const hl_composer *composer, hl_scene_volume *volume, size_t index, bool alone,
+                          hl_cut *cuts);
 
-/* Adds the options' cuts to a scene's own cuts, which cut all volumes. Numbers without a unit are fractions
- * of the box around all volumes. cuts: an array with room for both; the scene borrows it. */
+/* Adds the options' cuts without a name to a scene's own cuts, which cut all volumes. Numbers without a unit
+ * are fractions of the box around all volumes. cuts: an array with room for both; the scene borrows it. */
 hl_status hl_compose_scene_cuts(const hl_composer *composer, hl_scene_description *scene, hl_cut *cuts);
 
 /* ---- sky.c ---- */

@@ -1,6 +1,7 @@
-/* compose/cuts.c - applies the options "cut-plane" POINT:NORMAL or AXIS=AT, "cut-box" RANGES and "cut-sphere"
- * CENTRE:RADIUS, which cut parts out of volumes. In a scene of one volume, the options' numbers are in the
- * world of the volume's file; in a scene of several volumes, they are in the scene's world. */
+/* compose/cuts.c - "cut-plane" POINT:NORMAL or AXIS=AT, "cut-box" RANGES and "cut-sphere" CENTRE:RADIUS:
+ * parts that are cut out of volumes. In a scene of one volume, the options' numbers are in the world of the
+ * volume's file; in a scene of several volumes, they are in the scene's world. A value that begins with NAME=
+ * cuts the volume NAME alone, and its numbers are in the world of this volume's file. */
 #include <math.h>
 #include <string.h>
 
@@ -77,6 +78,13 @@ static bool read_cut(hl_cut_type type, const char *text, typed_cut *cut) {
   return type == HL_CUT_PLANE ? read_normal(text, cut->normal) : read_radius(text, &cut->radius);
 }
 
+/* Reads a cut that may begin with NAME=. Returns the cut's text; null: it is none. */
+static const char *read_named_cut(hl_cut_type type, const char *text, typed_cut *cut) {
+  const char *equals = strchr(text, '=');
+  if (read_cut(type, text, cut)) return text;
+  return equals != NULL && read_cut(type, equals + 1, cut) ? equals + 1 : NULL;
+}
+
 hl_status hl_check_cuts(const hl_asked *asked, hl_error *error) {
   static const char *const wanted[] = {
       [HL_CUT_PLANE] =
@@ -94,11 +102,23 @@ hl_status hl_check_cuts(const hl_asked *asked, hl_error *error) {
     const hl_asked *value = &asked[option_of[type]];
     typed_cut cut;
     for (int n = 0; n < value->count; n++)
-      if (!read_cut((hl_cut_type)type, value->texts[n], &cut))
+      if (read_named_cut((hl_cut_type)type, value->texts[n], &cut) == NULL)
         return hl_fail(error, HL_ERROR_ARGUMENT, "--%s: '%.300s' is not %s",
                        hl_option_rows[option_of[type]].name, value->texts[n], wanted[type]);
   }
   return HL_OK;
+}
+
+hl_status hl_check_cut_names(const hl_composer *composer, const hl_scene_description *description) {
+  hl_status status = HL_OK;
+  for (int type = 0; type < CUT_TYPES; type++) {
+    const hl_asked *value = &composer->asked[option_of[type]];
+    typed_cut cut;
+    for (int n = 0; n < value->count && status == HL_OK; n++)
+      if (read_named_cut((hl_cut_type)type, value->texts[n], &cut) != value->texts[n])
+        status = hl_check_volume_name(composer, (hl_ask)option_of[type], value->texts[n], description);
+  }
+  return status;
 }
 
 size_t hl_count_cuts(const hl_asked *asked) {
@@ -126,17 +146,32 @@ static void place_cut(const typed_cut *typed, const double low[3], const double 
                                        : hl_length_of(&typed->radius, metres);
 }
 
-/* Converts the options' cuts to places in the box, and adds them. */
-static void add_cuts(const hl_asked *asked, const double low[3], const double high[3], double metres,
-                     hl_cut *cuts, size_t *count) {
+/* What the options' cuts are added to. */
+typedef struct cut_target {
+  const hl_scene_volume *volume; /* takes the cuts that name it; null: none */
+  size_t index;                  /* the volume's */
+  bool nameless;                 /* takes the cuts without a name */
+} cut_target;
+
+static bool takes(const hl_composer *composer, const cut_target *target, const char *text, bool named) {
+  const char *rest;
+  if (!named) return target->nameless;
+  return target->volume != NULL && hl_text_is_for(composer, text, target->volume, target->index, &rest);
+}
+
+/* Converts the options' cuts to places in the box, and adds them as far as they are for the target. */
+static void add_cuts(const hl_composer *composer, const cut_target *target, const double low[3],
+                     const double high[3], double metres, hl_cut *cuts, size_t *count) {
   for (int type = 0; type < CUT_TYPES; type++)
-    for (int n = 0; n < asked[option_of[type]].count; n++) {
+    for (int n = 0; n < composer->asked[option_of[type]].count; n++) {
+      const char *text = composer->asked[option_of[type]].texts[n];
       hl_cut *cut = &cuts[*count];
       typed_cut typed;
+      const char *read = read_named_cut((hl_cut_type)type, text, &typed);
+      /* hl_check_cuts() has refused a text that cannot be read. */
+      if (read == NULL || !takes(composer, target, text, read != text)) continue;
       hl_cut_defaults(cut);
       cut->type = (hl_cut_type)type;
-      /* hl_check_cuts() has refused a text that cannot be read. */
-      if (!read_cut(cut->type, asked[option_of[type]].texts[n], &typed)) continue;
       place_cut(&typed, low, high, metres, cut);
       ++*count;
     }
@@ -158,7 +193,9 @@ static hl_status extend_box(const hl_scene_volume *volume, double low[3], double
   return HL_OK;
 }
 
-hl_status hl_compose_cuts(const hl_composer *composer, hl_scene_volume *volume, hl_cut *cuts) {
+hl_status hl_compose_cuts(const hl_composer *composer, hl_scene_volume *volume, size_t index, bool alone,
+                          hl_cut *cuts) {
+  const cut_target target = {volume, index, alone};
   double low[3], high[3];
   hl_volume_info info = {.struct_size = sizeof info};
   size_t count = volume->cut_count;
@@ -166,13 +203,14 @@ hl_status hl_compose_cuts(const hl_composer *composer, hl_scene_volume *volume, 
     return hl_fail(composer->error, HL_ERROR_INTERNAL, "--cut-plane: the volume's place is not known");
   hl_volume_world_box(&info, low, high);
   if (count > 0) memcpy(cuts, volume->cuts, count * sizeof *cuts);
-  add_cuts(composer->asked, low, high, hl_metres_of_volume(volume->volume), cuts, &count);
+  add_cuts(composer, &target, low, high, hl_metres_of_volume(volume->volume), cuts, &count);
   volume->cuts = cuts;
   volume->cut_count = count;
   return HL_OK;
 }
 
 hl_status hl_compose_scene_cuts(const hl_composer *composer, hl_scene_description *scene, hl_cut *cuts) {
+  const cut_target target = {.nameless = true};
   double low[3] = {INFINITY, INFINITY, INFINITY}, high[3] = {-INFINITY, -INFINITY, -INFINITY};
   size_t count = scene->cut_count;
   hl_status status = HL_OK;
@@ -180,7 +218,7 @@ hl_status hl_compose_scene_cuts(const hl_composer *composer, hl_scene_descriptio
     status = extend_box(&scene->volumes[v], low, high, composer->error);
   if (status != HL_OK) return status;
   if (count > 0) memcpy(cuts, scene->cuts, count * sizeof *cuts);
-  add_cuts(composer->asked, low, high, 0, cuts, &count);
+  add_cuts(composer, &target, low, high, 0, cuts, &count);
   scene->cuts = cuts;
   scene->cut_count = count;
   return HL_OK;

@@ -14,6 +14,7 @@
 #include "text/color.h"
 #include "text/edit_distance.h"
 #include "text/plain.h"
+#include "text/stem.h"
 
 static const char *preset_name(const void *data, size_t index) {
   (void)data;
@@ -111,9 +112,9 @@ static void name_of(const part *part, char *name, size_t size) {
   if (part->name != NULL) {
     snprintf(name, size, "%s", part->name);
   } else if (part->file != NULL) {
-    const char *slash = strrchr(part->file, '/'), *base = slash != NULL ? slash + 1 : part->file;
-    const char *dot = strrchr(base + (base[0] == '.'), '.');
-    snprintf(name, size, "%.*s", dot != NULL ? (int)(dot - base) : (int)strlen(base), base);
+    size_t length;
+    const char *stem = hl_stem(part->file, &length);
+    snprintf(name, size, "%.*s", (int)(length < size ? length : size - 1), stem);
   } else {
     snprintf(name, size, "%s%zu", part->kind, part->index + 1);
   }
@@ -187,7 +188,17 @@ static void list_names(const hl_scene_description *description, bool with_meshes
     list_name(part_of_mesh(&description->meshes[m], m), names, size);
 }
 
-/* Refuses values with a NAME= that no volume has. many: whether the option may be given several times for one
+hl_status hl_check_volume_name(const hl_composer *composer, hl_ask option, const char *text,
+                               const hl_scene_description *description) {
+  char names[600];
+  if (is_for_any(composer, text, description)) return HL_OK;
+  list_names(description, false, names, sizeof names);
+  return hl_fail(composer->error, HL_ERROR_ARGUMENT,
+                 "--%s: '%.200s': no volume has the name before '=': there is %s",
+                 hl_option_rows[option].name, text, names);
+}
+
+/* Refuses values with a NAME= that no volume has. many: the option may be given several times for one
  * volume. */
 static hl_status check_names(const hl_composer *composer, hl_ask option, bool many,
                              const hl_scene_description *description) {

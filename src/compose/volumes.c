@@ -19,9 +19,12 @@ static hl_status change_volume(const hl_composer *composer, const hl_scene_descr
   }
   if (asked[HL_ASK_CUT_SHADING].given) volume->cut_shading = (hl_cut_shading)asked[HL_ASK_CUT_SHADING].choice;
   if (asked[HL_ASK_CUT_CASTS_SHADOW].given) volume->cut_casts_shadow = 1;
-  hl_status status = asked[HL_ASK_CLIP].given ? hl_compose_clip(composer, volume) : HL_OK;
-  if (status == HL_OK && changed->cuts != NULL && description->volume_count == 1)
-    status = hl_compose_cuts(composer, volume, changed->cuts);
+  hl_status status = asked[HL_ASK_CLIP].given ? hl_compose_clip(composer, volume, index) : HL_OK;
+  if (status == HL_OK && changed->cuts != NULL) {
+    hl_cut *cuts = changed->cuts + changed->cuts_used;
+    status = hl_compose_cuts(composer, volume, index, description->volume_count == 1, cuts);
+    changed->cuts_used += volume->cut_count;
+  }
   const bool left_out = hl_is_left_out(composer, description, index);
   bool looks = hl_look_replaces_functions(composer), iso = asked[HL_ASK_ISO].given && !left_out,
        functions = hl_asks_for_functions(asked) && !left_out;
@@ -83,21 +86,21 @@ static bool changes_any(const hl_composer *composer) {
          asked[HL_ASK_CUT_CASTS_SHADOW].given;
 }
 
-/* Allocates the arrays for everything that may change. The array of cuts has room for the options' cuts and
- * for the cuts that are there already: the cuts of the only volume or, in a scene of several volumes, the
- * cuts of the scene. */
+/* Allocates the arrays for everything that may change. The array of cuts has room for the cuts that are there
+ * already, and for all of the options' cuts in the scene and in each volume. */
 static hl_status make_room(const hl_composer *composer, const hl_scene_description *description,
                            hl_changed_volumes *changed) {
   hl_context *context = composer->context;
   size_t count = description->volume_count, surfaces = (size_t)composer->asked[HL_ASK_ISO].count;
-  size_t own = count == 1 ? description->volumes[0].cut_count : description->cut_count,
-         added = hl_count_cuts(composer->asked);
+  size_t own = description->cut_count, added = hl_count_cuts(composer->asked);
+  for (size_t v = 0; v < count; v++) own += description->volumes[v].cut_count;
   changed->count = count;
   changed->volumes = hl_allocate(context, count, sizeof *changed->volumes);
   changed->functions = hl_allocate_zeroed(context, count, sizeof *changed->functions);
   if (surfaces > 0)
     changed->surfaces = hl_allocate_zeroed(context, count * surfaces, sizeof *changed->surfaces);
-  if (added > 0) changed->cuts = hl_allocate_zeroed(context, own + added, sizeof *changed->cuts);
+  if (added > 0)
+    changed->cuts = hl_allocate_zeroed(context, own + (count + 1) * added, sizeof *changed->cuts);
   bool whole = changed->volumes != NULL && changed->functions != NULL &&
                (surfaces == 0 || changed->surfaces != NULL) && (added == 0 || changed->cuts != NULL);
   if (!whole) return hl_fail_memory(composer->error, count * sizeof *changed->volumes, "the scene's volumes");
@@ -118,8 +121,12 @@ hl_status hl_compose_volumes(const hl_composer *composer, hl_scene_description *
   description->volumes = changed->volumes;
   for (size_t v = 0; whole && v < description->volume_count; v++) changed->volumes[v].cut_count = 0;
   status = hl_check_volume_names(composer, description);
-  if (status == HL_OK && changed->cuts != NULL && description->volume_count > 1)
+  if (status == HL_OK) status = hl_check_clip_names(composer, description);
+  if (status == HL_OK) status = hl_check_cut_names(composer, description);
+  if (status == HL_OK && changed->cuts != NULL && description->volume_count > 1) {
     status = hl_compose_scene_cuts(composer, description, changed->cuts);
+    changed->cuts_used = description->cut_count;
+  }
   for (size_t i = 0; i < description->volume_count && status == HL_OK; i++)
     status = change_volume(composer, description, changed, i);
   for (size_t i = 0; i < description->volume_count && status == HL_OK && masked; i++)

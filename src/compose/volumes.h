@@ -10,8 +10,8 @@ typedef struct hl_changed_volumes {
   hl_scene_volume *volumes;        /* [count] */
   hl_transfer_function *functions; /* [count]; with their points */
   hl_isosurface *surfaces;         /* [count][values of "iso"] */
-  hl_cut *cuts; /* all cuts: first the cuts of the only volume or, in a scene of several volumes, the cuts of
-                 * the scene, then the options' cuts */
+  hl_cut *cuts; /* with the options' cuts: those of a scene of several volumes, then those of each volume */
+  size_t cuts_used;
   size_t count;
   bool seen; /* whether the visible part of the volumes has changed */
 } hl_changed_volumes;

@@ -8,6 +8,7 @@
 #include "core/door.h"
 #include "core/memory.h"
 #include "scene/scene.h"
+#include "text/stem.h"
 
 /* MANY_SHEETS: a scene with more sheets than this may get a warning. A single volume of 2048 voxels along
  * each side has fewer sheets. */
@@ -24,12 +25,10 @@ typedef struct joined_volumes {
 
 /* Names a volume after its file: "head" for scans/head.nii.gz. */
 static void name_after_file(const hl_scene_volume *volume, size_t index, char name[NAME_BYTES]) {
-  const char *file = volume->file != NULL ? volume->file : "", *slash = strrchr(file, '/');
-  const char *base = slash != NULL ? slash + 1 : file;
-  const char *dot = base[0] != 0 ? strchr(base + 1, '.') : NULL;
-  size_t length = dot != NULL ? (size_t)(dot - base) : strlen(base);
+  size_t length;
+  const char *stem = hl_stem(volume->file != NULL ? volume->file : "", &length);
   if (volume->name != NULL) snprintf(name, NAME_BYTES, "%s", volume->name);
-  else if (length > 0) snprintf(name, NAME_BYTES, "%.*s", (int)(length < 200 ? length : 200), base);
+  else if (length > 0) snprintf(name, NAME_BYTES, "%.*s", (int)(length < 200 ? length : 200), stem);
   else snprintf(name, NAME_BYTES, "volume%zu", index + 1);
 }
 

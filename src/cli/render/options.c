@@ -288,30 +288,33 @@ const cli_option render_options[RENDER_OPTION_COUNT] = {
          .repeatable = true},
     [RENDER_CLIP] = {.name = "clip",
                      .kind = OPTION_TEXT,
-                     .argument = "AXIS=LO:HI",
+                     .argument = "[NAME=]AXIS=LO:HI",
                      .help = "keep a part along x, y or z: fractions\n(x=0:0.5), or lengths (x=10mm:40mm; u: "
-                             "the\nfile's own unit);\ngive it again for other axes",
+                             "the\nfile's own unit);\ngive it again for other axes; NAME= as for --tf",
                      .repeatable = true},
     [RENDER_CUT_PLANE] =
         {.name = "cut-plane",
          .kind = OPTION_TEXT,
-         .argument = "X,Y,Z:NX,NY,NZ",
+         .argument = "[NAME=]X,Y,Z:NX,NY,NZ",
          .help =
              "cut away everything beyond a plane through a point\n(fractions, or lengths such as 40mm), in "
              "a direction;\nx=0.5 is short for a plane across x, "
-             "and x=:0.5 cuts\nthe other side away; give it again for more planes",
+             "and x=:0.5 cuts\nthe other side away; give it again for more planes;\nwith NAME= (brain=x=0.5) "
+             "it cuts one volume alone",
          .repeatable = true},
-    [RENDER_CUT_BOX] =
-        {.name = "cut-box",
+    [RENDER_CUT_BOX] = {.name = "cut-box",
+                        .kind = OPTION_TEXT,
+                        .argument = "[NAME=]AXIS=LO:HI,...",
+                        .help = "cut a box out (x=0.5:,y=:0.5,z=0.5: is an octant);\ngive it again for more "
+                                "boxes; NAME= as for --cut-plane",
+                        .repeatable = true},
+    [RENDER_CUT_SPHERE] =
+        {.name = "cut-sphere",
          .kind = OPTION_TEXT,
-         .argument = "AXIS=LO:HI,...",
-         .help = "cut a box out (x=0.5:,y=:0.5,z=0.5: is an octant);\ngive it again for more boxes",
+         .argument = "[NAME=]X,Y,Z:RADIUS",
+         .help =
+             "cut a sphere out (0.5,0.5,1:0.3); give it again for more\nspheres; NAME= as for --cut-plane",
          .repeatable = true},
-    [RENDER_CUT_SPHERE] = {.name = "cut-sphere",
-                           .kind = OPTION_TEXT,
-                           .argument = "X,Y,Z:RADIUS",
-                           .help = "cut a sphere out (0.5,0.5,1:0.3); give it again for more\nspheres",
-                           .repeatable = true},
     [RENDER_CUT_SHADING] =
         {.name = "cut-shading",
          .kind = OPTION_CHOICE,

@@ -1,0 +1,17 @@
+/* text/stem.h - the names that volumes and meshes have after their files. */
+#ifndef HL_TEXT_STEM_H
+#define HL_TEXT_STEM_H
+
+#include <stddef.h>
+#include <string.h>
+
+/* Finds the part of a path that names what is in the file, without folder and extensions: "head" in
+ * scans/head.nii.gz. Returns its begin; *length: its length, 0 where the path has none. */
+static inline const char *hl_stem(const char *path, size_t *length) {
+  const char *slash = strrchr(path, '/'), *base = slash != NULL ? slash + 1 : path;
+  const char *dot = base[0] != '\0' ? strchr(base + 1, '.') : NULL;
+  *length = dot != NULL ? (size_t)(dot - base) : strlen(base);
+  return base;
+}
+
+#endif
