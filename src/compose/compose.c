@@ -146,7 +146,7 @@ static hl_status change_all(const hl_composer *composer, scene_change *change) {
     return hl_fail(composer->error, HL_ERROR_ARGUMENT,
                    "--background sky: the scene has no sky: add --sky, as --sky skyblue:white:grey");
   hl_warn_of_idle_options(composer, description);
-  return HL_OK;
+  return hl_tell_of_hidden_labels(composer, description);
 }
 
 static void change_release(hl_context *context, scene_change *change) {

@@ -140,6 +140,11 @@ bool hl_asks_for_labels(const hl_composer *composer, const hl_scene_description 
  * bare volume is shown as a label map. */
 hl_status hl_compose_labels(const hl_composer *composer, hl_scene **scene);
 
+/* ---- hidden.c ---- */
+
+/* If matter hides a label map that "labels" adds, as seen by the scene's camera, logs this. */
+hl_status hl_tell_of_hidden_labels(const hl_composer *composer, const hl_scene_description *scene);
+
 /* ---- idle.c ---- */
 
 /* Logs the options that were given but change nothing. */
