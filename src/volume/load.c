@@ -58,6 +58,7 @@ static hl_status take_byte_order_mark(hl_stream *stream, const unsigned char **b
  * its format. Returns null for all other files. Sources: the formats' own descriptions, and the list of marks
  * of file(1). */
 static const char *known_but_unsupported(const unsigned char *bytes, size_t length) {
+#define EXPORT     "export the volume as NRRD or NIfTI, or show it in Python: halflight.render("
 #define MICROSCOPE "convert it to OME-TIFF or OME-Zarr (bfconvert, bioformats2raw)"
   static const struct {
     size_t place;
@@ -67,10 +68,10 @@ static const char *known_but_unsupported(const unsigned char *bytes, size_t leng
   } marks[] = {
       {0, "\x89PNG", 4, "a picture, not a volume: give a folder of numbered ones"},
       {0, "\xff\xd8\xff", 3, "a JPEG picture, not a volume: give a folder of numbered ones"},
-      {0, "\x89HDF", 4, "an HDF5 file (MINC, NeXus, Imaris, ...): export the volume as NRRD or NIfTI"},
-      {0, "CDF\001", 4, "a NetCDF file (MINC, ...): export the volume as NRRD or NIfTI"},
-      {0, "CDF\002", 4, "a NetCDF file (MINC, ...): export the volume as NRRD or NIfTI"},
-      {0, "CDF\005", 4, "a NetCDF file: export the volume as NRRD or NIfTI"},
+      {0, "\x89HDF", 4, "an HDF5 file (MINC, NeXus, Imaris, ...): " EXPORT "h5py.File(path)[\"name\"])"},
+      {0, "CDF\001", 4, "a NetCDF file (MINC, ...): " EXPORT "xarray.open_dataset(path)[\"name\"])"},
+      {0, "CDF\002", 4, "a NetCDF file (MINC, ...): " EXPORT "xarray.open_dataset(path)[\"name\"])"},
+      {0, "CDF\005", 4, "a NetCDF file: " EXPORT "xarray.open_dataset(path)[\"name\"])"},
       {0, "\x28\xb5\x2f\xfd", 4, "compressed with zstd: decompress it first"},
       {0, "7z\xbc\xaf\x27\x1c", 6, "a 7-Zip archive: unpack it"},
       {0, "Rar!\x1a\x07", 6, "a RAR archive: unpack it"},

@@ -89,6 +89,8 @@ def foreign():
         (root / name).write_bytes(begin.ljust(600, b"\0"))
         code, out, said = run("info", name)
         check(f"{name} is refused by its name", code == 4, (code, said))
+        if title in ("HDF5", "NetCDF"):
+            check(f"{name}: Python's way", {"HDF5": "h5py.File(path)", "NetCDF": "xarray.open_dataset(path)"}[title] in said, said)
         check(f"{name}: the words", said.count("\n") == 1 and title in said and re.search(r": [a-z].*(convert|export|save|unpack|decompress|give|write)", said), said)
 
 
