@@ -1,5 +1,7 @@
-/* compose/labels.c - applies the options "labels", "mask", "label-table" and "show". A label map becomes one
- * more volume, or a mask over the volumes, or the bare volume itself is shown as a label map. */
+/* compose/labels.c - "labels", "mask", "label-table" and "show": a label map becomes one more volume, or a
+ * mask over the volumes, or the bare volume itself is shown as a label map. */
+#include <math.h>
+#include <stdio.h>
 #include <string.h>
 
 #include "compose/composer.h"
@@ -7,7 +9,7 @@
 #include "core/context.h"
 #include "core/door.h"
 #include "core/memory.h"
-#include "volume/load_beside.h"
+#include "text/stem.h"
 
 /* The number of label layers in the volume's file. Components that are neither time steps nor channels are
  * such layers. */
@@ -19,6 +21,16 @@ static size_t layers_of(const hl_volume *volume) {
     if (hl_volume_get_array(volume, n, &array) == HL_OK && array.chosen) return array.components;
   }
   return 1;
+}
+
+/* Names the only label of a map after the map's file, if the label has no name: a mask tells in the name of
+ * its file what it masks. */
+static void name_after_file(const char *file, hl_label_layers *layers, hl_label *labels, size_t count) {
+  size_t length;
+  const char *stem = hl_stem(file, &length);
+  if (count != 1 || (labels[0].name != NULL && labels[0].name[0] != '\0') || length == 0) return;
+  snprintf(layers->stem, sizeof layers->stem, "%.*s", (int)fmin((double)length, 200), stem);
+  labels[0].name = layers->stem;
 }
 
 /* Loads one layer and its labels. reading: the options for reading the file; a layer is read as a component
@@ -44,6 +56,7 @@ static hl_status load_layer(hl_context *context, const char *file, const char *t
   hl_label *labels = NULL;
   status = hl_labels_of_volume(context, made->volume, table, &labels, &made->label_count, error);
   made->labels = labels;
+  if (status == HL_OK && layers->count == 1) name_after_file(file, layers, labels, made->label_count);
   return status;
 }
 

@@ -29,6 +29,7 @@ typedef struct hl_shown_list {
 typedef struct hl_label_layers {
   hl_scene_volume volumes[HL_MOST_LABEL_LAYERS];
   size_t count;
+  char stem[256]; /* the name of the only label, where the file gives it no name */
 } hl_label_layers;
 
 hl_status hl_read_shown(const hl_asked *show, hl_shown_list *list, hl_error *error);
