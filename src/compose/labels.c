@@ -10,6 +10,7 @@
 #include "core/door.h"
 #include "core/memory.h"
 #include "text/stem.h"
+#include "volume/load_beside.h"
 
 /* The number of label layers in the volume's file. Components that are neither time steps nor channels are
  * such layers. */
