@@ -124,7 +124,9 @@ void hl_write_field(hl_function_writer *w) {
   const hl_data_analysis *a = w->analysis;
   const double way = fmax(a->top, a->solid * 1.001) - a->solid;
   add_shell_and_core(w, 1);
-  hl_add_colormap(w, "plasma", a->faint, a->solid + 0.6 * way, 0.3, 0.92);
+  /* The darkest part of the map is left out, because a shell of its colours hardly stands out from a dark
+   * background. */
+  hl_add_colormap(w, "plasma", a->faint, a->solid + 0.6 * way, 0.45, 0.95);
 }
 
 /* Writes the function for particles. Their densities extend over many powers of ten, so the values are
