@@ -213,7 +213,7 @@ def timeline(browser):
     to_frame(browser, 0)
     browser.run("halflight.store.changeLight(0, 'intensity', (l) => ({ ...l, intensity: 3 }))")
     press(browser, "key of this number now")
-    check(browser.run("[...document.querySelectorAll('.track-name')].map((n) => n.textContent)") == ["camera", "lights.0.intensity"], "two tracks")
+    check(browser.run("[...document.querySelectorAll('.track-name')].map((n) => n.textContent)") == ["camera", "light 1, intensity"], "two tracks")
     check(browser.run("document.querySelectorAll('.key').length") == 4, "two keys each")
     to_frame(browser, 2)
 

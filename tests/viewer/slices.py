@@ -17,7 +17,7 @@ import numpy
 import checks
 from checks import check
 from firefox import browser_named
-from hands import PROGRAM, center, open_section, rest, scene_of, set_control
+from hands import PROGRAM, center, open_section, press_named, rest, scene_of, set_control
 from viewer import Viewer, need_viewer
 
 SIDES = (40, 50, 30)  # i, j, k
@@ -186,6 +186,10 @@ def hands(browser, voxels):
     browser.drag([x, y], [x + 60, y - 30], button="right")
     changed = browser.run("halflight.slices.window")
     check(changed[1] - changed[0] > window[1] - window[0] and sum(changed) > sum(window), f"a right drag: {window} becomes {changed}")
+    press_named(browser, "Undo")
+    check(browser.run("halflight.slices.window") == window, "undo brings back window and level")
+    press_named(browser, "Redo")
+    check(browser.run("halflight.slices.window") == changed, "redo the change")
     browser.run("""document.querySelector('button[title="Window and level as at first"]').click()""")
     automatic = browser.run("halflight.slices.window")
     check(automatic == window, f"auto: the window as it was: {window}, {automatic}")

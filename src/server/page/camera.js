@@ -4,6 +4,7 @@
 import { add, cross, dot, length, normalize, rotate, scale, subtract } from "./vector.js";
 
 const LARGEST_STEP = 1.5; // greatest change of the distance by one zoom, as a factor
+const FARTHEST = 5e4; // greatest distance of the eye, in units of the nearest one: some thousand times the matter's size
 
 // Unit axes: right, up, and towards the viewer.
 export function axes(camera) {
@@ -45,10 +46,11 @@ export function pan(camera, right, up) {
 
 // Zooms; with factor > 1 the eye comes nearer. The point of the target's plane under the cursor stays there:
 // `cursor` is [right, up] from the middle, in fractions of the picture's height. An eye that is as near to
-// the target as `nearest` goes on, and takes the target along.
+// the target as `nearest` goes on, and takes the target along. An eye that is as far as FARTHEST stays where it is.
 export function zoom(camera, factor, cursor = [0, 0], nearest = 0) {
   const step = Math.min(Math.max(factor, 1 / LARGEST_STEP), LARGEST_STEP);
   const part = 1 - 1 / step;
+  if (step < 1 && nearest > 0 && worldHeight(camera) > FARTHEST * nearest) return camera;
   const moved = pan(camera, -cursor[0] * part, -cursor[1] * part);
   const arm = subtract(moved.position, moved.target);
   if (camera.type === "orthographic") return { ...moved, height: camera.height / step };

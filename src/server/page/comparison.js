@@ -123,7 +123,7 @@ export function comparison({ store, channel, failed, find, report }) {
     choice.update();
     buttons.forEach((one) => {
       one.setAttribute("aria-pressed", String(what === "before"));
-      one.disabled = what !== "before" && !store.canUndo;
+      one.disabled = what !== "before" && store.before === null;
     });
     left.textContent = NAMES[what] ?? "";
     right.textContent = what === "kept" || what === "before" ? "now" : NAMES[store.scene.render.shadows] ?? "";

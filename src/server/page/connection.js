@@ -9,6 +9,7 @@ import { button, make } from "./controls.js";
 export class Lost extends Error {}
 
 const ASK_EVERY = 2000; // milliseconds
+const KEPT = "Nothing is lost: what you did is kept in this tab.";
 
 // place: the element for the banner. onBack() is called when the viewer answers again; save() saves the session. Returns failed(error),
 // which takes any error of a request, and end().
@@ -26,7 +27,7 @@ export function watchConnection(place, channel, report, { onBack, save }) {
       banner.hidden = true;
       onBack();
     } catch (error) {
-      text.textContent = error.message;
+      text.textContent = `${error.message} ${KEPT}`;
       if (!ended && error instanceof Lost) timer = setTimeout(ask, ASK_EVERY);
     }
     retry.disabled = false;
@@ -37,7 +38,7 @@ export function watchConnection(place, channel, report, { onBack, save }) {
       report(error.message);
       return;
     }
-    text.textContent = `${error.message} Nothing is lost: what you did is kept in this tab.`;
+    text.textContent = `${error.message} ${KEPT}`;
     if (!banner.hidden) return;
     banner.hidden = false;
     timer = setTimeout(ask, ASK_EVERY);

@@ -53,6 +53,7 @@ export function slider({ label, low, high, step = "any", unit = "", exponential 
     step: "any",
     onchange: () => {
       if (number.value !== "" && Number.isFinite(+number.value)) set(Math.min(Math.max(+number.value, low), high));
+      number.value = shortNumber(get()); // also while the field has the focus: the number may be another one than was typed
       update();
     },
   });

@@ -17,6 +17,7 @@ const LEAST_PIXELS = 480 * 320; // least size of a picture while something moves
 const WIDEST = 8;
 const SOON_PREPARED = 128 ** 3; // number of voxels that are prepared in a few tenths of a second
 const SHADOW_PIXELS = 0.5; // the longer side of a shadow buffer, as a part of a moving picture's longer side
+const SETTLED_SPACING = 2; // voxels between the sheets of the first picture at rest, as long as it has LEAST_PIXELS
 const ADAPTION = 0.6; // exponent: the part of an error in time that one frame corrects
 
 // The distance of the first picture's sheets, such that the volumes of this picture are soon prepared.
@@ -26,7 +27,7 @@ function firstSpacing(volumes) {
 }
 
 // Pictures whose sides are multiples of 16 are rendered without a copy.
-const rounded = (side) => Math.max(16, Math.round(side / 16) * 16);
+const rounded = (side) => Math.max(16, Math.ceil(side / 16) * 16);
 
 export class Frames {
   #store;
@@ -41,7 +42,7 @@ export class Frames {
   #work; // number of pixels, with sheets a voxel apart, that take as long as the budget
   #voxels;
   #scene = null; // the scene that the newest picture shows, or will show
-  #animation = null; // { change, began, milliseconds }
+  #animation = null; // { change, began: null until its first picture is shown, milliseconds }
   statistics = { previews: 0, cancelled: 0, finals: 0, stage: "start" };
 
   // report({ stage, width, height, spacing, milliseconds, bytes, error }) is told of every frame.
@@ -93,13 +94,13 @@ export class Frames {
   // something changes.
   animate(change, milliseconds) {
     this.move();
-    this.#animation = { change, began: performance.now(), milliseconds };
+    this.#animation = { change, began: null, milliseconds };
   }
 
   // A frame of the animation; the scene itself where there is no animation, or where it has ended.
   #animated(scene) {
     if (this.#animation === null) return scene;
-    const { change, began, milliseconds } = this.#animation, part = (performance.now() - began) / milliseconds;
+    const { change, began, milliseconds } = this.#animation, part = began === null ? 0 : (performance.now() - began) / milliseconds;
     if (part >= 1) this.#animation = null;
     return part < 1 ? change(scene, part) : scene;
   }
@@ -125,13 +126,14 @@ export class Frames {
     this.#busy = true;
     while (this.#changed || this.#animation !== null) {
       this.#changed = false;
-      const scene = this.#animated(this.#affordable()), began = performance.now();
+      const animation = this.#animation, scene = this.#animated(this.#affordable()), began = performance.now();
       try {
         const frame = await this.#channel.fetchFrame(scene, { quality: 80, moving: true });
         if (frame !== null) {
           await this.#show(frame.blob, scene.image);
           this.#learn(performance.now() - began - (frame.times?.once ?? 0));
           this.statistics.previews++;
+          if (animation !== null) animation.began ??= performance.now();
           this.#tell("moving", scene, began, frame.blob);
         }
       } catch (error) {
@@ -179,10 +181,11 @@ export class Frames {
   async #refine(generation) {
     if (generation !== this.#generation) return;
     this.statistics.stage = "refining";
-    const { pixels } = this.#full(), scene = this.#store.scene;
-    const spacing = Math.min((pixels * BUDGET) / (this.#work * SETTLED_WITHIN), WIDEST);
+    const scene = this.#store.scene, single = (this.#work * SETTLED_WITHIN) / BUDGET; // number of pixels with sheets a voxel apart
+    // The picture gets smaller before its sheets get so wide that they are seen.
+    const pixels = Math.min(Math.max(single * SETTLED_SPACING, LEAST_PIXELS), this.#full().pixels), spacing = Math.min(pixels / single, WIDEST);
     try {
-      if (spacing > scene.render.sheet_spacing * 1.2)
+      if (spacing > scene.render.sheet_spacing * 1.2 || pixels < this.#full().pixels)
         await this.#step(generation, this.#scaled(pixels, spacing), "settled");
       if (generation === this.#generation) await this.#step(generation, scene, "final");
     } catch (error) {

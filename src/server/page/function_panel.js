@@ -76,7 +76,7 @@ function presetGroups(names, { kind, range }) {
   const suits = kind === "scanned body" || kind === "scanned matter" ? (range[0] <= LEAST_OF_MR ? /^ct-/ : /^(ct|mr)-/) : SUITED[kind];
   const listed = (some) => some.map((name) => [name, name]), suited = names.filter((name) => suits?.test(name));
   if (suited.length === 0) return listed(names);
-  return [{ group: `for a ${kind}`, choices: listed(suited) }, { group: "for other volumes", choices: listed(names.filter((name) => !suited.includes(name))) }];
+  return [{ group: `suited to ${kind}`, choices: listed(suited) }, { group: "for other volumes", choices: listed(names.filter((name) => !suited.includes(name))) }];
 }
 
 export function functionPanel({ store, start, current, channel, failed }) {

@@ -7,14 +7,14 @@ import { difference } from "./link.js";
 const PROJECTION = "mip"; // the look that is no surface and no medium: its greys are a preset
 
 // The scene that a maximum projection can show: without isosurfaces and meshes.
-const projected = ({ meshes: _, ...scene }) => ({ ...scene, volumes: scene.volumes.map(({ iso: __, ...volume }) => ({ ...volume, transfer_function: { preset: PROJECTION } })) });
+const projected = ({ meshes: _, ...scene }) => ({ ...scene, volumes: scene.volumes.map(({ iso: __, ...volume }) => (volume.labels ? volume : { ...volume, transfer_function: { preset: PROJECTION } })) });
 
 // A text about a look of a scene.
 const seen = ({ camera: _, lights: __, sky: ___, ambient: ____, image: _____, ...rest }) => rest;
 
 export function lookPanel(viewer) {
   const { store, start, channel } = viewer, { element, body } = section("Looks");
-  const names = start.looks ?? [], isOf = () => names.length > 0 && store.scene.volumes.length > 0 && store.scene.volumes.every((volume) => !volume.labels);
+  const names = start.looks ?? [], isOf = () => names.length > 0 && store.scene.volumes.some((volume) => !volume.labels);
   const looks = gallery({
     label: "Looks", names, viewer, made: (look) => channel.completeScene(look === PROJECTION ? projected(store.scene) : store.scene, { look }),
     isTaken: (scene) => difference(seen(scene), seen(store.scene)) === undefined,

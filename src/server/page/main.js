@@ -18,7 +18,7 @@ function show(start, source = null, kept = null) {
     channel = new HttpChannel(start.opened, source, start.refined);
   }
   shown = { source, keeping: new AbortController() };
-  const viewer = mount(document.body, channel, start, { keyboard: document, reopen: show, source, kept, restore: (file) => restoreFrom(file, viewer, channel, reopen), startAfresh: () => show(start, source) });
+  const viewer = mount(document.body, channel, start, { keyboard: document, reopen: show, source, kept, restore: (file) => restoreFrom(file, viewer, channel, reopen), startAfresh: () => show(start, source, { scene: start.scene, page: {}, history: viewer.store.historyBefore }) });
   globalThis.halflight = viewer; // for the console, and for tests
   followTitle(viewer.store);
   keepSession(viewer.store, start, source, shown.keeping.signal);

@@ -8,7 +8,8 @@ import { add, scale } from "./vector.js";
 
 const HEAD = 9; // pixels of an arrow's head
 const DOT = 4; // pixels; radius
-const TEXT_HEIGHT = 13; // pixels; of .mark-text in style.css
+const TEXT_HEIGHT = 13, TEXT_WIDTH = 8; // pixels, the width of a letter at most; of .mark-text in style.css
+const MOST_STEPS = 8; // lines by which a text gives way
 const KEY_REACH = 0.25; // fraction of the height of the shown area; a key moves a point by a fiftieth of it
 
 // The head of an arrow that points to [x, y].
@@ -17,15 +18,24 @@ function head([fromX, fromY], [x, y]) {
   return `M${x} ${y}L${x - dx - dy / 2} ${y - dy + dx / 2}M${x} ${y}L${x - dx + dy / 2} ${y - dy - dx / 2}`;
 }
 
-// The elements of a mark, whose points lie on the screen at `places`.
-function drawn(mark, places, caption, className) {
+// The least place at or below [x, y] where a text covers none of the rectangles in `taken`, to which its own is added.
+function freePlace([x, y], text, taken) {
+  const wide = TEXT_WIDTH * text.length, free = (top) => taken.every(([left, t, right, bottom]) => x >= right || x + wide <= left || top >= bottom || top + TEXT_HEIGHT <= t);
+  let top = y - TEXT_HEIGHT;
+  for (let step = 0; step < MOST_STEPS && !free(top); step++) top += TEXT_HEIGHT;
+  if (text !== "") taken.push([x, top, x + wide, top + TEXT_HEIGHT]);
+  return [x, top + TEXT_HEIGHT];
+}
+
+// The elements of a mark, whose points lie on the screen at `places`. taken: the rectangles of texts: [left, top, right, bottom].
+function drawn(mark, places, caption, className, taken) {
   const path = places.map(([x, y], n) => `${n > 0 ? "L" : "M"}${x} ${y}`).join("") + (mark.kind === "arrow" && places.length === 2 ? head(...places) : "");
   const at = mark.kind === "ruler" && places.length === 2 ? [(places[0][0] + places[1][0]) / 2, (places[0][1] + places[1][1]) / 2]
     : mark.kind === "angle" && places.length > 1 ? places[1] : places.at(mark.kind === "arrow" ? 0 : -1);
   // To the right of a ruler's middle, above a ruler that falls to the right and below one that rises: it covers neither the line nor its end.
   const rises = mark.kind === "ruler" && places.length === 2 && (places[1][0] - places[0][0]) * (places[1][1] - places[0][1]) < 0;
-  return [make("svg:path", { d: path, class: "mark-halo" }), make("svg:path", { d: path, class: className }),
-    make("svg:text", { x: at[0] + 8, y: rises ? at[1] + 8 + TEXT_HEIGHT : at[1] - 8, class: "mark-text" }, caption)];
+  const [x, y] = freePlace([at[0] + 8, rises ? at[1] + 8 + TEXT_HEIGHT : at[1] - 8], caption, taken);
+  return [make("svg:path", { d: path, class: "mark-halo" }), make("svg:path", { d: path, class: className }), make("svg:text", { x, y, class: "mark-text" }, caption)];
 }
 
 export class Marks {
@@ -51,15 +61,15 @@ export class Marks {
   }
 
   #draw({ shapes, handles }, project, ways, width, height, faintness) {
-    const inside = ([x, y]) => x >= 0 && y >= 0 && x <= width && y <= height, points = [];
+    const taken = [], inside = ([x, y]) => x >= 0 && y >= 0 && x <= width && y <= height, points = [];
     shapes.replaceChildren(...this.#all.flatMap((mark, m) => {
       const places = mark.points.map(project), style = faintness(mark);
       if (places.length === 0 || places.includes(null) || style === null) return [];
       if (m < this.#viewer.store.marks.length)
         mark.points.forEach((point, n) => { if (inside(places[n])) points.push(this.#handle(m, n, mark, point, ways)); });
-      if (m < this.#viewer.store.marks.length) return drawn(mark, places, captionOf(mark, this.#viewer), `mark ${style}`);
+      if (m < this.#viewer.store.marks.length) return drawn(mark, places, captionOf(mark, this.#viewer), `mark ${style}`, taken);
       // Of a mark that is being made, a single point has no length yet; its points are seen as dots.
-      return [...drawn(mark, places, places.length > 1 ? captionOf(mark, this.#viewer) : mark.text ?? "", `mark ${style}`),
+      return [...drawn(mark, places, places.length > 1 ? captionOf(mark, this.#viewer) : mark.text ?? "", `mark ${style}`, taken),
         ...places.map(([x, y]) => make("svg:circle", { cx: x, cy: y, r: DOT, class: "mark-dot" }))];
     }));
     handles.draw(points, project, points[0]?.at ?? [0, 0, 0], width, height);

@@ -7,10 +7,10 @@ import { length, subtract } from "./vector.js";
 
 export function markPanel(viewer) {
   const { store, root, slices } = viewer, { element, body } = section("Measure", false);
-  let kind = null, points = [];
+  let kind = null, points = [], aimed = null; // aimed: where the crosshair lay when the last point was made
   element.hidden = !viewer.channel.depth && !slices.available; // without depths, no click tells a place
 
-  const tools = Object.entries(KINDS).map(([name, { name: text }]) => button(text, () => choose(kind === name ? null : name), { "aria-pressed": "false", "data-kind": name }));
+  const tools = Object.entries(KINDS).map(([name, { name: text }]) => button(text, () => change(kind === name ? null : name), { "aria-pressed": "false", "data-kind": name }));
   const hint = make("p", { class: "facts", role: "status" }), list = make("ul", { class: "files marks", "aria-label": "Marks" });
   const atCrosshair = button("point at the crosshair", () => addPoint(slices.cursor)), done = button("finish", finish);
 
@@ -20,12 +20,19 @@ export function markPanel(viewer) {
     store.setPage({});
   }
 
+  // Another tool is chosen, or none. A line that is under way is finished, as far as it has come.
+  function change(name) {
+    finish();
+    if (name !== null) choose(name);
+  }
+
   // Adds a point; returns whether it was taken.
   function addPoint(point) {
     if (kind === null) return false;
     // The second click of two.
     if (points.length > 0 && length(subtract(point, points.at(-1))) === 0) return true;
     points = [...points, point];
+    aimed = slices.available ? slices.cursor : null;
     if (points.length === KINDS[kind].most) finish();
     else store.setPage({});
     return true;
@@ -43,9 +50,19 @@ export function markPanel(viewer) {
     if (wasText) list.querySelector("li:last-child input").select();
   }
 
+  // Enter in a slice: a point at the crosshair. Where the crosshair has not moved since the last point, it ends the line. Returns whether
+  // a tool is chosen.
+  function enter() {
+    if (kind === null) return false;
+    const hasMoved = aimed === null || length(subtract(slices.cursor, aimed)) > 0;
+    if (points.length >= KINDS[kind].least && !hasMoved) finish();
+    else addPoint(slices.cursor);
+    return true;
+  }
+
   // The functions of the tool for other files.
   viewer.marking = {
-    addPoint, finish, cancel: () => choose(null), get isMaking() { return kind !== null; },
+    addPoint, enter, finish, cancel: () => choose(null), get isMaking() { return kind !== null; },
     get unfinished() { return points.length > 0 ? { kind, points, text: "" } : null; },
   };
 

@@ -11,7 +11,7 @@ import { directionOf, sizeOf, steppedDirection, withDirection, withSize } from "
 import { SkyRing } from "./sky_ring.js";
 import { symbolOf } from "./units.js";
 
-const MARKER = { size: 34, left: 64, bottom: 64 }; // pixels
+const MARKER = { size: 34, left: 64, bottom: 64, roomy: 360 }; // pixels; in a picture whose shorter side is less than roomy it is smaller
 const BAR_WIDTH = 140; // the most pixels
 // Radius of the sphere on which lights are moved, as a part of the picture's shorter side.
 const SPHERE_OF_HEIGHT = 0.42;
@@ -108,12 +108,13 @@ export class Overlay {
   #drawMarker() {
     const frame = axes(this.#store.scene.camera);
     const names = AXIS_NAMES[this.#start.volumes[0]?.space] ?? ["x", "y", "z"];
-    const middle = [MARKER.left, this.#height - MARKER.bottom];
+    const part = Math.min(Math.max(Math.min(this.#width, this.#height) / MARKER.roomy, 0.5), 1), size = part * MARKER.size;
+    const middle = [part * MARKER.left, this.#height - part * MARKER.bottom];
     const arrows = [0, 1, 2].map((k) => ({ k, right: frame.right[k], up: frame.up[k], depth: frame.towards[k] }));
     arrows.sort((a, b) => a.depth - b.depth);
     this.#marker.replaceChildren(...arrows.flatMap(({ k, right, up, depth }) => {
-      const tip = [middle[0] + MARKER.size * right, middle[1] - MARKER.size * up];
-      const name = [middle[0] + (MARKER.size + 12) * right, middle[1] - (MARKER.size + 12) * up];
+      const tip = [middle[0] + size * right, middle[1] - size * up];
+      const name = [middle[0] + (size + 12) * right, middle[1] - (size + 12) * up];
       const style = `axis axis-${k}${depth < -0.2 ? " far" : ""}`;
       const text = make("svg:text", { x: name[0], y: name[1], class: style }, names[k]);
       return [make("svg:line", { x1: middle[0], y1: middle[1], x2: tip[0], y2: tip[1], class: style }), text];

@@ -89,14 +89,6 @@ export function keptSession() {
   }
 }
 
-export function forgetSession() {
-  try {
-    sessionStorage.removeItem(KEY);
-  } catch {
-    // there is no session
-  }
-}
-
 // Shows what a file has, a session or a scene, where it is of the volumes that a viewer (mount() of viewer.js) has open. Of a
 // session of other volumes, reopen(session) may open these and show it: it resolves to whether it could. Resolves to "opened", or to
 // "other" for a scene of other files.

@@ -4,7 +4,7 @@ import { reshaped } from "./camera.js";
 import { button, isActive, make, row, section } from "./controls.js";
 import { download, stem } from "./export.js";
 import { follow, isLink, linkOf } from "./link.js";
-import { forgetSession, sessionOf } from "./session.js";
+import { sessionOf } from "./session.js";
 
 const THUMBNAIL = 72; // pixels of height
 
@@ -67,11 +67,10 @@ export function sessionPanel(viewer) {
     await viewer.followLink(text);
   } });
   viewer.followLink = (text) => (isLink(text) ? follow(text, viewer).catch(viewer.failed) : report("A link has #view= in it."));
-  const afresh = () => { forgetSession(); viewer.startAfresh(); };
   const backwards = button("camera back", () => store.undoCamera(), { title: "The view before (c)" }), forwards = button("camera on", () => store.redoCamera(), { title: "The view after (C)" });
   body.append(row(make("span", { class: "name" }, "View"), make("span", { class: "buttons" }, button("bookmark", bookmarks.add), backwards, forwards)), bookmarks.element,
     row(make("span", { class: "name" }, "Session"), make("span", { class: "buttons" }, button("save session", save),
-      ...(openSession ? [button("open …", () => chooser.click(), { "aria-label": "Open a session or a scene" }), button("start afresh", afresh, { title: "As the viewer began: what was done in this tab is forgotten" })] : []))),
+      ...(openSession ? [button("open …", () => chooser.click(), { "aria-label": "Open a session or a scene" }), button("start afresh", () => viewer.startAfresh(), { title: "As the viewer began; Undo brings back what was done" })] : []))),
     row(make("span", { class: "name" }, "Link"), make("span", { class: "pair" }, pasted, button("copy link", copyLink, { title: "What you see now, as the end of an address: for whoever has the same file open" }))),
     chooser, ...(openSession ? [make("p", { class: "facts" }, "A session holds the scene, marks, bookmarks, film and layout, and names its volumes. This tab keeps it, for when the page is reloaded and the same files are open again.")] : []));
   function update() {

@@ -27,7 +27,7 @@ export function installShortcuts(store, keyboard, area, actions, nearest) {
     ["ArrowUp", "↑", "turn up", move((c) => turn(c, 0, STEP))],
     ["ArrowDown", "↓", "turn down", move((c) => turn(c, 0, -STEP))],
     ["+", "+", "zoom in", move((c) => zoom(c, 1.1, [0, 0], nearest))],
-    ["-", "−", "zoom out", move((c) => zoom(c, 1 / 1.1))],
+    ["-", "−", "zoom out", move((c) => zoom(c, 1 / 1.1, [0, 0], nearest))],
     ["[", "[", "roll left", move((c) => roll(c, STEP))],
     ["]", "]", "roll right", move((c) => roll(c, -STEP))],
     ["x", "x", "look along x (X: from the other end)", move((c) => lookAlong(c, 0, 1))],

@@ -105,8 +105,8 @@ export class SkyRing {
   }
 
   #handle(label, d, move, step) {
-    return make("svg:path", {
-      class: "sky-handle", d, tabindex: 0, role: "slider", "aria-label": label, "aria-valuemin": -180, "aria-valuemax": 180, "aria-valuenow": 0,
+    return make("svg:g", {
+      class: "sky-handle", tabindex: 0, role: "slider", "aria-label": label, "aria-valuemin": -180, "aria-valuemax": 180, "aria-valuenow": 0,
       onpointerdown: (event) => this.#grab(event, move),
       onkeydown: (event) => {
         if (!ARROWS[event.key]) return;
@@ -114,7 +114,7 @@ export class SkyRing {
         event.preventDefault();
         event.stopPropagation();
       },
-    });
+    }, make("svg:path", { d }), make("svg:circle", { class: "target", r: 12 }));
   }
 
   #grab(event, move) {

@@ -274,7 +274,7 @@ export class SliceView {
     else if (event.key === "PageUp" || event.key === "PageDown") this.#scroll(event.key === "PageUp" ? far : -far);
     else if (event.key === "+" || event.key === "-") this.#zoomBy(event.key === "+" ? 1.25 : 0.8, middle);
     else if (event.key === "Home") this.reset();
-    else if (event.key === "Enter") { if (!this.#slices.addPoint(this.#slices.cursor)) return; }
+    else if (event.key === "Enter") { if (!this.#slices.enter()) return; }
     else return;
     event.preventDefault();
     event.stopPropagation();

@@ -87,6 +87,7 @@ export class Slices {
 
   // Whether a click was taken as a point of the mark that is being made.
   addPoint(point) { return this.#viewer.marking?.addPoint(point) ?? false; }
+  enter() { return this.#viewer.marking?.enter() ?? false; }
   finishMark() { this.#viewer.marking?.finish(); }
 
   // ---- clicks in the picture ----

@@ -8,10 +8,15 @@ import { readMarks } from "./marks.js";
 const MOST_STEPS = 100; // the most steps that can be undone, for each history
 const UNREMEMBERED = ["camera", "size", "time", "page"]; // changes that are no steps of the main history
 
-// What is undone: everything of the scene but the camera and the picture's size, the marks, the film's keys and length, and what the
-// scene's files are called and were opened by.
-function lasting({ scene: { camera, image: { width, height, ...image }, ...rest }, marks, page: { film }, source, title }) {
-  return { rest, image, marks, film, source, title };
+// The settings of the page that are undone besides the film. The crosshair and which sections are unfolded are left as they are.
+const KEPT = ["layout", "plane", "oblique", "windows", "thickness", "blend", "showLabels", "showIsolines", "bookmarks"];
+
+const keptOf = (page) => Object.fromEntries(KEPT.map((key) => [key, page[key]]));
+
+// What is undone: everything of the scene but the camera and the picture's size, the marks, the film's keys and length, settings of the
+// page, and what the scene's files are called and were opened by.
+function lasting({ scene: { camera, image: { width, height, ...image }, ...rest }, marks, page, source, title }) {
+  return { rest, image, marks, film: page.film, shown: keptOf(page), source, title };
 }
 
 // Whether two films have the same keys and length. They may show other frames, and turn from other views.
@@ -89,6 +94,8 @@ export class Store {
 
   // Changes parts of what the page shows besides pictures.
   setPage(part) {
+    const changed = KEPT.filter((key) => key in part && part[key] !== this.page[key]);
+    if (changed.length > 0) this.#remember(`page's ${changed}`);
     this.page = { ...this.page, ...part };
     this.#tell("page");
   }
@@ -156,10 +163,11 @@ export class Store {
     if (steps.length > MOST_STEPS) steps.shift();
   }
 
-  // The scene before the last step, seen as the picture is now; null where there is no step.
+  // The scene before the last step that changed it, seen as the picture is now; null where there is no such step.
   get before() {
-    if (!this.canUndo) return null;
-    const { rest, image } = this.#undo.at(-1), { camera, image: { width, height } } = this.scene;
+    const now = lasting(this), step = this.#undo.findLast(({ rest, image }) => !isSame(rest, now.rest) || !isSame(image, now.image));
+    if (step === undefined) return null;
+    const { rest, image } = step, { camera, image: { width, height } } = this.scene;
     return { ...rest, camera, image: { ...image, width, height } };
   }
 
@@ -181,10 +189,10 @@ export class Store {
 
   #step(from, to) {
     if (from.length === 0) return;
-    const now = lasting(this), { rest, image, marks, film, source, title } = from.pop();
+    const now = lasting(this), { rest, image, marks, film, shown = now.shown, source, title } = from.pop();
     to.push(now);
     this.marks = marks;
-    if (!isSameFilm(film, now.film)) this.page = { ...this.page, film: filmAgain(film, now.film) };
+    this.page = { ...this.page, ...keptOf(shown), ...(isSameFilm(film, now.film) ? {} : { film: filmAgain(film, now.film) }) };
     this.source = source ?? null;
     this.title = title ?? this.title;
     this.#last = { name: "", gesture: -1 };

@@ -5,6 +5,13 @@ import { axes, distance, withType } from "./camera.js";
 import { add, rotate, scale, subtract, turnOfFrames } from "./vector.js";
 
 export const CAMERA = "camera";
+
+// The name of a track for people: "light 1, intensity" for lights.0.intensity, "light 1, direction x" for lights.0.direction.0.
+export function trackName(path) {
+  const [kind, number, ...rest] = path.split("."), isOne = ["lights", "volumes", "meshes"].includes(kind) && rest.length > 0;
+  const words = (isOne ? rest : path.split(".")).map((word, n, all) => (n === all.length - 1 && /^[012]$/.test(word) ? "xyz"[word] : word.replaceAll("_", " ").replace(/ deg$/, "")));
+  return isOne ? `${kind.slice(0, -1).replace("meshe", "mesh")} ${+number + 1}, ${words.join(" ")}` : words.join(" ");
+}
 export const MOST_FRAMES = 100000, MOST_FPS = 240;
 export const FORMATS = [["mp4", "MP4"], ["webm", "WebM"], ["gif", "GIF"], ["zip", "Pictures"]];
 // Angle between two points of a turning camera's keys: the chord is 0.14 % nearer than the arc.

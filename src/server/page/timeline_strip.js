@@ -2,7 +2,7 @@
 
 import { button, make } from "./controls.js";
 import { followDrag } from "./drag.js";
-import { CAMERA, withMovedKey, withoutKey } from "./timeline.js";
+import { CAMERA, trackName, withMovedKey, withoutKey } from "./timeline.js";
 
 // get() returns { tracks, frames, frame, fps }; setTracks(tracks) takes changed tracks; show(frame) goes to a
 // frame; play() begins or ends playing; canShow: whether frames can be shown at all. Returns { element,
@@ -45,7 +45,7 @@ export function timelineStrip({ get, setTracks, show, play, canShow }) {
   const keyMark = (path, [frame, value]) => {
     const mark = button("", () => show(frame), {
       class: "key", "data-path": path, "data-frame": frame, title: path === CAMERA ? `frame ${frame}` : `frame ${frame}: ${value}`,
-      "aria-label": `Key of ${path} at frame ${frame}. Arrow keys move it, Delete removes it.`,
+      "aria-label": `Key of ${trackName(path)} at frame ${frame}. Arrow keys move it, Delete removes it.`,
       onpointerdown: (event) => drag(event, path, frame), onkeydown: (event) => onKey(event, path, frame),
     });
     mark.style.left = left(frame);
@@ -63,8 +63,8 @@ export function timelineStrip({ get, setTracks, show, play, canShow }) {
     if (drawn?.tracks === tracks && drawn.frames === frames) return;
     drawn = { tracks, frames };
     rows.replaceChildren(...tracks.map(({ path, points }) => make("div", { class: "track" },
-      make("span", { class: "track-name", title: path }, path), make("span", { class: "track-keys" }, ...points.map((point) => keyMark(path, point))),
-      button("−", () => setTracks(get().tracks.filter((track) => track.path !== path)), { "aria-label": `Remove the keys of ${path}` }))));
+      make("span", { class: "track-name", title: path }, trackName(path)), make("span", { class: "track-keys" }, ...points.map((point) => keyMark(path, point))),
+      button("−", () => setTracks(get().tracks.filter((track) => track.path !== path)), { "aria-label": `Remove the keys of ${trackName(path)}` }))));
   }
   return { element, update };
 }

@@ -170,6 +170,17 @@ async function openSession(file, restore, viewer) {
   }
 }
 
+// Unfolds and folds the sections as they were before a reload, and keeps which ones are not as at first: page.sections, by title.
+function keepOpenSections(panels, store) {
+  const titleOf = (element) => element.firstElementChild.textContent, all = [...panels.querySelectorAll(".section")].map((element) => ({ element, first: element.open }));
+  for (const { element, first } of all) element.open = store.page.sections?.[titleOf(element)] ?? first;
+  const keep = () => {
+    const { sections = {} } = store.page, now = Object.fromEntries(all.filter(({ element, first }) => element.open !== first).map(({ element }) => [titleOf(element), element.open]));
+    if (Object.keys({ ...sections, ...now }).some((title) => now[title] !== sections[title])) store.setPage({ sections: now });
+  };
+  panels.addEventListener("toggle", keep, { capture: true }); // the event does not rise to the side bar
+}
+
 // Unfolds a section of the side bar, and moves the keyboard's focus there.
 function revealIn(root) {
   return (title) => {
@@ -205,7 +216,7 @@ export function mount(element, channel, whole, { keyboard = element, reopen = ()
   const start = startOf(kept?.scene ?? whole.scene, whole);
   const store = new Store(kept?.scene ?? start.scene, { ...kept, source: kept?.own ?? source, title: kept?.title ?? whole.title }), report = messageBox(find("message"));
   const viewer = { store, start, channel, smallPicture: smallPictures(channel), report, reopen, root, find, source, startAfresh, choose, copy: copier(report, store), current: { volume: 0, light: 0 }, address, atRest: [], frames: () => frames };
-  const connection = watchConnection(find("view"), channel, report, { onBack: () => { frames.move(); viewer.slices.update(); }, save: () => viewer.saveSession() });
+  const connection = watchConnection(root.querySelector("main"), channel, report, { onBack: () => { frames.move(); viewer.slices.update(); }, save: () => viewer.saveSession() });
   viewer.failed = connection.failed;
   if (restore !== null) viewer.openSession = (file) => openSession(file, restore, viewer);
   followGestures(root, store, ended.signal);
@@ -251,6 +262,7 @@ export function mount(element, channel, whole, { keyboard = element, reopen = ()
   helpSheet(find("help"), installShortcuts(store, { target: keyboard, signal: ended.signal }, find("view"), actions, nearestOf(start)));
   const buttons = { undo: () => store.undo(), redo: () => store.redo(), "show-help": actions.help, theme: actions.theme, "show-lights": actions.lights, reset: actions.reset, probe: actions.probe, sidebar: actions.sidebar, full: actions.full, open: () => reveal("Open"), save: () => reveal("Save") };
   for (const [id, action] of Object.entries(buttons)) find(id).addEventListener("click", action);
+  keepOpenSections(find("panels"), store);
   find("open").hidden = !channel.open && choose === null;
   viewer.overlay.showsLights = true;
   followFiles(store, whole, source, reopen);
