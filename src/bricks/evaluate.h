@@ -55,8 +55,14 @@ double hl_bricks_value(const hl_bricks *bricks, const double point[3]);
  * The field's values in these cells lie between these two numbers. */
 void hl_bricks_range(const hl_bricks *bricks, const int64_t first[3], const int64_t last[3], float range[2]);
 
-/* Returns whether all coefficients and constants are finite. Numbers that are not finite stand for places
- * without data. */
+/* The ranges of a row of boxes. The first box has the cells first .. last, and each further box begins `step`
+ * cells behind the box before it, along x. Where boxes depend on the same coefficients, as in coarse bricks,
+ * their range is found once. ranges: [count]. */
+void hl_bricks_ranges(const hl_bricks *bricks, const int64_t first[3], const int64_t last[3], int64_t step,
+                      size_t count, float (*ranges)[2]);
+
+/* Whether all coefficients and constants are finite. Numbers that are not finite stand for places without
+ * data. */
 bool hl_bricks_are_finite(const hl_bricks *bricks);
 /* Copies bricks, and replaces numbers that are not finite by `empty`. filled: must have a directory and a
  * pool of the same sizes as in `bricks`; the function sets all other members. */
