@@ -1,4 +1,4 @@
-"""``python -m halflight``: the program."""
+"""Runs the program `halflight` as ``python -m halflight``."""
 import sys
 
 from .program import main

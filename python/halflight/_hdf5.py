@@ -1,4 +1,4 @@
-"""Files of HDF5 are opened by h5py, which the package does not bring."""
+"""Opens HDF5 files by h5py, which is not installed with this package."""
 from __future__ import annotations
 
 from typing import Any

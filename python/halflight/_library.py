@@ -1,8 +1,8 @@
-"""The library's calls: one context for the process, errors as exceptions, Ctrl-C and progress.
+"""Calls the library: keeps one context for the process, raises errors as exceptions, and handles Ctrl-C and progress.
 
-cffi releases the interpreter's lock during every call. While a call runs, the library asks C code
-(python/native.c), which asks here every 50 ms: in the main thread entering Python runs the handlers of
-signals, so that Ctrl-C raises in `python_wants_stop` and the call ends.
+cffi releases the interpreter's lock during every call. While a call runs, the library asks C code (python/native.c)
+whether to stop, and the C code asks this module every 50 ms. In the main thread, Python then runs the handlers of
+signals. So Ctrl-C raises an exception in `python_wants_stop`, and the call ends.
 """
 from __future__ import annotations
 
@@ -25,7 +25,7 @@ Report = Callable[[str, float], object]
 
 
 class _Calls(threading.local):
-    """What the callbacks of this thread's call leave behind."""
+    """The results that the callbacks of this thread's call leave for the caller."""
 
     def __init__(self) -> None:
         self.failure: BaseException | None = None
@@ -34,8 +34,9 @@ class _Calls(threading.local):
 
 
 _calls = _Calls()
-_lent: dict[int, object] = {}  # arrays that volumes borrow, by the number that the library gives back
-_converted: dict[int, object] = {}  # what the library reads of converted files, by its address
+# The arrays that volumes borrow, by the number that the library passes when it releases an array.
+_lent: dict[int, object] = {}
+_converted: dict[int, object] = {}  # the bytes of converted files that the library reads, by their address
 _numbers = itertools.count(1)
 
 
@@ -70,7 +71,7 @@ def python_array_released(key: int) -> None:
 @ffi.def_extern(error=lib.HL_ERROR_CANCELLED, onerror=_remember)  # type: ignore[untyped-decorator]
 def python_convert(path: Any, content: Any, byte_count: Any, error: Any) -> int:
     """Convert OpenVDB to NanoVDB. The bytes are kept until `python_converted` is called."""
-    from . import _openvdb  # here: what it needs takes 8 ms to import
+    from . import _openvdb  # this import stands here because it takes 8 ms
     try:
         converted = ffi.from_buffer(_openvdb.convert(os.fsdecode(ffi.string(path))))
     except _openvdb.NoConverter:
@@ -112,12 +113,12 @@ def lend(description: Any, array: object) -> None:
 
 
 def unlend(description: Any) -> None:
-    """Take back what was lent where no volume was made."""
+    """Release the arrays that were lent to the library if no volume was made."""
     _lent.pop(int(ffi.cast("uintptr_t", description.release_data)), None)
 
 
 def is_url(path: str) -> bool:
-    """Whether a path is a URL of a web server, for the library, too."""
+    """Whether a path is a URL of a web server, as the library understands it."""
     return path.startswith(("http://", "https://"))
 
 
@@ -139,7 +140,7 @@ def _exception(status: int, error: Any, path: str | None) -> BaseException:
 
 
 def _frames_to_caller() -> int:
-    """How many frames up the first one outside this package is; warnings are told of that one."""
+    """The number of stack frames up to the first one outside this package. Warnings name the line of that frame."""
     depth, frame = 1, sys._getframe(1)
     while frame.f_back is not None and frame.f_globals.get("__name__", "").partition(".")[0] == __package__:
         depth, frame = depth + 1, frame.f_back
@@ -153,7 +154,7 @@ def warn(message: str) -> None:
 
 @contextmanager
 def listening(report: Report | None) -> Iterator[None]:
-    """Calls within tell their progress to `report`."""
+    """Within this context manager, calls report their progress to `report`."""
     _calls.reports.append(report)
     try:
         yield
@@ -162,7 +163,7 @@ def listening(report: Report | None) -> Iterator[None]:
 
 
 def call(function: Any, *arguments: Any, path: str | None = None) -> None:
-    """Call `function(*arguments, error)`, and raise what it reports.
+    """Call `function(*arguments, error)`, and raise the error that it reports.
 
     Parameters
     ----------
@@ -210,7 +211,7 @@ def encoded(function: Any, *arguments: Any) -> bytes:
 
 
 def choices_of(option: str) -> list[str]:
-    """The choices of an option that scenes are composed by; none where there is no such option."""
+    """The choices of an option by which scenes are composed; an empty list if there is no such option."""
     choices = lib.hl_option_choices(option.encode())
     found: list[str] = []
     while choices != ffi.NULL and choices[len(found)].name != ffi.NULL:
@@ -226,7 +227,7 @@ def composed(description: Any, flags: Any, options: Mapping[str, str]) -> Any:
 
 
 def names(function: Any) -> list[str]:
-    """The names that `function(0)`, `function(1)`, ... tell until null."""
+    """The names that `function(0)`, `function(1)`, ... return, up to the first null."""
     found: list[str] = []
     while (name := function(len(found))) != ffi.NULL:
         found.append(text_of(name))

@@ -1,4 +1,5 @@
-"""OpenVDB files as NanoVDB, by halflight-openvdb or the converter of libnanovdb-tools, as the program does it."""
+"""Converts OpenVDB files to NanoVDB by halflight-openvdb or by the converter of libnanovdb-tools, as the program does.
+"""
 from __future__ import annotations
 
 import os
@@ -16,15 +17,16 @@ class NoConverter(Exception):
 def convert(path: str) -> bytes:
     """The NanoVDB file that a converter makes of an OpenVDB file.
 
-    The converter sees names of this module's choice only: the input is a link in a temporary folder. It may take the
-    machine's memory, and write as much: of a damaged file it can ask for any number of bytes.
+    This module chooses all names that the converter gets: the input is a link in a temporary folder. The converter's
+    memory and its output are limited to the size of the machine's memory, because a damaged file can make it ask for
+    any number of bytes.
 
     Raises
     ------
     NoConverter
         The program is not installed.
     OSError
-        The converter fails: its first words.
+        The converter has failed; the message is its first line.
     """
     converter = os.environ.get("HALFLIGHT_OPENVDB") or shutil.which("halflight-openvdb") or "nanovdb_convert"
     with tempfile.TemporaryDirectory(prefix="halflight-") as folder:
@@ -42,7 +44,9 @@ def convert(path: str) -> bytes:
 
 
 def _run(words: list[str], said: Path) -> bool:
-    """Run a program, with what it says in the file `said`; whether it succeeds. It ends with this call in any case."""
+    """Run a program whose messages go to the file `said`. Returns whether it succeeds. It has ended when this call
+    returns.
+    """
     memory = os.sysconf("SC_PAGE_SIZE") * os.sysconf("SC_PHYS_PAGES")
     with said.open("wb") as output:
         process = subprocess.Popen(words, stdin=subprocess.DEVNULL, stdout=output, stderr=subprocess.STDOUT)

@@ -1,4 +1,4 @@
-"""The viewer's page as one module for notebooks: its files, which import each other, joined in their order."""
+"""Makes one module for notebooks from the files of the viewer's page, which import each other."""
 from __future__ import annotations
 
 import functools
@@ -18,7 +18,9 @@ def _read(name: str) -> str:
 
 
 def join(name: str, read: Callable[[str], str], joined: dict[str, str]) -> None:
-    """The file after those that it imports: a function that returns what it exports. read: a file's text by its name."""
+    """The text of a file as a function that returns the file's exports, after the texts of the files that it imports.
+    read: gives a file's text by its name.
+    """
     if name in joined:
         return
     text = read(f"{name}.js")
@@ -33,7 +35,7 @@ def join(name: str, read: Callable[[str], str], joined: dict[str, str]) -> None:
 
 @functools.cache
 def module() -> str:
-    """JavaScript: the widget's module, as anywidget wants it."""
+    """The JavaScript of the widget's module, in the form that anywidget needs."""
     joined: dict[str, str] = {}
     join("widget", _read, joined)
     return "".join(joined.values()) + "export default { render: $widget.render };\n"

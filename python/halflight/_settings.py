@@ -1,4 +1,4 @@
-"""Fields of the library's structs by the names of its tables of settings (halflight/settings.h)."""
+"""Reads and sets fields of the library's structs by the names in its tables of settings (halflight/settings.h)."""
 from __future__ import annotations
 
 import functools
@@ -55,7 +55,7 @@ def numbers_of(place: str, value: Any, count: int = 3) -> list[float]:
 
 
 def same(one: Any, other: Any) -> bool:
-    """Whether two values of keywords are the same; arrays and whatever holds them, too."""
+    """Whether two values of keywords are the same. The values may be arrays, or may contain arrays."""
     if isinstance(one, Mapping) and isinstance(other, Mapping):
         return one.keys() == other.keys() and all(same(value, other[word]) for word, value in one.items())
     if isinstance(one, (list, tuple)) and isinstance(other, (list, tuple)):
@@ -84,7 +84,7 @@ def size_of(place: str, value: Any) -> tuple[int, int]:
 
 
 def to_field(place: str, setting: Setting, value: object) -> object:
-    """`value` as cffi wants it in the struct's field."""
+    """`value` in the form in which cffi stores it in the struct's field."""
     if setting.type == lib.HL_SETTING_FLAG:
         if type(value).__name__ not in ("bool", "bool_"):
             raise TypeError(f"{place}: {value!r} is neither True nor False")
@@ -102,7 +102,7 @@ def to_field(place: str, setting: Setting, value: object) -> object:
 
 
 def from_field(setting: Setting, value: Any) -> Any:
-    """What Python calls the value of a field."""
+    """The Python value of a struct's field."""
     if setting.type == lib.HL_SETTING_FLAG:
         return bool(value)
     if setting.type == lib.HL_SETTING_CHOICE:
@@ -113,7 +113,7 @@ def from_field(setting: Setting, value: Any) -> Any:
 
 
 def names(kind: int, *without: str) -> list[str]:
-    """The fields of a table but for some."""
+    """The fields of a table, except the given ones."""
     return [field for field in table(kind) if field not in without]
 
 
@@ -131,6 +131,6 @@ def fill(place: str, struct: Any, kind: int, values: Mapping[str, object]) -> No
 
 
 def read(struct: Any, kind: int, only_for: int | None = None) -> dict[str, Any]:
-    """The struct's fields; of lights and cameras those that the type has."""
+    """The struct's fields. For lights and cameras, only the fields that their type has."""
     return {name: from_field(row, getattr(struct, name)) for name, row in table(kind).items()
             if only_for is None or row.only_for == 0 or row.only_for & 1 << only_for}

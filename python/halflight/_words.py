@@ -1,4 +1,4 @@
-"""Unknown words are refused with the nearest known one."""
+"""Refuses unknown words, and suggests the nearest known word."""
 from __future__ import annotations
 
 import functools
@@ -11,7 +11,7 @@ R = TypeVar("R")
 
 
 def nearest(word: str, known: Collection[str]) -> str:
-    """What an error adds: `": did you mean 'x'?"`, or a list of all known words where none is near."""
+    """The end of an error's message: `": did you mean 'x'?"`, or a list of all known words if none of them is near."""
     import difflib
 
     found = difflib.get_close_matches(word.lower(), known, 1, 0.6)
@@ -58,7 +58,9 @@ _ELSEWHERE = (
 
 
 def _here(word: str, known: Collection[str]) -> str:
-    """What another program's keyword is called here: `": did you mean 'x'?"`, with its form; "" if nothing is known of it."""
+    """The name in this package of another program's keyword: `": did you mean 'x'?"`, with its form; "" if nothing is
+    known of it.
+    """
     for keyword, form, words in _ELSEWHERE:
         if keyword in known and word.lower() in words.split():
             given = f" Give {keyword}={form}" if not form.isalpha() else ""
@@ -67,7 +69,7 @@ def _here(word: str, known: Collection[str]) -> str:
 
 
 def check_keywords(place: str, given: Collection[str], known: Collection[str]) -> None:
-    """Raise TypeError for the first unknown keyword, with what it is called here."""
+    """Raise TypeError for the first unknown keyword, with its name in this package."""
     for word in given:
         if word not in known:
             raise TypeError(f"{place} has no keyword '{word}'{_here(word, known) or nearest(word, known)}")
@@ -83,12 +85,14 @@ def choice(place: str, word: object, known: Collection[str]) -> str:
 
 
 def suggests_also(further: Collection[str]) -> Callable[[Callable[P, R]], Callable[P, R]]:
-    """`suggests` for a function whose ``**`` takes these keywords."""
+    """Makes the decorator `suggests` for a function whose ``**`` takes these keywords."""
     return lambda function: suggests(function, further)
 
 
 def suggests(function: Callable[P, R], further: Collection[str] = ()) -> Callable[P, R]:
-    """Make `function` answer an unknown keyword with the nearest known one. further: the keywords that its ** takes."""
+    """Make `function` suggest the nearest known keyword if it is called with an unknown one. further: the keywords
+    that its ** takes.
+    """
     parameters = inspect.signature(function).parameters.values()
     known = [p.name for p in parameters if p.kind in (p.POSITIONAL_OR_KEYWORD, p.KEYWORD_ONLY) and p.name != "self"]
     known += further

@@ -1,4 +1,4 @@
-"""Adaptive grids in HDF5 files, by h5py: FLASH, Chombo and Enzo.
+"""Reads adaptive grids from HDF5 files of FLASH, Chombo and Enzo by h5py.
 
 Files are opened below the folder of the file that the caller names.
 """
@@ -32,7 +32,8 @@ def open_amr(path: str | os.PathLike[str], field: str | None = None, *, log: boo
     path : path
         FLASH's and Chombo's file, or Enzo's file of parameters or its `.hierarchy` file.
     field : str, optional
-        The variable's name; without it the density, or else the first one, and a warning tells which.
+        The variable's name. Without a name, the density is read, or else the first variable, and a warning says which
+        one.
     log : bool
         Whether the logarithms to base 10 of the cells' values are taken. A transfer function has 4096 steps over all values, which
         is too few for densities that differ by many powers of ten. Cells whose value is not above 0 are empty.
@@ -73,7 +74,7 @@ def _logarithms(values: Any) -> np.ndarray[Any, Any]:
 
 
 def _chosen(names: list[str], field: str | None, path: Any) -> str:
-    """The field's name: what is asked for, or a density, or the first."""
+    """The field's name: the wanted one, or else a density, or else the first field."""
     if field is not None:
         if field in names:
             return field
@@ -92,7 +93,9 @@ def _text(value: Any) -> str:
 
 
 def _flash(file: Any, field: str | None, finest: int | None) -> dict[str, Any]:
-    """Blocks of equal numbers of cells in an octree; level 1 has the largest. Leaves are taken, and other blocks of the finest level."""
+    """Reads blocks of equal numbers of cells in an octree. The blocks of level 1 are the largest. Leaves are taken, and
+    other blocks of the finest level.
+    """
     names = [_text(name) for name in np.asarray(file["unknown names"]).ravel()] if "unknown names" in file else []
     values = file[_chosen([name for name in names if name in file], field, file.filename)]
     levels, bounds = np.asarray(file["refine level"]), np.asarray(file["bounding box"], float)
@@ -114,7 +117,9 @@ def _flash(file: Any, field: str | None, finest: int | None) -> dict[str, Any]:
 
 
 def _chombo(file: Any, field: str | None) -> dict[str, Any]:
-    """A group for each level: boxes of cells, and the values of all of them in one array."""
+    """Reads a file with a group for each level. A group has boxes of cells, and one array with the values of all
+    boxes.
+    """
     names = [_text(file.attrs[f"component_{n}"]) for n in range(int(file.attrs["num_components"]))]
     component = names.index(_chosen(names, field, file.filename))
     count, ratios, patches = int(file.attrs["num_levels"]), [], list[Patch]()
@@ -146,7 +151,7 @@ def _chombo(file: Any, field: str | None) -> dict[str, Any]:
 
 
 def _enzo(path: Path, field: str | None) -> dict[str, Any]:
-    """A text that lists grids by their edges, and a group for each grid in files beside it."""
+    """Reads a text that lists grids by their edges. Each grid is a group in one of the files beside the text."""
     word = r"\s*=\s*(.+)"
     grids = []
     for text in re.split(r"^Grid\s*=\s*", path.read_text(errors="replace"), flags=re.MULTILINE)[1:]:

@@ -1,8 +1,8 @@
-"""Arrays as the library reads them: where voxels lie in memory, and where in the world.
+"""Describes arrays to the library: the places of voxels in memory and in the world.
 
-The library borrows voxels of uint8, uint16 and float32 whose rows are packed; rows and slices may lie apart. Which
-index axis is called first, and from which end it is counted, is free, so every array is borrowed as it lies that has
-one axis along which voxels adjoin: C or Fortran order, transposed, flipped, a box cut out of a larger array, or every
+The library borrows voxels of uint8, uint16 and float32 whose rows are packed; rows and slices may lie apart. The axes
+may have any order, and may be counted from either end. So an array is borrowed as it lies in memory if the voxels are
+adjacent along one axis: in C or Fortran order, transposed, flipped, as a box cut out of a larger array, or as every
 second slice. Other arrays are copied once, by the library.
 """
 from __future__ import annotations
@@ -23,13 +23,15 @@ _TYPES = {
     "f2": lib.HL_VOXEL_F16, "f4": lib.HL_VOXEL_F32, "f8": lib.HL_VOXEL_F64,
 }
 _BORROWED = ("u1", "u2", "f4")
-_LARGE = 64 << 20  # bytes: a copy of this size is worth a word
+_LARGE = 64 << 20  # bytes: copies from this size on are reported by a warning
 
 Spacing = float | Sequence[float]
 
 
 class Place(NamedTuple):
-    """Where the voxels are: the first one's centre, and the world step along each of the index axes x, y, z."""
+    """The place of the voxels: the first voxel's centre, and the step in the world along each of the index axes x, y,
+    z.
+    """
 
     origin: tuple[float, ...]
     steps: tuple[tuple[float, ...], ...]
@@ -68,7 +70,7 @@ def matrix_of(place: str, value: Any, shapes: Sequence[tuple[int, int]]) -> list
 
 
 def make_place(axes: str, spacing: Spacing | None, origin: Any, direction: Any, affine: Any) -> Place:
-    """The place that the keywords of `Volume` say."""
+    """The place that the keywords of `Volume` give."""
     if affine is not None:
         for name, value in (("spacing", spacing), ("origin", origin), ("direction", direction)):
             if value is not None:
@@ -82,7 +84,7 @@ def make_place(axes: str, spacing: Spacing | None, origin: Any, direction: Any, 
 
 
 def without_single_axes(array: Any) -> Any:
-    """The array without axes of length 1 beyond three, the first ones first."""
+    """The array with at most three axes, after axes of length 1 were removed, beginning with the first axis."""
     while len(array.shape) > 3 and 1 in array.shape:
         index: list[Any] = [slice(None)] * len(array.shape)
         index[tuple(array.shape).index(1)] = 0
@@ -125,8 +127,8 @@ class _Lying(NamedTuple):
 
 
 def _strides(voxels: np.ndarray[Any, Any]) -> tuple[int, int, int]:
-    """Bytes from voxel to voxel along x, y, z. Along axes of one voxel any number would do; there they are a packed
-    block's.
+    """Bytes from voxel to voxel along x, y, z. Along axes of one voxel the number has no effect, and is the number of
+    a packed block.
     """
     found, block = [], voxels.itemsize
     for size, stride in zip(voxels.shape[::-1], voxels.strides[::-1], strict=True):
@@ -136,8 +138,8 @@ def _strides(voxels: np.ndarray[Any, Any]) -> tuple[int, int, int]:
 
 
 def _as_it_lies(voxels: np.ndarray[Any, Any], place: Place) -> _Lying:
-    """The array with its axes sorted by strides and none counted backwards, where the library can then borrow the
-    voxels.
+    """The array with its axes sorted by their strides, and with no negative strides, if the library can then borrow
+    the voxels.
     """
     if voxels.flags.c_contiguous:
         return _Lying(voxels, place, _strides(voxels))
@@ -153,13 +155,13 @@ def _as_it_lies(voxels: np.ndarray[Any, Any], place: Place) -> _Lying:
     order = [next(falling) if axis in long else axis for axis in range(3)]
     turned = turned.transpose(order)
     strides = _strides(turned)
-    if strides[0] != turned.itemsize:  # the library copies them: as the caller counts them
+    if strides[0] != turned.itemsize:  # the library copies these voxels, in the order in which the caller counts them
         return _Lying(voxels, place, _strides(voxels))
     return _Lying(turned, Place(tuple(origin), tuple(steps[2 - axis] for axis in reversed(order))), strides)
 
 
 class Loan:
-    """Voxels that a volume borrows, [z][y][x], with their place, and with a sample of them from when they were
+    """Voxels that a volume borrows, [z][y][x], with their place, and with a sample that was taken when they were
     borrowed.
     """
 
@@ -170,7 +172,7 @@ class Loan:
         self.sample = _sample_of(voxels)
 
     def is_unchanged(self) -> bool:
-        """Whether a new sample equals the one from when the voxels were borrowed."""
+        """Whether a new sample equals the sample that was taken when the voxels were borrowed."""
         return self.sample == _sample_of(self.voxels)
 
 
@@ -180,14 +182,16 @@ _loans: weakref.WeakValueDictionary[int, Loan] = weakref.WeakValueDictionary()  
 
 
 def _sample_of(voxels: np.ndarray[Any, Any]) -> int:
-    """A checksum of a lattice of voxels, which a change of any box that is as wide as its gaps meets."""
+    """A checksum of a lattice of voxels. A change of the voxels in any box that is as wide as the lattice's gaps
+    changes a voxel of the lattice.
+    """
     steps = tuple(slice(None, None, -(-size // _SAMPLED)) for size in voxels.shape)
     return zlib.crc32(np.ascontiguousarray(voxels[steps]).view(np.uint8).data)
 
 
 class Packed(NamedTuple):
-    """An array as its bytes lie in memory, with what turns them into the same view again, so that copies keep the
-    order.
+    """An array in the order of its bytes in memory, with the facts that restore the same view, so that copies keep
+    this order.
     """
 
     voxels: np.ndarray[Any, Any]
@@ -195,7 +199,7 @@ class Packed(NamedTuple):
     turned: tuple[bool, ...]
 
     def view(self) -> np.ndarray[Any, Any]:
-        """The array again, with its axes in the order in memory that they had."""
+        """Restores the array, whose axes have the same order in memory as before."""
         return self.voxels.transpose(self.order)[_from_the_end(self.turned)]
 
 
@@ -212,7 +216,7 @@ def packed(array: np.ndarray[Any, Any]) -> Packed:
 
 
 def loan_of(handle: Any) -> Loan | None:
-    """What an hl_volume borrows; None where it has its own voxels."""
+    """The voxels that an hl_volume borrows; None if it has its own voxels."""
     return _loans.get(int(ffi.cast("uintptr_t", handle)))
 
 
@@ -243,5 +247,6 @@ def make_volume(array: np.ndarray[Any, Any], axes: str, place: Place, space: int
         unlend(description)
         raise
     handle = ffi.gc(made[0], lib.hl_volume_release)
-    _loans[int(ffi.cast("uintptr_t", handle))] = loan  # ends with this call where the library copied the voxels
+    # If the library has copied the voxels, the loan ends with this call.
+    _loans[int(ffi.cast("uintptr_t", handle))] = loan
     return handle

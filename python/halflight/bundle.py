@@ -1,4 +1,4 @@
-"""`Scene.save`: a scene file with what was in memory alone in a folder beside it."""
+"""Implements `Scene.save`: writes a scene file, and a folder beside it with the data that were only in memory."""
 from __future__ import annotations
 
 import os
@@ -18,14 +18,14 @@ __all__ = ["save"]
 
 
 class _Folder:
-    """The folder of what a scene names: made when something is put there."""
+    """The folder for the files that a scene names. It is made when the first file is written."""
 
     def __init__(self, path: str) -> None:
         self.path = path
         self.taken: set[str] = set()
 
     def place(self, wanted: str | None, standard: str, ending: str) -> str:
-        """A path in the folder that nothing else of the scene has."""
+        """A path in the folder that no other file of the scene has."""
         stem = re.sub(r"[^A-Za-z0-9._-]+", "_", wanted or standard).strip("._") or standard
         name, count = stem, 2
         while name + ending in self.taken:
@@ -50,7 +50,7 @@ def _write_pixels(struct: Any, path: str) -> None:
 
 
 def _forget_reading(struct: Any) -> None:
-    """Forget how the volume was read of its old file: the file that was written has one array."""
+    """Remove the options by which the volume was read from its old file, because the new file has only one array."""
     plain = ffi.new("hl_scene_volume *")
     lib.hl_scene_volume_defaults(plain)
     for word in ("array", "series", "component", "time", "channel", "level", "spacing"):

@@ -17,16 +17,16 @@ __all__ = ["Camera"]
 
 @dataclass(frozen=True, kw_only=True)
 class Camera:
-    """Where the eye is, and what it looks at.
+    """The place of the eye, and the point at which it looks.
 
     Parameters
     ----------
     position, target, up : (x, y, z)
-        World units: the eye, the point in the middle of the picture, and which way is up.
+        World units: the place of the eye, the point in the middle of the picture, and the direction that is up.
     fovy_deg : float
-        Perspective: the vertical field of view.
+        The vertical field of view of a perspective camera.
     height : float, optional
-        World height of the picture. If it is given, the projection is orthographic, and `fovy_deg` does not count.
+        World height of the picture. If it is given, the projection is orthographic, and `fovy_deg` has no effect.
 
     Examples
     --------
@@ -49,7 +49,7 @@ class Camera:
         camera : vtkCamera
             `parallel_projection` gives an orthographic camera, twice as high as its parallel scale.
         aspect : float, optional
-            The picture's width over its height, which a camera with a horizontal view angle needs.
+            The picture's width divided by its height. A camera with a horizontal view angle needs it.
         """
         words: dict[str, Any] = {"position": tuple(camera.GetPosition()), "target": tuple(camera.GetFocalPoint()),
                                  "up": tuple(camera.GetViewUp())}
@@ -71,10 +71,10 @@ class Camera:
         Parameters
         ----------
         camera : napari.components.Camera
-            ``viewer.camera``. Where its orientation shows x, y and z left-handed, as napari's own word "right" for axes z,
-            y, x says, the world is mirrored, which no camera here does.
+            ``viewer.camera``. If its orientation shows x, y and z as a left-handed system, as napari's word "right"
+            for axes z, y, x means, napari mirrors the world. No camera of this package does this.
         canvas_height : float
-            The height of napari's canvas in pixels, which napari's zoom refers to.
+            The height of napari's canvas in pixels. Napari's zoom refers to it.
         """
         center, view, up = (np.array(one, dtype=float)[-3:][::-1]
                             for one in (camera.center, camera.view_direction, camera.up_direction))

@@ -15,7 +15,7 @@ from ._words import nearest
 
 __all__ = ["colormaps", "srgb"]
 
-# Matplotlib's one-letter names and the commonest CSS ones, sRGB; others come from matplotlib where it is there.
+# Matplotlib's names of one letter, and the most common names of CSS, in sRGB. If matplotlib is installed, it gives other names.
 _NAMED = {
     "black": "#000000", "white": "#ffffff", "red": "#ff0000", "lime": "#00ff00", "green": "#008000",
     "blue": "#0000ff", "yellow": "#ffff00", "cyan": "#00ffff", "magenta": "#ff00ff", "gray": "#808080",
@@ -47,7 +47,7 @@ def to_linear(srgb: Any) -> Any:
 
 
 def to_srgb(linear: Any) -> Any:
-    """Linear light as sRGB values from 0 to 1 (IEC 61966-2-1); what is outside is cut."""
+    """Linear light as sRGB values from 0 to 1 (IEC 61966-2-1). Values outside of this range are cut."""
     values = np.clip(np.asarray(linear, dtype=np.float64), 0, 1)
     return np.where(values <= 0.0031308, 12.92 * values, 1.055 * values ** (1 / 2.4) - 0.055)
 
@@ -109,7 +109,8 @@ def own_name(cmap: str) -> bytes:
 def sampled(place: str, cmap: Any, low: float, high: float) -> list[list[float]] | None:
     """Colour points [value, r, g, b] from `low` to `high` for a colormap that the library does not name.
 
-    `cmap` is a matplotlib colormap, its name, a colour, or a sequence of colours. None: the library has it.
+    `cmap` is a matplotlib colormap, its name, a colour, or a sequence of colours. Returns None if the library has the
+    colormap.
     """
     if isinstance(cmap, str):
         if cmap in colormaps() or cmap in _GRAYS:

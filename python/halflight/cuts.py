@@ -1,4 +1,4 @@
-"""What is cut out of a volume or a scene: the keyword `cuts` of both."""
+"""Reads the keyword `cuts` of volumes and scenes, which gives the parts that are cut out of them."""
 from __future__ import annotations
 
 from collections.abc import Mapping
@@ -43,7 +43,9 @@ def _fill_one(cut: Any, given: Any, place: str) -> None:
 
 
 def fill(struct: Any, cuts: Any, keep: list[Any], place: str) -> None:
-    """Set the cuts of an hl_scene_volume or hl_scene_description, which are valid as long as `keep`. One alone may stand without a list."""
+    """Set the cuts of an hl_scene_volume or hl_scene_description, which are valid as long as `keep`. A single cut need
+    not be in a list.
+    """
     given = [cuts] if isinstance(cuts, Mapping) else list(cuts)
     array = ffi.new("hl_cut[]", len(given))
     for n, one in enumerate(given):

@@ -1,4 +1,4 @@
-"""How much two pictures differ: the numbers of ``halflight diff``."""
+"""Compares two pictures by the numbers of ``halflight diff``."""
 from __future__ import annotations
 
 import os
@@ -17,22 +17,22 @@ __all__ = ["Difference", "diff"]
 
 @dataclass(frozen=True)
 class Difference:
-    """How much picture b differs from picture a, in linear premultiplied R, G, B and A.
+    """The differences of picture b from picture a, in linear premultiplied R, G, B and A.
 
     Attributes
     ----------
     rmse : float
         Root mean square over all pixels and channels.
     rmse_channel, mean_signed : 4 floats
-        The same of each channel, and the mean of b - a.
+        The root mean square of each channel, and the mean of b - a in each channel.
     percentile_99_9 : float
-        Of the pixels' greatest differences.
+        The percentile 99.9 of the greatest difference in each pixel.
     maximum : float
         The greatest difference.
     maximum_at : (x, y)
-        Where it is.
+        The place of the greatest difference.
     differing_pixels : int
-        Pixels that are not equal.
+        The number of pixels that are not equal.
     """
 
     rmse: float
@@ -69,13 +69,14 @@ def _handle_of(name: str, picture: Any) -> Any:
 
 @suggests
 def diff(a: Any, b: Any) -> Difference:
-    """How much picture `b` differs from picture `a`, as ``halflight diff A B`` says it.
+    """Find the differences of picture `b` from picture `a`, as ``halflight diff A B`` does.
 
     Parameters
     ----------
     a, b : Image, path, or array of shape (height, width, 3 or 4)
-        Of one size. Files are .png, .exr, .npy or .hdr. Arrays of floats are linear premultiplied RGBA, as
-        ``numpy.asarray(image)`` has it; arrays of uint8 are sRGB with unassociated alpha, as `Image.to_srgb8` makes them.
+        Two pictures of the same size. Files are .png, .exr, .npy or .hdr. Arrays of floats are linear premultiplied
+        RGBA, as ``numpy.asarray(image)`` has it; arrays of uint8 are sRGB with unassociated alpha, as `Image.to_srgb8`
+        makes them.
 
     Raises
     ------

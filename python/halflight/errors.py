@@ -1,7 +1,8 @@
-"""Exceptions and warnings.
+"""Defines the package's exceptions and warnings.
 
-Faults of a call are Python's own: `TypeError` for words and types, `ValueError` for values that the library
-refuses, `MemoryError`, `OSError`. The two classes below tell what a file holds, and what this version can do.
+For faults of a call, the package raises Python's own exceptions: `TypeError` for words and types, `ValueError` for
+values that the library refuses, `MemoryError`, `OSError`. The two exceptions below concern the content of a file, and
+the abilities of this version.
 """
 
 __all__ = ["HalflightWarning", "InputError", "UnsupportedError"]
@@ -13,9 +14,9 @@ class InputError(ValueError):
     Attributes
     ----------
     line, column : int
-        Where in the text, counted from 1; 0 where that is not known.
+        The place of the fault in the text, counted from 1; 0 if it is not known.
     byte_offset : int
-        Where in the file; -1 where that is not known.
+        The place of the fault in the file; -1 if it is not known.
     """
 
     line = 0
@@ -24,8 +25,8 @@ class InputError(ValueError):
 
 
 class UnsupportedError(NotImplementedError):
-    """A file or a scene is well formed, and this version cannot do what it asks for."""
+    """A file or a scene is well formed, but this version cannot do what it asks for."""
 
 
 class HalflightWarning(UserWarning):
-    """What the library chose by itself, or what a copy costs."""
+    """A warning about a choice that the library has made by itself, or about the cost of a copy."""

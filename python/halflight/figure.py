@@ -1,4 +1,4 @@
-"""Figures: pictures on a page, with scale bars, legends, axes and texts, as PDF, SVG, PNG or TIFF."""
+"""Makes figures: pictures on a page, with scale bars, legends, axes and texts, as PDF, SVG, PNG or TIFF."""
 from __future__ import annotations
 
 import os
@@ -34,7 +34,7 @@ def _millimetres(place: str, length: Any) -> float:
 
 @dataclass
 class _Overlay:
-    """What is drawn over one picture; texts and numbers as `Image.annotate` takes them."""
+    """The overlay that is drawn over one picture. Texts and numbers are given as for `Image.annotate`."""
 
     scale_bar: bool | str = False
     unit: str | None = None
@@ -46,7 +46,7 @@ class _Overlay:
     letter: str | None = None
 
     def fill(self, overlay: Any, kept: list[Any]) -> None:
-        """Write it to an hl_overlay, whose texts `kept` keeps alive."""
+        """Write the overlay to an hl_overlay, whose texts `kept` keeps alive."""
         def text(value: str) -> Any:
             kept.append(ffi.new("char[]", str(value).encode("utf-8", "replace")))
             return kept[-1]
@@ -93,7 +93,7 @@ class _Panel:
 
 
 class Figure:
-    """Pictures on a page, with what is drawn over them: made by `Image.annotate` and `halflight.figure`."""
+    """Pictures on a page, with their overlays. `Image.annotate` and `halflight.figure` make figures."""
 
     def __init__(self, panels: Sequence[_Panel], size: tuple[float, float] | None, dpi: float | None, font_size: float,
                  font: str, background: Any = None) -> None:
@@ -133,7 +133,9 @@ class Figure:
         return options
 
     def save(self, path: str | os.PathLike[str]) -> None:
-        """Write a .pdf or .svg (pictures as pixels, all else as vectors), .png or .tif (which state their size)."""
+        """Write a .pdf or .svg file (pictures as pixels, all else as vectors), or a .png or .tif file, which states
+        its size.
+        """
         kept: list[Any] = []
         made = self._figure(kept)
         call(lib.hl_figure_write, context, made, os.fsencode(path), self._options(made))
@@ -174,17 +176,17 @@ def figure(panels: Sequence[Image | Figure], *, columns: int | None = None, widt
     panels : sequence of Image, or of Figure as `Image.annotate` makes them
         Row by row. A row is as high as its highest picture.
     columns : int, optional
-        Pictures in a row; default all.
+        The number of pictures in a row; by default all pictures are in one row.
     width, gap : float or str
-        Of the page, and between pictures: millimetres, or a text as "89mm", "3.5in".
+        The width of the page, and the gap between pictures: millimetres, or a text such as "89mm", "3.5in".
     letters : bool or str
-        Whether panels that have no letter of their own get one; a text is the first letter.
+        Whether panels without a letter of their own get one. A text is the first letter.
     dpi : float
         Pixels an inch of .png and .tif.
     font_size, font : float, str
-        In points; the name of a family of fonts.
+        The size of letters in points; the name of a family of fonts.
     background : color
-        Of the page; "transparent" for none.
+        The colour of the page; "transparent" for none.
 
     Examples
     --------

@@ -1,4 +1,4 @@
-"""Volumes of grids that are no boxes of voxels: meshes of cells, and adaptive grids of patches."""
+"""Makes volumes of grids that are no boxes of voxels: meshes of cells, and adaptive grids of patches."""
 from __future__ import annotations
 
 from collections.abc import Iterable, Sequence
@@ -13,14 +13,14 @@ __all__ = ["Cells", "Patches"]
 
 
 def _pointer(kind: str, values: Any, dtype: str) -> tuple[Any, Any]:
-    """The values as a C array, and what keeps them."""
+    """The values as a C array, and the object that keeps them alive."""
     kept = np.ascontiguousarray(values, dtype)
     return ffi.cast(f"const {kind} *", kept.__array_interface__["data"][0]), kept
 
 
 @dataclass(frozen=True)
 class Cells:
-    """A mesh of cells with values, as `Volume.from_cells` takes it."""
+    """A mesh of cells with values, which `Volume.from_cells` takes."""
 
     points: Any
     cells: Any
@@ -28,7 +28,7 @@ class Cells:
     values: Any
 
     def _corners(self) -> tuple[Any, Any]:
-        """The corners of all cells, and where each cell's end."""
+        """The corners of all cells, and for each cell the index after its last corner."""
         cells = np.asarray(self.cells)
         if cells.dtype.kind not in "iu":
             raise TypeError("cells are numbers of points: an array of whole numbers")
@@ -68,7 +68,7 @@ class Cells:
 
 @dataclass(frozen=True)
 class Patches:
-    """An adaptive grid, as `Volume.from_amr` takes it."""
+    """An adaptive grid, which `Volume.from_amr` takes."""
 
     patches: Iterable[tuple[int, Sequence[int], Any]]
     ratio: int | Sequence[int] = 2

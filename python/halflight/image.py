@@ -1,4 +1,4 @@
-"""Pictures: linear premultiplied RGBA in float32, top row first."""
+"""Defines pictures: linear premultiplied RGBA in float32, top row first."""
 from __future__ import annotations
 
 import os
@@ -44,12 +44,13 @@ class Image(NDArrayOperatorsMixin):
     Attributes
     ----------
     layers : mapping of str to ndarray of float32
-        What the picture is made of, where ``layers=True`` was asked for: "light0", "light0_shadow", "ambient",
-        "normal" [height][width][3], "depth_first", "depth_mean", "object" [height][width]; see docs/layers.md.
+        The layers of which the picture is made, if it was rendered with ``layers=True``: "light0", "light0_shadow",
+        "ambient", "normal" [height][width][3], "depth_first", "depth_mean", "object" [height][width]; see
+        docs/layers.md.
     statistics : mapping
         Seconds, sheets, voxels, threads and the instruction set, named as in `hl_render_statistics`.
     scene : Scene
-        What was rendered.
+        The scene that was rendered.
 
     Examples
     --------
@@ -85,7 +86,7 @@ class Image(NDArrayOperatorsMixin):
 
     @property
     def __array_interface__(self) -> dict[str, Any]:
-        # The buffer, not its address: arrays then keep the pixels alive, and neither the picture nor its scene.
+        # Arrays get the buffer, and not its address. So they keep the pixels alive, but neither the picture nor its scene.
         return {**self._pixels.__array_interface__, "data": self._pixels.data.cast("B"), "strides": None}
 
     def __array_ufunc__(self, ufunc: Any, method: str, *inputs: Any, **kwargs: Any) -> Any:
@@ -149,7 +150,7 @@ class Image(NDArrayOperatorsMixin):
         exposure : float, optional
             Stops; default: the scene's.
         tone : "clip" or "filmic", optional
-            How light brighter than white is shown; default: the scene's.
+            The way in which light brighter than white is shown; default: the scene's.
 
         Returns
         -------
@@ -167,8 +168,9 @@ class Image(NDArrayOperatorsMixin):
         Returns
         -------
         Image
-            A picture without layers. Where it is shown or saved, its colours are this picture's numbers. It is opaque
-            and mixed with the scene's background as screens mix, unless that is transparent.
+            A picture without layers. If it is shown or saved, its colours are this picture's numbers. The picture is
+            opaque. It is mixed with the scene's background in sRGB, as screens do, unless the background is
+            transparent.
         """
         alpha, background = self._pixels[..., 3:], self.scene.background
         if not isinstance(background, str):
@@ -180,7 +182,7 @@ class Image(NDArrayOperatorsMixin):
         return _restored(self.scene, np.concatenate([linear, alpha], axis=-1).astype(np.float32), {}, self.statistics)
 
     def _scene_text(self, folder: str | None) -> Any:
-        """The text of the scene for a PNG in a folder; none where volumes are arrays, which no file can name."""
+        """The text of the scene for a PNG in a folder; None if volumes are arrays, because no file can name them."""
         try:
             return ffi.new("char[]", self.scene._text(folder).encode())
         except ValueError:
@@ -191,7 +193,7 @@ class Image(NDArrayOperatorsMixin):
              background: Any = None, exposure: float | None = None, tone: str | None = None, metadata: bool = True) -> None:
         """Write a .png (sRGB, over the background, with the scene in it), .exr or .npy (linear; with layers).
 
-        Pillow, where it is installed, writes .jpg, .tif, .pdf and .webp, too: 8-bit sRGB, without the scene.
+        If Pillow is installed, it writes .jpg, .tif, .pdf and .webp files, too, in 8-bit sRGB without the scene.
 
         Parameters
         ----------
@@ -199,14 +201,14 @@ class Image(NDArrayOperatorsMixin):
             A file appears whole or not at all. Layers are channels of an .exr, and files of their own beside
             an .npy; other pictures are written without them.
         format : str, optional
-            "png", "exr", ...; by default what the name ends in, and "png" for open files without a name.
+            "png", "exr", ...; by default the ending of the name, and "png" for open files without a name.
         depth : 8 or 16
             Bits per channel of a .png.
         background, exposure, tone : optional
-            As in `to_srgb8`; not of an .exr or .npy.
+            As in `to_srgb8`. They have no effect on .exr and .npy files.
         metadata : bool
-            Whether a .png carries its scene, with the names of its files: of files beside the picture, or below
-            its folder, relative to it.
+            Whether a .png carries its scene. Files in the picture's folder or below it are named relative to this
+            folder.
         """
         open_file: Any = path if hasattr(path, "write") else None
         name = str(getattr(path, "name", "")) if open_file is not None else os.fspath(path)  # type: ignore[arg-type]
@@ -262,7 +264,9 @@ class Image(NDArrayOperatorsMixin):
         return self.encode("png")
 
     def show(self) -> None:
-        """Show the picture: in the cell's output in a notebook, else with the program that the system shows a PNG with."""
+        """Show the picture in the cell's output of a notebook, or else by the program that the system uses for PNG
+        files.
+        """
         try:
             from IPython import get_ipython
             from IPython.display import display
@@ -284,29 +288,32 @@ class Image(NDArrayOperatorsMixin):
                  legend: bool | str = False, axes: str | None = None, marks: bool = False,
                  texts: Sequence[tuple[str, Sequence[float]]] | Mapping[str, Sequence[float]] = (), letter: str | None = None,
                  width: float | str | None = None, dpi: float | None = None, font_size: float = 7, font: str = "Sans") -> Figure:
-        """The picture as a figure, with what is drawn over it; `save` writes .pdf, .svg, .png or .tif.
+        """The picture as a figure, with an overlay that is drawn over it. The figure's `save` writes .pdf, .svg, .png
+        or .tif.
 
         Parameters
         ----------
         scale_bar : bool or str
-            A bar with its length: True, or a length as "50um".
+            Whether a scale bar is drawn, or the bar's length, such as "50um".
         unit : str, optional
-            The unit of lengths in the volumes where their files do not tell it: "mm", "um", ... or any other text.
+            The unit of lengths in the volumes if their files do not state it: "mm", "um", ... or any other text.
         depth : float or "target", optional
-            For a perspective picture, which has no one scale: the distance from the eye at which the bar's length is
-            right.
+            The distance from the eye at which the bar's length is right. A perspective picture needs it, because its
+            scale changes with depth.
         legend : bool or str
-            The volumes' colours over their values, with their opacity; or the names of labels. A text is the title.
+            Whether a legend is drawn. It shows the volumes' colours and opacities over their values, or the names of
+            labels. A text is the legend's title.
         axes : "arrows" or "letters", optional
-            The world's directions, or the body's at the edges.
+            Draws the directions of the world as arrows, or the directions of the body as letters at the edges.
         marks : bool
-            The scene's rulers, angles, lines, arrows and texts, with what they measure.
+            Whether the scene's rulers, angles, lines, arrows and texts are drawn, with their lengths and angles.
         texts : sequence of (str, (x, y)) or (str, (x, y, z)), or a mapping
-            At fractions of the picture from its upper left, or beside a point of the scene's world.
+            Texts with their places. A place is two fractions of the picture, counted from its upper left corner, or a
+            point of the scene's world.
         letter : str, optional
-            At the upper left.
+            The panel's letter, which is drawn at the upper left.
         width : float or str, optional
-            On paper: millimetres, or a text as "89mm", "3.5in".
+            The width of the picture on paper: millimetres, or a text such as "89mm", "3.5in".
         dpi : float, optional
             Pixels an inch of .png and .tif. Without `width` it decides how large the picture is on paper.
         font_size, font : float, str
@@ -327,7 +334,7 @@ class Image(NDArrayOperatorsMixin):
 
     @suggests
     def plot(self, ax: Axes | None = None, *, colorbar: bool = True, scale_bar: bool = True, unit: str = "") -> Axes:
-        """Show the picture in a matplotlib axis, with the colours of the first volume and a scale bar.
+        """Show the picture in axes of matplotlib, with the colours of the first volume and a scale bar.
 
         Parameters
         ----------

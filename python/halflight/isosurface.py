@@ -1,4 +1,4 @@
-"""Surfaces on which a volume has one value: the keyword `iso` of volumes."""
+"""Reads the keyword `iso` of volumes, which gives surfaces on which a volume has one value."""
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
@@ -15,7 +15,9 @@ _WORDS = ("value", "color", "opacity")
 
 
 def _parts_of(place: str, given: Any) -> dict[str, Any]:
-    """A number, (value, color, opacity) of which the last ones may be absent, or a mapping, by words."""
+    """Converts a surface to a mapping. It may be a number, a sequence (value, color, opacity) whose last elements may
+    be absent, or a mapping already.
+    """
     if isinstance(given, Mapping):
         for word in given:
             if word not in _WORDS:
@@ -33,7 +35,7 @@ def _parts_of(place: str, given: Any) -> dict[str, Any]:
 
 
 def _list_of(iso: Any) -> Sequence[Any]:
-    """The surfaces; one alone may stand without a list."""
+    """The list of surfaces. A single surface need not be in a list."""
     return iso if isinstance(iso, list) else [iso]
 
 

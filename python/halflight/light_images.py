@@ -1,4 +1,4 @@
-"""Images of lights: slides that they project, and pictures on their own surface."""
+"""Defines images of lights: slides that a light projects, and pictures on a light's own surface."""
 from __future__ import annotations
 
 import os
@@ -61,12 +61,13 @@ def _image_of(struct: Any) -> dict[str, Any]:
 
 @dataclass(frozen=True)
 class Texture:
-    """An image that a light projects through a screen; rays that miss the screen are dark.
+    """An image that a light projects through a screen. Rays that miss the screen are dark.
 
     Parameters
     ----------
     image : path or array_like, shape (height, width, 3)
-        A .png, .exr or .npy; or pixels, top row first: uint8 are sRGB, floats linear. Grey ones need no last axis.
+        A .png, .exr or .npy file, or pixels, top row first. Pixels of uint8 are sRGB, and floats are linear. Grey
+        pixels need no last axis.
     center, right, up : (x, y, z)
         The screen's middle, and from there to the middles of its right edge and of its top edge.
     file : str, optional
@@ -97,9 +98,9 @@ class EmissionImage:
     Parameters
     ----------
     image : path or array_like, shape (height, width, 3)
-        As of `Texture`.
+        As for `Texture`.
     up : (x, y, z)
-        Where the image's top is; of a `Rect` its second edge says so.
+        The direction of the image's top. For a `Rect`, the light's second edge gives this direction.
     file : str, optional
         What a scene file calls an image that is an array.
     """

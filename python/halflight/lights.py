@@ -1,7 +1,7 @@
-"""Lights: frozen dataclasses, one for each of the scene file's types, and the images that they project or show.
+"""Defines lights. There is one frozen dataclass for each of the scene file's types of lights.
 
-Lengths are in world units, angles in degrees, colours linear RGB. A light with ``frame="camera"`` goes with the
-camera: x to its right, y up, z towards the viewer, from the camera's target.
+Lengths are in world units, angles in degrees, colours linear RGB. A light with ``frame="camera"`` moves with the
+camera. Its x axis points to the camera's right, y up, and z towards the viewer; the origin is the camera's target.
 """
 from __future__ import annotations
 
@@ -21,14 +21,15 @@ Vector = Sequence[float]
 
 @dataclass(frozen=True, kw_only=True)
 class Light:
-    """What all lights have.
+    """The properties that all lights have.
 
     Parameters
     ----------
     color : (r, g, b)
         Linear RGB.
     intensity : float
-        A factor on `color`. What arrives is ``color * intensity``, whatever the light's size and distance.
+        A factor on `color`. The light that arrives is ``color * intensity``, independently of the light's size and
+        distance.
     falloff : str
         "none", or "inverse_square": divided by the square of the distance from the light's centre.
     shadows : str, optional
@@ -75,7 +76,7 @@ class Directional(Light):
     Parameters
     ----------
     direction : (x, y, z)
-        The way the light travels.
+        The direction in which the light travels.
     angular_diameter_deg : float
         Above 0, shadows can be soft; the sun has 0.5.
 
@@ -91,7 +92,7 @@ class Directional(Light):
 
     @classmethod
     def beside_camera(cls, azimuth_deg: float, elevation_deg: float, **values: Any) -> Directional:
-        """A light that goes with the camera: (0, 0) is a headlight, (-40, 45) comes from the upper left.
+        """A light that moves with the camera: (0, 0) is a headlight, (-40, 45) comes from the upper left.
 
         Examples
         --------
@@ -119,7 +120,7 @@ class Spot(Light):
     Parameters
     ----------
     position, direction : (x, y, z)
-        Its centre, and the way the light travels along the cone's axis.
+        The light's centre, and the direction in which the light travels along the cone's axis.
     radius : float
         World units.
     opening_angle_deg, falloff_angle_deg : float
@@ -168,7 +169,7 @@ for _class in _CLASSES:
 
 
 def images_are_same(one: Light, other: Light) -> bool:
-    """Whether what two lights project and show is the same: a comparison of lights leaves pixels out."""
+    """Whether the images of two lights are the same. A comparison of the lights themselves ignores pixels."""
     return all(_settings.same(a.image, b.image) for a, b in ((one.texture, other.texture), (one.emission, other.emission))
                if a is not None and b is not None)
 

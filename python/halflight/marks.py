@@ -1,4 +1,4 @@
-"""Measures and texts that stand in a scene: the keyword `marks`."""
+"""Reads the keyword `marks`, which gives measures and texts that stand in a scene."""
 from __future__ import annotations
 
 from collections.abc import Mapping
@@ -24,7 +24,9 @@ def _fill_one(mark: Any, given: Any, keep: list[Any], place: str) -> None:
 
 
 def fill(struct: Any, marks: Any, keep: list[Any]) -> None:
-    """Set the marks of an hl_scene_description, which are valid as long as `keep`. One alone may stand without a list."""
+    """Set the marks of an hl_scene_description, which are valid as long as `keep`. A single mark need not be in a
+    list.
+    """
     given = [marks] if isinstance(marks, Mapping) else list(marks)
     array = ffi.new("hl_mark[]", len(given))
     for n, one in enumerate(given):

@@ -1,4 +1,4 @@
-"""Label maps over volumes: the keyword `mask` of volumes."""
+"""Reads the keyword `mask` of volumes, which gives a label map over the volume."""
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping
@@ -42,7 +42,7 @@ def _change(place: str, label: Any, given: Any) -> None:
 
 
 def _show(place: str, show: Any, labels: Any, count: int) -> int:
-    """Keep the labels that are named, in front of the others; how many there are."""
+    """Move the labels that are named to the front of the list. Returns their number."""
     wanted = show if isinstance(show, Mapping) else dict.fromkeys([show] if np.ndim(show) == 0 else show)
     named = set[int]()
     for name, given in wanted.items():
@@ -74,7 +74,9 @@ def fill_labels(struct: Any, given: Any, handle: Any, keep: list[Any], place: st
 
 
 def labels_from(labels: Any, count: int, tints: bool) -> dict[int, tuple[tuple[float, ...] | None, float]]:
-    """The labels that show, as `show` takes them: colour and opacity by number. tints: of a mask, whose labels may have no colour."""
+    """The visible labels in the form that `show` takes: colour and opacity by number. tints: whether the labels belong
+    to a mask, so that they may have no colour.
+    """
     return {one.value: (tuple(one.color) if one.tint or not tints else None, one.opacity) for one in labels[0:count] if one.visible}
 
 

@@ -1,4 +1,4 @@
-"""How much memory volumes and frames may take, and where those go that are larger."""
+"""Sets the memory limit of volumes and frames, and the folder for volumes that are larger."""
 from __future__ import annotations
 
 import os
@@ -9,12 +9,12 @@ _limited: tuple[int | None, str | None] = None, None
 
 
 def current() -> tuple[int | None, str | None]:
-    """The limit in bytes and the scratch folder, each None where none was given."""
+    """The limit in bytes and the scratch folder; each is None if it was not given."""
     return _limited
 
 
 def limit_memory(limit: int | None, *, scratch_folder: str | os.PathLike[str] | None = None) -> None:
-    """Limit what volumes, scenes and renderers hold, and render larger volumes from a scratch file.
+    """Limit the memory that volumes, scenes and renderers hold, and render larger volumes from a scratch file.
 
     A volume file whose voxels do not fit is read into a scratch file without a name; frames are the same, bit for bit.
     An array of zarr, h5py or dask is read into such a file, too, slice by slice; for a moment its voxels need twice
@@ -23,10 +23,10 @@ def limit_memory(limit: int | None, *, scratch_folder: str | os.PathLike[str] | 
     Parameters
     ----------
     limit : int or None
-        Bytes held at once; None: no limit, as at first.
+        The greatest number of bytes that are held at once. None sets no limit, as at the start.
     scratch_folder : path, optional
-        Where scratch files lie, on a fast disk: 1.15 times the voxels' bytes. By default TMPDIR of the environment,
-        else /var/tmp.
+        The folder for scratch files, which should be on a fast disk. A file takes 1.15 times the bytes of the voxels.
+        By default TMPDIR of the environment, else /var/tmp.
 
     Raises
     ------

@@ -1,4 +1,6 @@
-"""Meshes: triangles, spheres and tubes in the world of the volumes, which cast shadows on them and receive theirs."""
+"""Defines meshes: triangles, spheres and tubes in the world of the volumes. Meshes cast shadows on volumes, and
+receive the shadows of volumes.
+"""
 from __future__ import annotations
 
 import os
@@ -18,14 +20,14 @@ __all__ = ["Mesh", "MeshLook"]
 
 
 class MeshLook(MeshSettings, MaterialSettings, total=False):
-    """Keywords of `Mesh`: how it looks and where it stands.
+    """Keywords of `Mesh` for the mesh's look and its place.
 
     Parameters
     ----------
     name : str
-        What the mesh is called.
+        The mesh's name.
     color : colour
-        A name or "#rrggbb" (sRGB), or linear RGB; times the vertices' colours where these are given.
+        A name or "#rrggbb" (sRGB), or linear RGB. It is multiplied by the vertices' colours if they are given.
     """
 
     name: str
@@ -42,37 +44,39 @@ class Mesh:
     Parameters
     ----------
     source : path, array_like of shape (n, 3), or an object that has vertices and faces, optional
-        A PLY, STL, OBJ, glTF or VTK PolyData file; vertices (x, y, z) in world units; a data set of PyVista or VTK, of
-        which others than PolyData show their surface; a mesh of trimesh or meshio. What is given is copied.
+        A PLY, STL, OBJ, glTF or VTK PolyData file; vertices (x, y, z) in world units; a data set of PyVista or VTK,
+        which shows its surface if it is no PolyData; a mesh of trimesh or meshio. The data are copied.
     triangles : array_like of int, shape (m, 3), optional
-        Numbers of vertices, for vertices given as an array. A triangle whose vertices run counter-clockwise faces the
-        viewer.
+        Indices of vertices, if the vertices are given as an array. A triangle whose vertices run counter-clockwise
+        faces the viewer.
     normals : array_like, shape (n, 3), optional
-        At the vertices, of any length.
+        The normals at the vertices, of any length.
     colors : array_like, shape (n, 3) or (n, 4), optional
-        Of the vertices, with opacity: uint8 are sRGB, others linear from 0 to 1.
+        The colours of the vertices, with or without opacity. Numbers of uint8 are sRGB; all others are linear from 0
+        to 1.
     face_colors : array_like, shape (m, 3) or (m, 4), optional
-        Of the triangles.
+        The colours of the triangles.
     spheres : array_like, shape (n, 3) or (n, 4), optional
-        Centres, with radii where `radius` does not give one for all. Spheres are exact.
+        The spheres' centres, with their radii unless `radius` gives one radius for all. Spheres are exact.
     sphere_colors : array_like, shape (n, 3) or (n, 4), optional
-        Of the spheres.
+        The colours of the spheres.
     lines : sequence of array_like, each of shape (n, 3) or (n, 4), optional
-        Points of lines that are drawn as tubes, with radii where `radius` does not give one.
+        The points of lines, which are drawn as tubes, with their radii unless `radius` gives one radius for all.
     line_colors : array_like, shape (n, 3) or (n, 4), optional
-        Of the points of all lines, one after the other.
+        The colours of the points of all lines, one line after the other.
     radius : float, optional
-        The radius of spheres and lines that have none of their own. For the lines and points of a data set it is by
-        default a 400th of the set's diagonal.
+        The radius of spheres and lines that have no radius of their own. For the lines and points of a data set, the
+        default is a 400th of the set's diagonal.
     scalars : str, array_like or False, optional
-        What colours the mesh: the name of one of its arrays, of vertices or of cells, or the values; 8-bit RGB and RGBA are
-        colours themselves. By default the active array, where the mesh has one and is given no colour; False: none.
+        The values that colour the mesh: the name of one of its arrays, at vertices or cells, or the values themselves.
+        Arrays of 8-bit RGB and RGBA are colours themselves. The default is the mesh's active array, if it has one and
+        no colour is given. False stands for no array.
     cmap, clim, log_scale : optional
-        The colours of `scalars`, as of `render`; by default viridis over all values.
+        The colours of `scalars`, as for `render`. The default is viridis over all values.
     nan_color : colour
         The colour of values that are no numbers.
     affine : array_like, shape (4, 4), optional
-        Where the vertices are moved to first, as by an actor's matrix.
+        A matrix by which the vertices are moved first, such as an actor's matrix.
     **look : MeshLook
         `name`, `color`, `opacity`, `smooth`, `visible`, ..., and the material: see `halflight.keywords`.
 
@@ -191,7 +195,7 @@ class Mesh:
         return found
 
     def _arrays(self) -> tuple[Any, dict[str, Any]]:
-        """The vertices and the other arrays: tubes are triangles among the others."""
+        """The vertices and the other arrays. The triangles of tubes are among the other triangles."""
         struct = lib.hl_mesh_describe(self._handle)
 
         def rows(pointer: Any, count: int, width: int, kind: Any) -> Any:
@@ -230,13 +234,13 @@ class Mesh:
 
     @classmethod
     def floor(cls, scene: Any, size: float = 3, **look: Unpack[MeshLook]) -> Mesh:
-        """A square below all that a scene shows, `size` times as wide as what stands on it. It is matt and grey. Cuts
-        of the scene leave it whole, except with `cut=True`.
+        """A square below everything that a scene shows, `size` times as wide as the things that stand on it. It is
+        matt and grey. Cuts of the scene do not cut it, unless `cut=True` is given.
 
         Parameters
         ----------
         scene : Scene
-            Whose volumes and meshes stand on the floor.
+            The scene whose volumes and meshes stand on the floor.
         size : float
             From 1 to 1000.
         **look : MeshLook
@@ -252,13 +256,13 @@ class Mesh:
 
     @property
     def vertex_count(self) -> int:
-        """How many vertices there are."""
+        """The number of vertices."""
         count: int = lib.hl_mesh_describe(self._handle).vertex_count
         return count
 
     @property
     def triangle_count(self) -> int:
-        """How many triangles there are; those without an area are left out."""
+        """The number of triangles. Triangles without an area are left out."""
         count: int = lib.hl_mesh_describe(self._handle).triangle_count
         return count
 
@@ -343,7 +347,7 @@ def _put(description: Any, name: str, rows: np.ndarray[Any, Any]) -> None:
 
 
 def _move(affine: Any, rows: dict[str, np.ndarray[Any, Any]]) -> None:
-    """Take points, normals and radii to where an affine matrix moves them."""
+    """Move points, normals and radii by an affine matrix."""
     matrix = np.array(matrix_of("affine", affine, [(4, 4), (3, 4)]))[:3]
     turn, volume = matrix[:, :3], float(np.linalg.det(matrix[:, :3]))
     if volume == 0 or not np.isfinite(matrix).all():
@@ -361,7 +365,7 @@ def _move(affine: Any, rows: dict[str, np.ndarray[Any, Any]]) -> None:
 
 
 def _create(vertices: Any, given: Mapping[str, Any], radius: float | None, affine: Any = None) -> Any:
-    """An hl_mesh of arrays; given: those that are not None are used."""
+    """An hl_mesh of arrays. given: the arrays; only the ones that are not None are used."""
     description = ffi.new("hl_mesh_description *")
     lib.hl_mesh_description_defaults(description)
     rows: dict[str, np.ndarray[Any, Any]] = {}

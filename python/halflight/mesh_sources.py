@@ -1,4 +1,6 @@
-"""Meshes of other packages, known by what they can do: VTK's and PyVista's data sets, trimesh, meshio. None is required."""
+"""Reads meshes of other packages: data sets of VTK and PyVista, and meshes of trimesh and meshio. The objects are
+recognised by their methods, so that none of these packages is required.
+"""
 from __future__ import annotations
 
 import math
@@ -18,14 +20,14 @@ Rows = np.ndarray[Any, Any]
 class Surface(NamedTuple):
     """Triangles, lines and single points, with the arrays that lie on them.
 
-    Points' arrays have a row for each of `points`; cells' arrays a row for each single point, line and triangle, in
-    this order, which is VTK's.
+    Arrays of points have a row for each of `points`. Arrays of cells have a row for each single point, then for each
+    line, then for each triangle, which is VTK's order.
     """
 
     points: Rows
     triangles: Rows
-    lines: Sequence[Rows] = ()  # numbers of points
-    vertices: Rows = np.zeros(0, np.int64)  # likewise
+    lines: Sequence[Rows] = ()  # the lines, each as a list of indices of points
+    vertices: Rows = np.zeros(0, np.int64)  # the single points, as indices of points
     normals: Rows | None = None
     of_points: Mapping[str, Rows] = {}
     of_cells: Mapping[str, Rows] = {}
@@ -68,7 +70,7 @@ def _of_meshio(source: Any) -> Surface:
 
 
 def _polydata(source: Any) -> Any:
-    """A vtkPolyData: the surface of other data sets, as extract_surface gives it."""
+    """A vtkPolyData. For other data sets it is their surface, as extract_surface() gives it."""
     from vtkmodules.vtkFiltersGeometry import vtkGeometryFilter
 
     if hasattr(source, "GetPolys"):
@@ -113,7 +115,7 @@ def _arrays(data: Any) -> dict[str, Rows]:
 
 
 def _of_vtk(source: Any) -> Surface:
-    """vtkPolyData as it is, other data sets by their surface."""
+    """Reads a vtkPolyData as it is, and other data sets by their surface."""
     from vtkmodules.util.numpy_support import vtk_to_numpy
 
     plain = _polydata(source)
@@ -123,7 +125,8 @@ def _of_vtk(source: Any) -> Surface:
     cut = _triangles(plain)
     triangles = _cells(cut.GetPolys())
     vertices, lines = _cells(plain.GetVerts()), _cells(plain.GetLines())
-    before = [len(cell) for cell in vertices] + len(lines) * [1]  # cells of several single points count as several
+    # A cell of several single points counts as several cells.
+    before = [len(cell) for cell in vertices] + len(lines) * [1]
     cells, of_triangles = _arrays(plain.GetCellData()), _arrays(cut.GetCellData())
     of_cells = {name: np.concatenate([np.repeat(values[:len(before)], before, axis=0), of_triangles.get(name, values[:0])])
                 for name, values in cells.items()}
@@ -145,7 +148,7 @@ class Painted(NamedTuple):
 
 
 def _array_of(place: str, surface: Surface, scalars: Any) -> tuple[Rows, bool]:
-    """The array that `scalars` names or is, and whether it lies on cells."""
+    """The array whose name is `scalars`, or `scalars` itself if it is an array, and whether it lies on cells."""
     cells = len(surface.vertices) + len(surface.lines) + len(surface.triangles)
     if isinstance(scalars, str):
         if scalars in surface.of_points:
@@ -167,7 +170,7 @@ def _array_of(place: str, surface: Surface, scalars: Any) -> tuple[Rows, bool]:
 
 def painted(place: str, surface: Surface, scalars: Any, cmap: Any, clim: Any, log_scale: bool = False,
             nan_color: Any = 0.5) -> Painted:
-    """The colours of an array's values, or the array itself where it holds 8-bit colours."""
+    """The colours of an array's values, or the array itself if it holds 8-bit colours."""
     values, of_cells = _array_of(place, surface, scalars)
     if values.ndim == 2 and values.shape[1] in (3, 4) and values.dtype == np.uint8:
         linear = values / 255.0
@@ -177,7 +180,8 @@ def painted(place: str, surface: Surface, scalars: Any, cmap: Any, clim: Any, lo
     if values.ndim == 2 and values.shape[1] == 1:
         values = values[:, 0]
     if values.ndim == 2:
-        values = np.sqrt((values.astype(float) ** 2).sum(axis=1))  # as files and PyVista show vectors
+        # Vectors are shown by their lengths, as files and PyVista show them.
+        values = np.sqrt((values.astype(float) ** 2).sum(axis=1))
     if values.ndim != 1 or values.dtype.kind not in "biuf":
         raise TypeError(f"{place}scalars: {values.dtype} of the shape {values.shape} are no numbers for each vertex or cell")
     return Painted(map_values(place, values.astype(np.float64), cmap, clim, log_scale, nan_color), of_cells)

@@ -1,4 +1,6 @@
-"""Volumes of other packages, known by what they can do; none of these packages is imported or required."""
+"""Reads volumes of other packages. The objects are recognised by their methods, so that none of these packages is
+imported or required.
+"""
 from __future__ import annotations
 
 import sys
@@ -10,11 +12,11 @@ from ._library import lib, warn
 
 
 class Found(NamedTuple):
-    """An array with what its package knows about it; None where it knows nothing."""
+    """An array with the facts that its package knows about it. A fact is None if the package does not know it."""
 
-    array: Any  # of NumPy, or one that is read by slices (`is_stored`)
+    array: Any  # an array of NumPy, or an array that is read by slices (`is_stored`)
     axes: str | None = None
-    place: dict[str, Any] = {}  # keywords of arrays.make_place(); spacing in the order of axes
+    place: dict[str, Any] = {}  # keywords of arrays.make_place(); the spacing is in the order of axes
     space: int = 0
     owner: object = None
     name: str | None = None
@@ -26,7 +28,7 @@ def find(source: Any) -> Found:
     Raises
     ------
     TypeError
-        If it is no array, and nothing that has one.
+        If `source` is no array, and has no array.
     """
     if isinstance(source, np.ndarray):
         return Found(source)
@@ -53,7 +55,7 @@ def _has_buffer(source: object) -> bool:
 
 
 def is_stored(source: Any) -> bool:
-    """Whether the array is read by slices: one of zarr, h5py or dask."""
+    """Whether the array is read by slices, because it is an array of zarr, h5py or dask."""
     return not isinstance(source, np.ndarray) and hasattr(source, "shape") and hasattr(source, "dtype") and (
         hasattr(source, "chunks") or type(source).__module__.partition(".")[0] in ("h5py", "zarr"))
 
@@ -72,7 +74,9 @@ def _nibabel(source: Any) -> Found:
 
 
 def _itk(source: Any) -> Found:
-    """SimpleITK's images and ITK's: x runs fastest, world coordinates are left, back, head."""
+    """Reads images of SimpleITK and ITK. The index x runs fastest, and world coordinates increase to the left, back
+    and head.
+    """
     if hasattr(source, "GetPixelIDTypeAsString"):
         array, direction = sys.modules["SimpleITK"].GetArrayViewFromImage(source), source.GetDirection()
     else:
@@ -102,7 +106,7 @@ def _pynrrd(source: Any) -> Found:
     return Found(data, "xyz" if fortran else "zyx", place, spaces.get(str(header.get("space", "")).lower(), 0))
 
 
-_CALLED = {  # what the axes of the world are called in models and microscopes
+_CALLED = {  # the names of the axes of the world in models and microscopes
     "x": "x xc x_c lon longitude long rlon easting east i column columns col xt_ocean nav_lon".split(),
     "y": "y yc y_c lat latitude rlat northing north j row rows yt_ocean nav_lat".split(),
     "z": "z zc z_c lev level levels height altitude alt depth plev pressure isobaric k slice slices plane planes zlev".split(),
@@ -110,7 +114,7 @@ _CALLED = {  # what the axes of the world are called in models and microscopes
 
 
 def _letter(source: Any, name: Any) -> str | None:
-    """Which axis of the world a dimension is: by its coordinate's CF attributes, or its name."""
+    """The axis of the world to which a dimension belongs, by its coordinate's CF attributes or by its name."""
     attributes = getattr(source.coords[name], "attrs", {}) if name in source.coords else {}
     said = str(attributes.get("axis", "")).lower()
     if said in ("x", "y", "z"):
@@ -119,13 +123,13 @@ def _letter(source: Any, name: Any) -> str | None:
 
 
 def _axes_of(source: Any) -> str | None:
-    """The letters of the dimensions where each of x, y and z occurs once."""
+    """The letters of the dimensions, if each of x, y and z occurs once."""
     letters = [_letter(source, name) for name in source.dims]
     return "".join(str(one) for one in letters) if sorted(map(str, letters)) == ["x", "y", "z"] else None
 
 
 def _variable(dataset: Any, name: str | None) -> Any:
-    """The variable of an xarray.Dataset that is a volume, with this name or the only one."""
+    """The variable of an xarray.Dataset with this name or, without a name, the only variable that is a volume."""
     found = {str(key): value for key, value in dataset.data_vars.items() if sum(size > 1 for size in value.shape) >= 3}
     if name is None and len(found) == 1:
         return next(iter(found.values()))
@@ -143,7 +147,7 @@ def variable(dataset: Any, name: str) -> Found:
 
 
 def _warn_of_shape(source: Any, steps: dict[str, float], axes: str) -> None:
-    """Warn where coordinates make the volume a plate or a needle, as degrees beside metres do."""
+    """Warn if coordinates make the volume a plate or a needle, as coordinates in degrees and metres do together."""
     extents = {letter: abs(steps[letter]) * max(size - 1, 1) for letter, size in zip(axes, source.shape, strict=True)}
     if max(extents.values()) > 100 * min(extents.values()):
         said = ", ".join(f"{letter} {extents[letter]:g}" for letter in "xyz")
@@ -151,8 +155,10 @@ def _warn_of_shape(source: Any, steps: dict[str, float], axes: str) -> None:
 
 
 def _xarray(source: Any) -> Found:
-    """xarray: names or CF attributes of the dimensions tell the axes; evenly spaced coordinates tell the place."""
-    if len(source.dims) > 3:  # a time, a member or a channel alone
+    """Reads an array of xarray. The names or CF attributes of the dimensions tell the axes. Evenly spaced coordinates
+    tell the place.
+    """
+    if len(source.dims) > 3:  # the coordinate of a single time, member or channel
         single = [name for name, size in zip(source.dims, source.shape, strict=True) if size == 1 and _letter(source, name) is None]
         source = source.isel(dict.fromkeys(single[:len(source.dims) - 3], 0))
     axes = _axes_of(source) or "zyx"
@@ -183,7 +189,7 @@ def _xarray(source: Any) -> Found:
 
 
 def _vtk(source: Any) -> Found:
-    """vtkImageData and PyVista's: the active scalars of the points, else of the cells."""
+    """Reads a vtkImageData of VTK or PyVista: the active scalars of the points, or else of the cells."""
     from vtkmodules.util.numpy_support import vtk_to_numpy
 
     dimensions, steps = list(source.GetDimensions()), list(source.GetSpacing())

@@ -1,4 +1,4 @@
-"""`Scene.to_html`: a scene with its data as one page for browsers."""
+"""Implements `Scene.to_html`, which writes a scene with its data as one page for browsers."""
 from __future__ import annotations
 
 import os

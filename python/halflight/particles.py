@@ -1,4 +1,4 @@
-"""Particles as volumes: of smoothed particle hydrodynamics and molecular dynamics."""
+"""Makes volumes of particles from smoothed particle hydrodynamics and molecular dynamics."""
 from __future__ import annotations
 
 from collections.abc import Sequence
@@ -26,7 +26,7 @@ class Particles:
     positions : array_like, shape (n, 3)
         World x, y, z. Particles whose place is not finite are left out.
     masses : array_like, shape (n,), optional
-        From 0 on; by default 1 each.
+        The masses, which are at least 0. The default is 1 for each particle.
     h : float or array_like, shape (n,), optional
         Smoothing lengths in world units; by default half of the distance of each particle's 48th neighbour.
     periodic : float, 3 floats, or ((x, y, z), (x, y, z)), optional
@@ -68,7 +68,9 @@ class Particles:
 
     @property
     def h(self) -> np.ndarray[Any, np.dtype[np.float32]]:
-        """(n,): the smoothing lengths, found where none were given; 0 for particles without a finite place."""
+        """The smoothing lengths, of shape (n,). If none were given, they were computed. They are 0 for particles
+        without a finite place.
+        """
         if self._h is None:
             found = np.empty(len(self), np.float32)
             call(lib.hl_particles_find_smoothing, context, self._describe(), ffi.from_buffer("float[]", found))
@@ -95,12 +97,13 @@ class Particles:
         Parameters
         ----------
         quantity : "log density", "density", or array_like, shape (n,)
-            Numbers are averaged, weighted by mass and kernel; where no particle reaches, the mean is NaN. The logarithm
-            has a least value: that of a tenth of the least density that any particle has at its own place.
+            Numbers are averaged, with mass and kernel as weights. At places that no particle reaches, the mean is NaN.
+            The least value of the logarithm is the logarithm of a tenth of the least density that any particle has at
+            its own place.
         spacing : float, optional
             World units between voxels; by default half of the smoothing length that one particle in fifty stays below.
         size : int, optional
-            Most voxels along an axis where no spacing is given; by default 512.
+            The greatest number of voxels along an axis if no spacing is given; by default 512.
         **look
             Keywords of `Volume`.
         """
@@ -122,7 +125,7 @@ class Particles:
         return struct
 
     def _mean(self, values: np.ndarray[Any, np.dtype[np.float32]], outside: float, spacing: float | None, size: int | None) -> Volume:
-        """The mean of values, and `outside` where no particle reaches."""
+        """The mean of values. At places that no particle reaches, it is `outside`."""
         struct = self._on_grid(spacing, size)
         struct.quantity, struct.values, struct.outside = lib.HL_PARTICLES_MEAN, ffi.cast("float *", values.ctypes.data), outside
         return _made(struct)
@@ -134,24 +137,25 @@ class Particles:
         Parameters
         ----------
         values : array_like, shape (n,)
-            Of each particle, such as its temperature.
+            A value of each particle, such as its temperature.
         cmap : str, matplotlib colormap or colours
         clim : (low, high), optional
-            The values that the colours spread over; by default percentiles 2 and 98 of `values`. Values beyond it count as its ends.
+            The values that the colours spread over; by default percentiles 2 and 98 of `values`. Values beyond the
+            range count as the ends of the range.
         depth : float
             The optical depth of dense matter through a twentieth of the box. Dense is the density that only a
             thousandth of the places exceeds.
         name : str
-            What the volume of the mean is called, which is not visible itself.
+            The name of the volume of the mean, which is not visible itself.
         spacing, size : optional
-            As of `volume`.
+            As for `volume`.
 
         Returns
         -------
         list of Volume
             The density, and the mean that gives it its colours: give both to `render`.
         """
-        self.h  # found once for both volumes
+        self.h  # the smoothing lengths are computed once for both volumes
         density = self.volume(spacing=spacing, size=size)
         given = self._numbers("values", values)
         low, high = numbers_of("clim", np.percentile(given, (2, 98)) if clim is None else clim, 2)
@@ -185,7 +189,7 @@ def _made(struct: Any) -> Volume:
 
 
 def _dense(info: Info) -> float:
-    """The logarithm of density that one of a thousand voxels with matter exceeds."""
+    """The logarithm of the density that one in a thousand voxels with matter exceeds."""
     bottom, top = info.range
     counts = info.histogram.astype(float)
     counts[0] = 0  # voxels without matter have the least number
@@ -196,7 +200,7 @@ def _dense(info: Info) -> float:
 
 
 def _box(periodic: Any) -> tuple[list[float], list[float]]:
-    """Where a periodic box begins, and its lengths."""
+    """The origin of a periodic box, and the lengths of its edges."""
     if periodic is None:
         return [0.0] * 3, [0.0] * 3
     if np.ndim(periodic) == 2:

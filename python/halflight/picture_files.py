@@ -1,4 +1,4 @@
-"""Pictures for papers and screens in the formats that Pillow writes: `Image.save` with .jpg, .tif, .pdf and .webp."""
+"""Writes pictures in the formats that Pillow writes: `Image.save` uses this module for .jpg, .tif, .pdf and .webp."""
 from __future__ import annotations
 
 import io

@@ -1,7 +1,8 @@
-"""Arrays that the library reads as files: those that memory has no room for, and those whose voxels are colours.
+"""Passes arrays to the library as files: arrays for which memory has no room, and arrays whose voxels are colours.
 
-Both become an NRRD file without compression. Arrays of zarr, h5py and dask are written to one in the scratch folder
-slice by slice and read from there, as other volumes larger than memory are; colours become one in memory.
+Both become an NRRD file without compression. Arrays of zarr, h5py and dask are written slice by slice to such a file
+in the scratch folder, and read from it, as other volumes larger than memory are. Arrays of colours become such a file
+in memory.
 """
 from __future__ import annotations
 
@@ -21,7 +22,7 @@ __all__ = ["color_file", "color_volume", "does_not_fit", "has_colors", "volume_o
 
 _TYPES = {"u1": "uint8", "i1": "int8", "u2": "uint16", "i2": "int16", "u4": "uint32", "i4": "int32", "u8": "uint64",
           "i8": "int64", "f4": "float", "f8": "double"}
-_PIECE = 32 << 20  # bytes that are read at once where the array's chunks do not say more
+_PIECE = 32 << 20  # bytes that are read at once, unless the array's chunks are larger
 
 
 def _header(shape: tuple[int, ...], kind: str, axes: str, place: Place, space: int, colors: bool) -> bytes:
@@ -80,7 +81,9 @@ def _slices(array: Any, step: int) -> Iterator[np.ndarray[Any, Any]]:
 
 
 def _step(array: Any) -> int:
-    """How many slices along the first axis are read at once: whole chunks, where those are no larger than the piece."""
+    """The number of slices along the first axis that are read at once. They are whole chunks if the chunks are not
+    larger than the piece.
+    """
     slice_bytes = max(int(np.prod(array.shape[1:])) * np.dtype(array.dtype).itemsize, 1)
     chunks: Any = getattr(array, "chunks", None) or (1,)
     chunk = max(chunks[0]) if isinstance(chunks[0], tuple) else int(chunks[0])

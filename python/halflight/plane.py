@@ -1,4 +1,6 @@
-"""Transfer functions of two numbers: the keywords `second`, `boxes`, `polygons` and `image` of TransferFunction."""
+"""Reads the keywords `second`, `boxes`, `polygons` and `image` of TransferFunction, which make it a function of two
+numbers.
+"""
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
@@ -18,7 +20,7 @@ _IMAGE = {"pixels": None, "value": None, "second": None}
 
 
 def _parts(place: str, given: Any, standard: Mapping[str, Any], optional: Sequence[str] = ()) -> dict[str, Any]:
-    """The members of a shape; those that are not given are taken from `standard`."""
+    """The members of a shape. Members that are not given are taken from `standard`."""
     if not isinstance(given, Mapping):
         raise TypeError(f"{place}: {given!r} is no dict")
     for word in given:
@@ -69,7 +71,9 @@ def _image(place: str, given: Any) -> dict[str, Any]:
 
 
 class Plane:
-    """What a function of two numbers shows in the plane of these numbers. Users give the keywords of TransferFunction."""
+    """The shapes and the image of a function of two numbers in the plane of these numbers. Users give them as keywords
+    of TransferFunction.
+    """
 
     __slots__ = ("boxes", "image", "polygons", "second")
 
@@ -90,7 +94,7 @@ class Plane:
         return {word: getattr(self, word) for word in ("second", "boxes", "polygons", "image") if getattr(self, word)}
 
     def equals(self, other: Plane) -> bool:
-        """Whether the other shows the same."""
+        """Whether the other plane shows the same."""
         if (self.image is None) != (other.image is None):
             return False
         return ((self.second, self.boxes, self.polygons) == (other.second, other.boxes, other.polygons)

@@ -1,4 +1,4 @@
-"""`Image.plot`: a picture in a matplotlib axis."""
+"""Implements `Image.plot`, which shows a picture in axes of matplotlib."""
 from __future__ import annotations
 
 import math
@@ -13,7 +13,7 @@ if TYPE_CHECKING:
 
     from .image import Image
 
-_LONGEST = 0.25  # of the picture's width: the scale bar
+_LONGEST = 0.25  # the scale bar's greatest length, as a fraction of the picture's width
 
 
 def world_height(image: Image) -> float:

@@ -1,4 +1,4 @@
-"""The program `halflight` from Python: the command of the wheel, `animate` and `view`."""
+"""Runs the program `halflight` from Python, for the wheel's command, `animate` and `view`."""
 from __future__ import annotations
 
 import os
@@ -16,7 +16,8 @@ __all__ = ["Viewing", "animate", "main", "program_path", "view"]
 
 
 def program_path() -> str:
-    """The program: the one that is installed with the package, else the one that PATH or HALFLIGHT_PROGRAM names.
+    """The path of the program that is installed with the package, or else of the program that PATH or
+    HALFLIGHT_PROGRAM names.
 
     Raises
     ------
@@ -31,13 +32,14 @@ def program_path() -> str:
     own = os.path.realpath(sys.argv[0]) if sys.argv else ""
     for folder in os.environ.get("PATH", "").split(os.pathsep):
         found = shutil.which("halflight", path=folder)
-        if found is not None and os.path.realpath(found) != own:  # not the script that asks
+        # The result must not be the script that calls this function.
+        if found is not None and os.path.realpath(found) != own:
             return found
     raise FileNotFoundError("the program halflight is not installed: install a wheel of the package, or build it by scripts/build")
 
 
 def main() -> int:
-    """``halflight ...`` and ``python -m halflight ...``: the program in this process's place."""
+    """Replaces this process by the program, for ``halflight ...`` and ``python -m halflight ...``."""
     try:
         path = program_path()
     except FileNotFoundError as problem:
@@ -60,25 +62,24 @@ def _key(path: str, values: Mapping[float, float]) -> str:
 def animate(source: Any, path: str | os.PathLike[str], *, turntable: int | None = None,
             keys: Mapping[str, Mapping[float, float]] | None = None, frames: int | None = None, fps: float | None = None,
             quiet: bool = True, **asked: Unpack[Asked]) -> str:
-    """A film of a scene in which the camera turns and numbers change, by ``halflight animate``.
+    """Make a film of a scene in which the camera turns and numbers change, by ``halflight animate``.
 
     Parameters
     ----------
     source : Scene, or what `render` takes
-        What is shown.
-    path : path
-        .mp4, .mov, .mkv, .webm or .gif, which ffmpeg's program joins, or a folder for numbered pictures.
+        What is shown. path : path A .mp4, .mov, .mkv, .webm or .gif file, which the program ffmpeg makes, or a folder
+        for numbered pictures.
     turntable : int, optional
-        Turn once about the picture's vertical axis in so many frames.
+        The number of frames in which the camera turns once about the picture's vertical axis.
     keys : mapping of str to mapping of frame to value, optional
-        Numbers of the scene by their place in its file: ``{"lights.0.intensity": {0: 1, 48: 3}}``; "camera.azimuth",
-        "camera.elevation" and "camera.roll" (degrees) and "camera.zoom" turn the camera.
+        The numbers of the scene that change, by their place in the scene file: ``{"lights.0.intensity": {0: 1, 48:
+        3}}``; "camera.azimuth", "camera.elevation" and "camera.roll" (degrees) and "camera.zoom" turn the camera.
     frames : int, optional
-        Length; by default the turn's, or up to the last frame of `keys`.
+        The number of frames. By default it is the turn's, or reaches up to the last frame of `keys`.
     fps : float, optional
-        Frames a second; default 30.
+        The number of frames in a second; default 30.
     quiet : bool
-        No progress bar.
+        Whether to show no progress bar.
     **asked
         Keywords of `render`.
 
@@ -90,7 +91,7 @@ def animate(source: Any, path: str | os.PathLike[str], *, turntable: int | None 
     Raises
     ------
     RuntimeError
-        The program fails: its message.
+        The program has failed; the message is the program's.
     """
     if turntable is None and not keys:
         raise TypeError("animate(): nothing moves: give turntable= or keys=")
@@ -152,7 +153,7 @@ def view(source: Any, *, browser: bool = True, options: Sequence[str] = (), **as
     source : Scene, or what `render` takes
         What is shown.
     browser : bool
-        Open a browser with the page; else the result's `url` says where it is.
+        Whether to open a browser with the page. The result's `url` is the page's address.
     options : sequence of str
         More options of ``halflight view``, such as ("--port", "8080").
     **asked

@@ -1,4 +1,4 @@
-"""Progress: a callable, tqdm where it is installed, or a line on stderr."""
+"""Shows progress by a callable, by tqdm if it is installed, or by a line on stderr."""
 from __future__ import annotations
 
 import sys
@@ -14,7 +14,7 @@ Progress = bool | Callable[[str, float], object] | None
 
 
 class _Line:
-    """One line on stderr, written anew."""
+    """A progress line on stderr, which is written anew each time."""
 
     def __call__(self, stage: str, fraction: float) -> None:
         sys.stderr.write(f"\r{stage} {fraction:4.0%}")
@@ -25,7 +25,7 @@ class _Line:
 
 
 class _Bar:
-    """tqdm's bar, in notebooks too."""
+    """A progress bar of tqdm, which also works in notebooks."""
 
     def __init__(self, tqdm: Any) -> None:
         self.bar = tqdm(total=1.0, bar_format="{desc} {percentage:3.0f}%|{bar}| {elapsed}", leave=False)
@@ -41,7 +41,9 @@ class _Bar:
 
 @contextmanager
 def told(progress: Progress) -> Iterator[None]:
-    """Calls within tell their progress as `progress` asks: True, False, None or a callable (stage, fraction)."""
+    """Within this context manager, calls report their progress as `progress` asks: True, False, None or a callable
+    (stage, fraction).
+    """
     if progress is None or progress is False:
         with listening(None):
             yield

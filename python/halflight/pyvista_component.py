@@ -1,4 +1,6 @@
-"""``plotter.halflight(...)``: PyVista imports this module when it is first asked for (entry point pyvista.plotter_components)."""
+"""Implements ``plotter.halflight(...)``. PyVista imports this module at the first use (entry point
+pyvista.plotter_components).
+"""
 from __future__ import annotations
 
 from typing import TYPE_CHECKING, Any

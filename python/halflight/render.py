@@ -1,4 +1,4 @@
-"""From a scene to a picture."""
+"""Renders scenes to pictures."""
 from __future__ import annotations
 
 import os
@@ -70,17 +70,17 @@ def _as_scene(scene: Any) -> Scene:
 
 
 class Renderer:
-    """Renders scenes one after the other, and keeps what is prepared of their volumes.
+    """Renders scenes one after the other, and keeps the prepared data of their volumes.
 
-    A renderer serves one thread at a time (another one waits); for more, make one for each. After ``fork`` the
-    child may go on with it.
+    A renderer serves one thread at a time, and other threads wait. To render in several threads at once, make a
+    renderer for each of them. After ``fork`` the child may go on with it.
 
     Parameters
     ----------
     device : str, optional
-        What makes the pictures: "cpu", the default; "gpu", the first GPU; "auto", a GPU where it is faster; or a part of a
-        name that ``halflight devices`` lists. The pictures are the same. What a GPU does not make, the processors make:
-        ``Image.statistics["device_reason"]`` says why.
+        The device that makes the pictures: "cpu", the default; "gpu", the first GPU; "auto", a GPU if it is faster; or
+        a part of a name that ``halflight devices`` lists. All devices make the same pictures. If a GPU cannot make a
+        picture, the processors make it, and ``Image.statistics["device_reason"]`` says why.
 
     Examples
     --------
@@ -102,7 +102,8 @@ class Renderer:
         self._lock, self._process = threading.Lock(), os.getpid()
 
     def close(self) -> None:
-        """Let go of what was prepared; the renderer is of no use afterwards. ``with Renderer() as renderer:`` does it."""
+        """Release the prepared data. The renderer cannot be used afterwards. ``with Renderer() as renderer:`` does it.
+        """
         with self._lock:
             if self._handle is not None:
                 ffi.release(self._handle)
@@ -123,11 +124,11 @@ class Renderer:
         scene : Scene
             What is rendered.
         layers : bool
-            Keep each light, its shadow, the sky and its shadow, ambient light, depths and normals apart, in
-            ``Image.layers``.
+            Whether to keep each light, its shadow, the sky and its shadow, ambient light, depths and normals as
+            separate layers in ``Image.layers``.
         progress : bool or callable, optional
-            True: a bar by tqdm, or a line on stderr. A callable gets the stage's name and a fraction, 0 to 1;
-            what it raises stops the render.
+            True: a bar by tqdm, or a line on stderr. A callable gets the stage's name and a fraction, 0 to 1. If it
+            raises an exception, the render stops.
         """
         if self._process != os.getpid():  # a lock that another thread held at the fork stays locked
             self._lock, self._process = threading.Lock(), os.getpid()
@@ -156,13 +157,14 @@ def reference(scene: Scene, *, light_points: int = 1024, step: float = 0.25, ray
     scene : Scene
         What is rendered.
     light_points : int
-        Points on each extended light.
+        The number of points on each extended light.
     step : float
-        In smallest voxel edges.
+        The length of a ray's steps, in edges of the smallest voxel.
     rays : int
-        Along each side of a pixel, 1 to 8; 0: as many as the renderer averages.
+        The number of rays along each side of a pixel, 1 to 8; 0 for the number that the renderer averages.
     paths : int
-        From each pixel, where media scatter light more than once: random, but the same at every call.
+        The number of random paths from each pixel if media scatter light more than once. They are the same at every
+        call.
     layers, progress
         As for `Renderer.render`.
 
@@ -213,7 +215,9 @@ def _percentile(text: str, volume: Volume) -> float:
 
 def _look(volume: Volume, projected: bool, cmap: Any, clim: Any, log_scale: Any, opacity: Any, unit_distance: float | None,
           tf: Any) -> Volume:
-    """The volume with the transfer function that the keywords ask for. projected: in a maximum projection."""
+    """The volume with the transfer function that the keywords ask for. projected: whether the picture is a maximum
+    projection.
+    """
     range_wanted, log = _clim(clim, volume), bool(log_scale)
     if log and range_wanted is None:
         raise ValueError("log_scale: it spreads over clim: give clim=(low, high), too")
@@ -337,8 +341,8 @@ def render(volume: Source = None, *, spacing: arrays.Spacing | None = None, orig
     """A picture of a volume, in one call.
 
     An array's axes, and `spacing`, are in the order ``axes="zyx"``: ``array[z][y][x]``, spacing ``(dz, dy, dx)``.
-    What is not given is chosen from the data, as ``halflight render`` does; a file's picture is byte for byte the
-    program's.
+    Keywords that are not given are chosen from the data, as ``halflight render`` does. The picture of a file has the
+    same bytes as the program's picture.
 
     Parameters
     ----------
@@ -445,14 +449,14 @@ def _look_for(look: Mapping[str, Any], index: int, count: int) -> tuple[Any, ...
 
 
 def _label_volume(labels: Any) -> Volume:
-    """The label map that `labels` shows beside a volume."""
+    """The label map that the keyword `labels` shows beside a volume."""
     parts = dict(labels) if isinstance(labels, Mapping) else {"volume": labels}
     volume = parts.pop("volume")
     return as_volume(volume).replace(labels=parts or True)
 
 
 def _shows_itself(labels: Any) -> bool:
-    """Whether the volume itself is the label map: no other one is named."""
+    """Whether the volume itself is the label map, because no other label map is named."""
     if isinstance(labels, Mapping):
         return "volume" not in labels
     plain = isinstance(labels, (bool, int, float)) or isinstance(labels, str) and not os.path.exists(labels)

@@ -1,4 +1,4 @@
-"""Scenes: volumes, lights, a camera and settings, checked by the library when they are made."""
+"""Defines scenes: volumes, lights, a camera and settings. The library checks a scene when it is made."""
 from __future__ import annotations
 
 import os
@@ -26,7 +26,7 @@ LIGHT_RIGS = ("studio", "raking", "rim", "overcast")
 
 
 class Settings(PictureSettings, RenderSettings, total=False):
-    """Keywords of `Scene`. What is not given is chosen from the first volume.
+    """Keywords of `Scene`. Keywords that are not given are chosen from the first volume.
 
     Parameters
     ----------
@@ -40,7 +40,8 @@ class Settings(PictureSettings, RenderSettings, total=False):
     size : (width, height), int or str
         Pixels; 512 is a square, "640x480" a text.
     background : colour, "transparent" or "sky"
-        What a PNG shows behind the volumes; "sky": all pictures show the scene's sky there.
+        The colour that a PNG shows behind the volumes. With "sky", all pictures show the scene's sky behind the
+        volumes.
     description : str
         One sentence on the scene, for its file.
     meshes : a Mesh or a list of them
@@ -51,7 +52,7 @@ class Settings(PictureSettings, RenderSettings, total=False):
         Measures and texts in the world, which `Image.annotate` draws: ``{"kind": "ruler", "points": [(0, 0, 0), (9, 0, 0)],
         "text": "width"}``; kinds are "ruler", "angle", "line", "arrow" and "text".
     sky : float, colour or mapping
-        Light from all directions, which folds and hollows get less of: an even colour, or the keywords of
+        Light from all directions, of which folds and hollows receive less: an even colour, or the keywords of
         `halflight.keywords.SkySettings`, as ``{"type": "gradient", "zenith": (0.5, 0.7, 1)}``. An image is an array
         of linear RGB, ``{"type": "image", "pixels": array}``.
     """
@@ -127,7 +128,7 @@ class Scene:
 
     @classmethod
     def load(cls, path: str | os.PathLike[str]) -> Scene:
-        """The scene of a file: relative paths begin beside it."""
+        """The scene of a file. Relative paths in the file begin in its folder."""
         file = os.fspath(path)
         return cls._of(made(lib.hl_scene_load, "hl_scene", lib.hl_scene_release, context, os.fsencode(file),
                             path=file))
@@ -136,8 +137,9 @@ class Scene:
     def of_channels(cls, path: str | os.PathLike[str], channels: str | Sequence[int] = "all", *, look: str = "auto",
                     array: str | None = None, series: str | None = None, time: int | None = None, level: int | None = None,
                     spacing: Any = None) -> Scene:
-        """Several channels of a file, as of a microscope, each a volume in a colour of its own: the one that the file
-        tells (OME, ImageJ, omero), or else green and magenta, cyan, yellow, ...
+        """A scene of several channels of a file, such as a microscope's. Each channel is a volume in a colour of its
+        own. The file may state this colour (OME, ImageJ, omero). If it does not, the colours are green and magenta,
+        cyan, yellow, ...
 
         Parameters
         ----------
@@ -157,7 +159,7 @@ class Scene:
         projected = choice("look", look, choices_of("look")) == "mip"
         handle = made(lib.hl_scene_for_channels, "hl_scene", lib.hl_scene_release, context, os.fsencode(file), options,
                       ffi.new("int[]", numbers) if numbers else ffi.NULL, len(numbers), b"auto" if projected else look.encode(), path=file)
-        del keep  # the texts that `options` borrows
+        del keep  # the texts that `options` borrows are kept in this list
         if projected:
             handle = composed(lib.hl_scene_describe(handle), lib.HL_COMPOSE_BARE, {"look": "mip"})
         return cls._of(handle)
@@ -198,14 +200,17 @@ class Scene:
         return self._changed(given, settings, False)
 
     def _changed(self, volumes: Sequence[Any], settings: Mapping[str, Any], chosen: bool) -> Scene:
-        """The scene with other volumes and settings. chosen: its camera and light were chosen for its volumes, and are chosen anew."""
+        """The scene with other volumes and settings. chosen: whether the scene's camera and light were chosen for its
+        volumes, so that they are chosen anew.
+        """
         other = Scene.__new__(Scene)
         other._volumes = tuple(as_volume(source) for source in volumes)
         other._handle = _build(self._handle, other._volumes, settings, chosen)
         return other
 
     def save(self, path: str | os.PathLike[str], *, copy: bool = False) -> None:
-        """Write a scene file (.json) that `Scene.load` and ``halflight render`` read, with what is in memory alone beside it.
+        """Write a scene file (.json) that `Scene.load` and ``halflight render`` read, and beside it the data that are
+        only in memory.
 
         Arrays, and images of lights and skies that are arrays, go into a folder beside the file, whose name begins as the
         file's; meshes are written into the scene. Files stay where they are, named relative to the scene where they lie
@@ -216,7 +221,8 @@ class Scene:
         path : path
             Its name ends in .json.
         copy : bool
-            Volumes that come from files are written into the folder, too: the scene and its folder can be sent away.
+            Whether volumes that come from files are written into the folder, too, so that the scene and its folder can
+            be sent to other people.
 
         Examples
         --------
@@ -241,7 +247,7 @@ class Scene:
         path : path
             The page is written there, too.
         title : str
-            What the page is called.
+            The title of the page.
 
         Returns
         -------
@@ -263,7 +269,7 @@ class Scene:
         return text
 
     def _state(self) -> dict[str, Any]:
-        """All that the scene shows beside its volumes, by the keywords that make it."""
+        """Everything that the scene shows beside its volumes, as the keywords that make it."""
         state: dict[str, Any] = {word: getattr(self, word) for word in (
             "camera", "lights", "ambient", "size", "background", "meshes", "cuts", "marks", "exposure", "tone", "sky", "description")}
         return state | dict(self.settings)
@@ -288,7 +294,7 @@ class Scene:
         return hash((self.size, len(self._volumes)))
 
     def _check_arrays(self) -> None:
-        """Raise ValueError where an array has been changed since a volume borrowed it."""
+        """Raise ValueError if an array has been changed since a volume borrowed it."""
         struct = self._struct
         for n in range(struct.volume_count):
             for what, handle in (("array", struct.volumes[n].volume), ("mask", struct.volumes[n].mask.volume)):
@@ -324,7 +330,7 @@ class Scene:
 
     @property
     def cuts(self) -> list[dict[str, Any]]:
-        """What is cut out of all volumes."""
+        """The cuts of all volumes."""
         return cuts.cuts_from(self._struct)
 
     @property
@@ -368,13 +374,13 @@ class Scene:
 
     @property
     def exposure(self) -> float:
-        """How much brighter a PNG shows the scene, in stops."""
+        """The exposure, in stops, by which a PNG shows the scene brighter."""
         exposure: float = self._struct.exposure
         return exposure
 
     @property
     def tone(self) -> str:
-        """How a PNG shows light brighter than white: "clip" or "filmic"."""
+        """The way in which a PNG shows light brighter than white: "clip" or "filmic"."""
         tone: str = _settings.from_field(_settings.table(lib.HL_SETTINGS_IMAGE)["tone"], self._struct.tone)
         return tone
 
@@ -431,7 +437,7 @@ def _set_sky(struct: Any, sky: Any, keep: list[Any]) -> None:
         struct.pixels, struct.height, struct.width = buffer, image.shape[0], image.shape[1]
         struct.file = ffi.NULL
     _settings.fill("sky: ", struct, lib.HL_SETTINGS_SKY, look)
-    if not isinstance(sky, Mapping) and not any(struct.color):  # as the program's --sky 0: none
+    if not isinstance(sky, Mapping) and not any(struct.color):  # no sky, as with the program's option --sky 0
         struct.type = lib.HL_SKY_NONE
 
 
@@ -457,13 +463,13 @@ def _frame(struct: Any, side: int, angles: Sequence[float] | None) -> None:
             raise ValueError(f"camera: azimuth {angles[0]} and elevation {angles[1]}: the elevation is from -90 to 90")
 
 
-# PyVista's names of views: from where the eye looks, and what is up.
+# PyVista's names of views: the direction from which the eye looks, and the direction that is up.
 SIDES_BY_AXES = {"xy": ((0, 0, 1), (0, 1, 0)), "yx": ((0, 0, -1), (1, 0, 0)), "xz": ((0, -1, 0), (0, 0, 1)),
                  "zx": ((0, 1, 0), (1, 0, 0)), "yz": ((1, 0, 0), (0, 0, 1)), "zy": ((-1, 0, 0), (0, 1, 0))}
 
 
 def _look_along(struct: Any, towards_eye: Sequence[float], up: Sequence[float]) -> None:
-    """Place the camera so that it frames what is seen, from this direction."""
+    """Place the camera so that it frames the visible part of the scene from this direction."""
     camera = struct.camera
     camera.position, camera.target, camera.up = list(towards_eye), [0.0, 0.0, 0.0], list(up)
     if lib.hl_camera_fit(ffi.addressof(struct), 1.0, ffi.addressof(camera)) != lib.HL_OK:

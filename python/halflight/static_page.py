@@ -1,4 +1,6 @@
-"""A picture, or a turn of pictures, as one page without any other file: `to_html` of the viewer in notebooks."""
+"""Makes one page without any other file from a picture, or from the pictures of a turn. The viewer in notebooks uses
+it in `to_html`.
+"""
 from __future__ import annotations
 
 import base64
@@ -63,7 +65,7 @@ def _turned(image: Image, count: int) -> list[bytes]:
 
 
 def page_of(image: Image, turntable: int = 0) -> str:
-    """HTML with the picture, and with so many frames of a turn where `turntable` is above 1."""
+    """HTML with the picture, and with `turntable` frames of a turn if `turntable` is above 1."""
     count = number("turntable", turntable)
     if count != int(count) or not 0 <= count <= _MOST_FRAMES:
         raise ValueError(f"turntable: {turntable!r} is no whole number from 0 to {_MOST_FRAMES}")

@@ -1,4 +1,4 @@
-"""Transfer functions: which values are seen, and in which colour."""
+"""Defines transfer functions, which give opacities and colours to values."""
 from __future__ import annotations
 
 import os
@@ -88,14 +88,14 @@ class TransferFunction:
 
     @classmethod
     def from_vtk(cls, property: Any, colors: Any = None, *, unit_distance: float | None = None) -> TransferFunction:
-        """What a vtkVolumeProperty of VTK, PyVista, ParaView or Slicer shows, of its first component.
+        """The transfer function of the first component of a vtkVolumeProperty of VTK, PyVista, ParaView or Slicer.
 
         Parameters
         ----------
         property : vtkVolumeProperty or vtkPiecewiseFunction
             Further points between the nodes keep the effect of midpoints, sharpness and colour spaces.
         colors : vtkColorTransferFunction, optional
-            Beside a vtkPiecewiseFunction.
+            The colours, if `property` is a vtkPiecewiseFunction.
         unit_distance : float, optional
             World units; by default the property's, or 1.
         """
@@ -111,9 +111,9 @@ class TransferFunction:
         Parameters
         ----------
         layer : napari.layers.Image
-            Its colormap, contrast limits, gamma and opacity count.
+            The layer, whose colormap, contrast limits, gamma and opacity are used.
         unit_distance : float
-            World units in which the brightest value is as opaque as the layer says.
+            The length, in world units, over which the brightest value has the layer's opacity.
         """
         low, high = map(float, layer.contrast_limits)
         steps = np.linspace(0, 1, 256)
@@ -131,11 +131,11 @@ class TransferFunction:
         Parameters
         ----------
         cmap : matplotlib colormap, ScalarMappable, str, colour or colours
-            A ScalarMappable, such as what ``imshow`` gives, brings its own range.
+            A ScalarMappable, such as the result of ``imshow``, has a range of its own.
         clim : (low, high)
             The values that the colours spread over.
         opacity : optional
-            As of `render`; by default the colormap's alpha where it has one below 1, else "linear".
+            As for `render`. The default is the colormap's alpha if it is below 1 anywhere, else "linear".
 
         Examples
         --------
@@ -185,7 +185,7 @@ def function_from(struct: Any) -> TransferFunction:
     gradient = [(struct.gradient_opacity[n].value, struct.gradient_opacity[n].opacity)
                 for n in range(struct.gradient_opacity_count)]
     plane = plane_from(struct.plane)
-    if plane.second is not None:  # opacity and colour are made of it
+    if plane.second is not None:  # opacity and colour are made of the plane
         return TransferFunction((), unit_distance=struct.unit_distance, gradient_opacity=gradient, **plane.arguments())
     return TransferFunction(opacity, color or (1.0, 1.0, 1.0), struct.unit_distance, gradient)
 
@@ -197,7 +197,9 @@ def _made(function: Any, *arguments: Any, path: str | None = None) -> Any:
 
 
 def named_function(tf: Any, volume: Any, old: TransferFunction) -> TransferFunction:
-    """What ``tf=`` names: a preset, a file or a TransferFunction. Files with colours alone keep `old`'s opacity."""
+    """The transfer function that ``tf=`` names: a preset, a file or a TransferFunction. If a file has only colours,
+    the opacity of `old` is kept.
+    """
     if isinstance(tf, TransferFunction):
         return tf
     if not isinstance(tf, (str, os.PathLike)):
@@ -224,8 +226,9 @@ def _moved(function: TransferFunction, old: Sequence[float], clim: Sequence[floa
 
 
 def recolored(function: TransferFunction, cmap: Any, clim: list[float] | None, log: bool, volume: Any, projected: bool) -> TransferFunction:
-    """The function with the colours of `cmap` over `clim`, by default over the values that are seen. projected: for a maximum
-    projection, in which one colour is a ramp that begins at black."""
+    """The function with the colours of `cmap` over `clim`, by default over the values that are seen. projected:
+    whether the function is for a maximum projection, in which a single colour becomes a ramp that begins at black.
+    """
     if clim is None:
         seen, struct, keep = ffi.new("double[2]"), ffi.new("hl_transfer_function *"), list[Any]()
         function._fill(struct, keep)
@@ -248,8 +251,9 @@ def colormap_points(name: str) -> list[list[float]]:
 
 
 def spread(function: TransferFunction, cmap: Any, clim: list[float], log: bool, volume: Any, projected: bool) -> TransferFunction:
-    """Opacity and colours moved so that what was seen, or in a maximum projection the range of its colours, lies between the
-    values of `clim`. `cmap`: the colours that will take the place of the function's own."""
+    """Opacity and colours, moved so that the visible values lie between the values of `clim`. In a maximum projection,
+    the range of the colours lies between them instead. cmap: the colours that will replace the function's own.
+    """
     points = None if cmap is None else colors.sampled("cmap", cmap, *clim)
     mapped = cmap is not None and (points is None or len(points) > 1)
     use = lib.HL_SPREAD_PROJECTION if projected else lib.HL_SPREAD_COLORMAP if mapped else lib.HL_SPREAD_ALONE
@@ -263,7 +267,7 @@ _SHAPES = ("linear", "sigmoid", "geom")
 
 
 def opacity_points(opacity: Any, clim: list[float], log: bool = False) -> Any:
-    """What ``opacity=`` says, as points (value, opacity).
+    """The value of ``opacity=`` as points (value, opacity).
 
     A number holds for all values within `clim`; a name or a list of numbers is spread evenly over `clim`, or over
     the logarithms of its values; pairs are data values and opacities.

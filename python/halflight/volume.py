@@ -1,4 +1,4 @@
-"""Volumes: voxels, their position in the world, and their look."""
+"""Defines volumes: voxels, their place in the world, and their look."""
 from __future__ import annotations
 
 import os
@@ -24,11 +24,11 @@ _FIELDS = _settings.names(lib.HL_SETTINGS_VOLUME, "scale", "clip_min", "clip_max
 
 
 class Volume:
-    """Voxels with their place in the world, and how they look.
+    """Voxels with their place in the world and their look.
 
-    Arrays are not copied where the library can read them as they lie: packed uint8, bool, uint16 and float32, in
-    any order of the axes. The array may be deleted. Where it is changed while the volume or a scene with it lives, the
-    next picture of the volume is refused: make another `Volume`, or borrow nothing with ``copy=True``.
+    An array is not copied if the library can read it as it lies in memory: packed uint8, bool, uint16 and float32,
+    with axes in any order. The caller may delete the array. If the array is changed while the volume or a scene with
+    it lives, the next picture of the volume is refused: make another `Volume`, or copy the array by ``copy=True``.
 
     Parameters
     ----------
@@ -75,14 +75,15 @@ class Volume:
                  channel: int | None = None, level: int | None = None, copy: bool = False,
                  smooth: float | None = None, **look: Unpack[Look]) -> None:
         check_keywords("Volume()", look, [*Look.__annotations__, "spacing", "origin", "direction", "affine", "axes", "copy", "smooth", *_OF_FILES])
-        self._sharp: Any = None  # the handle before it was smoothed
+        self._sharp: Any = None  # the handle of the voxels before they were smoothed
         self._handle: Any = None
         self._file: str | None = None
         self._loading: Any = None
         self._automatic: Any = None  # the scene that shows the volume with no further choice
-        self._base: tuple[Any, int] | None = None  # or the scene that it was read from, and its number there
+        # Or the scene from which the volume was read, and its number in this scene.
+        self._base: tuple[Any, int] | None = None
         self._order: tuple[int, ...] | None = None
-        self._colored: Any = None  # the array, where its voxels are colours
+        self._colored: Any = None  # the array, if its voxels are colours
         self._shapes: str | None = None  # the text that the voxels were made from
         self._changes: dict[str, Any] = dict(look)
         place = {"spacing": spacing, "origin": origin, "direction": direction, "affine": affine}
@@ -146,7 +147,7 @@ class Volume:
 
     @staticmethod
     def _made(array: Any, order: str, place: arrays.Place, space: int, owner: object, copy: bool) -> Any:
-        """An hl_volume of an array: as it lies, copied, read by pieces, or with its voxels' colours."""
+        """An hl_volume of an array, which is borrowed, copied, read piece by piece, or has colours as voxels."""
         if pieces.has_colors(array.shape, array.dtype):
             return pieces.color_volume(np.asarray(array), order, place, space)
         if neighbours.is_stored(array):
@@ -174,19 +175,18 @@ class Volume:
 
     @classmethod
     def from_cells(cls, points: Any, cells: Any, types: Any, values: Any, **look: Unpack[Look]) -> Volume:
-        """A mesh of cells with values, sampled at about half of a cell's edge; outside of the cells there is nothing.
+        """A mesh of cells with values, sampled at distances of about half of a cell's edge. The volume is transparent
+        outside of the cells.
 
         Parameters
         ----------
         points : array_like, shape (points, 3)
-            In the world.
-        cells : array_like of int, shape (cells, corners) or flat
-            Points, from 0, in VTK's order. A flat list has each cell's number of corners before them, as PyVista's
-            ``grid.cells``.
+            In the world. cells : array_like of int, shape (cells, corners) or flat Points, from 0, in VTK's order. A
+            flat list has each cell's number of corners before them, as PyVista's ``grid.cells``.
         types : int, or array_like of int, shape (cells,)
             VTK's numbers: 10 tetrahedra, 12 hexahedra, 13 wedges, 14 pyramids. Quadratic cells are read by their corners.
         values : array_like, shape (points,) or (cells,)
-            NaN where there is none. Values of cells are averaged at the points.
+            The values, of which missing ones are NaN. Values of cells are averaged at the points.
 
         Examples
         --------
@@ -209,11 +209,12 @@ class Volume:
         ----------
         patches : iterable of (level, (x, y, z), array)
             The level from 0, the coarsest; the patch's first cell in the level's index space; and the means of the
-            values over its cells, [z][y][x]. Finer patches count where they cover coarser ones.
+            values over its cells, [z][y][x]. Finer patches replace coarser ones that they cover.
         ratio : int or ints
-            How much finer each level is than the one before: 2, 4, 8, ...
+            The number of cells of each level along an edge of a cell of the level before: 2, 4, 8, ...
         cells : (x, y, z), optional
-            Cells of level 0 in the domain; else what its patches cover.
+            The number of cells of level 0 in the domain. By default, the domain is the region that the patches of
+            level 0 cover.
         first : (x, y, z)
             The domain's first cell of level 0.
         origin : (x, y, z)
@@ -236,7 +237,7 @@ class Volume:
 
     @property
     def look(self) -> Mapping[str, Any]:
-        """How the volume looks: what was given, and what is chosen from the data."""
+        """The volume's look: the keywords that were given, and the choices that are made from the data."""
         struct = self._struct()
         look = _settings.read(struct, lib.HL_SETTINGS_VOLUME)
         look = {word: look[word] for word in _FIELDS} | _settings.read(struct.material, lib.HL_SETTINGS_MATERIAL)
@@ -256,7 +257,7 @@ class Volume:
         return look | self._changes
 
     def __array__(self, dtype: Any = None, copy: bool | None = None) -> np.ndarray[Any, Any]:
-        """The voxels, [z][y][x]: those of a borrowed array, read-only, else a copy."""
+        """The voxels, [z][y][x]. They are the read-only voxels of a borrowed array, or else a copy."""
         loan = arrays.loan_of(self._handle)
         if loan is None:
             if copy is False:
@@ -269,7 +270,7 @@ class Volume:
 
     @property
     def affine(self) -> np.ndarray[Any, np.dtype[np.float64]]:
-        """4x4, from the indices (x, y, z) of ``numpy.asarray(volume)`` to the world."""
+        """The matrix, 4x4, that maps the indices (x, y, z) of ``numpy.asarray(volume)`` to the world."""
         place = self._place()
         matrix = np.eye(4)
         matrix[:3, :3], matrix[:3, 3] = np.array(place.steps).T, place.origin
@@ -288,11 +289,12 @@ class Volume:
         Parameters
         ----------
         path : path
-            It appears whole or not at all. The name of a raw file states size and type, as for reading.
+            The file, which appears whole or not at all. The name of a raw file states size and type, as for reading.
         type : str, optional
-            Of the voxels, such as "uint8"; by default one that holds all values.
+            The type of the voxels, such as "uint8"; by default a type that holds all values.
         shrink : int
-            A written voxel is the mean over this number of voxels along each axis; of a label map it is their commonest label.
+            A written voxel is the mean over this number of voxels along each axis. For a label map, it is the most
+            common label of these voxels.
 
         Examples
         --------
@@ -315,7 +317,9 @@ class Volume:
         call(lib.hl_volume_save_with, context, self._handle, os.fsencode(path), options)
 
     def _source(self) -> tuple[str, Any]:
-        """What the voxels are, for pickle and comparison: ("file", (path, how it is read)), ("shapes", text) or ("array", ...)."""
+        """The source of the voxels, for pickle and comparison: ("file", (path, how it is read)), ("shapes", text) or
+        ("array", ...).
+        """
         if self._shapes is not None:
             return "shapes", self._shapes
         if self._file is not None and os.path.exists(self._file):
@@ -327,7 +331,7 @@ class Volume:
         return "array", (voxels, tuple(self._place()), loan.space if loan is not None else space, self._order)
 
     def _reading(self) -> dict[str, Any]:
-        """How the file is read: what differs from the defaults."""
+        """The options for reading the file that differ from the defaults."""
         struct, plain = self._loading[0] if self._loading is not None else self._struct(), ffi.new("hl_volume_load_options *")
         said: dict[str, Any] = {}
         lib.hl_volume_load_options_defaults(plain)
@@ -385,7 +389,7 @@ class Volume:
         return float(min(raw.spacing))
 
     def percentile(self, percent: float) -> float:
-        """The data value below which so many percent of the finite voxels lie, as ``numpy.percentile`` says.
+        """The data value below which `percent` percent of the finite voxels lie, as ``numpy.percentile`` computes it.
 
         Examples
         --------
@@ -404,7 +408,7 @@ class Volume:
         return ffi.NULL if self._file is None else ffi.new("char[]", os.fsencode(self._file))
 
     def _is_of_values(self) -> bool:
-        """Whether a label map is drawn by its values, as settings ask for them, and not by its labels."""
+        """Whether a label map is drawn by its values instead of its labels, because settings ask for values."""
         labels = self._changes.get("labels")
         return labels is False or (labels is None and any(self._changes.get(word) is not None for word in _OF_VALUES))
 
@@ -489,7 +493,7 @@ def volume_of_handle(handle: Any) -> Volume:
 
 
 def _restored(kind: str, source: Any, look: dict[str, Any]) -> Volume:
-    """The volume that `Volume._source` told of, as pickle makes it."""
+    """The volume of a source that `Volume._source` has returned, as pickle makes it."""
     if kind == "file":
         return Volume(source[0], **source[1], **look)
     found = Volume.__new__(Volume)
@@ -510,12 +514,12 @@ def _restored(kind: str, source: Any, look: dict[str, Any]) -> Volume:
 
 
 def as_volume(source: Any) -> Volume:
-    """A Volume as it is, and anything else as one."""
+    """Returns a Volume unchanged, and makes a Volume of anything else."""
     return source if isinstance(source, Volume) else Volume(source)
 
 
 def info(volume: Source, **place: Any) -> Info:
-    """What a volume holds, as ``halflight info --json`` says it.
+    """The properties of a volume, as ``halflight info --json`` prints them.
 
     Parameters
     ----------

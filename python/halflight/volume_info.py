@@ -1,4 +1,4 @@
-"""What a volume holds: size, type, place, statistics, and what its file has beside it."""
+"""Describes volumes: size, type, place, statistics, and the other content of a volume's file."""
 from __future__ import annotations
 
 from dataclasses import dataclass
@@ -13,7 +13,9 @@ __all__ = ["FieldError", "FileArray", "FileChannel", "FileSegment", "FileSeries"
 
 @dataclass(frozen=True)
 class FileArray:
-    """An array of a volume's file: `components` values for each voxel; `chosen` was read."""
+    """An array of a volume's file. It has `components` values for each voxel. `chosen` tells whether the array was
+    read.
+    """
 
     name: str
     type: str | None
@@ -24,7 +26,7 @@ class FileArray:
 
 @dataclass(frozen=True)
 class FileSeries:
-    """A DICOM series: `dimensions` are columns, rows and slices; `number` is None where the files have none."""
+    """A DICOM series. `dimensions` are columns, rows and slices. `number` is None if the files have no number."""
 
     uid: str
     number: float | None
@@ -36,8 +38,9 @@ class FileSeries:
 
 @dataclass(frozen=True)
 class FileChannel:
-    """What a volume's file tells of a channel: "" and None where it tells nothing. `window`: the data values between which
-    it is to be shown."""
+    """The facts about a channel in a volume's file. Facts that the file does not state are "" and None. `window`: the
+    data values that are shown black and white.
+    """
 
     name: str
     color: tuple[float, float, float] | None
@@ -57,18 +60,18 @@ class FileSegment:
 
 @dataclass(frozen=True)
 class FieldError:
-    """How far the field of a volume is from what its file says.
+    """The difference between the field of a volume and the content of its file.
 
     Attributes
     ----------
     value : float or None
-        In data values; None where nothing could be compared, as in a mesh of one layer of cells.
+        The difference in data values; None if nothing could be compared, as in a mesh of one layer of cells.
     of_range : float or None
         `value` as a part of the volume's range.
     kind : str
         "exact": `value` is the greatest difference; "bound": no difference is greater.
     source : str
-        What the field was compared with, in words.
+        A text that says with what the field was compared.
     """
 
     value: float | None
@@ -79,12 +82,12 @@ class FieldError:
 
 @dataclass(frozen=True)
 class Info:
-    """What a volume holds, as ``halflight info --json`` says it. Values are data values.
+    """The properties of a volume, as ``halflight info --json`` prints them. Values are data values.
 
     Attributes
     ----------
     dimensions : tuple of 3 int
-        Voxels along the index axes x, y, z.
+        The numbers of voxels along the index axes x, y, z.
     type : str
         Of the voxels: "uint8", "int16", "float32", ...
     spacing, origin : ndarray of float64, shape (3,)
@@ -92,29 +95,29 @@ class Info:
     direction : ndarray of float64, shape (3, 3)
         Its columns are the unit vectors of the index axes x, y, z.
     range : tuple of 2 float
-        The least and the greatest finite value; an int where a float would round it.
+        The least and the greatest finite value. A value is an int if a float would round it.
     mean : float
-        Of the finite voxels.
+        The mean of the finite voxels.
     nonfinite_count : int
-        NaN and infinite voxels, which are transparent.
+        The number of NaN and infinite voxels, which are transparent.
     histogram : ndarray of uint64, shape (256,)
-        Finite voxels in equal bins over `range`.
+        The numbers of finite voxels in equal bins over `range`.
     space : str or None
-        "RAS", "LPS" or "LAS" where the world's axes are known.
+        "RAS", "LPS" or "LAS" if the anatomical directions of the world's axes are known.
     taken_for : str
-        What an automatic look takes the volume for.
+        The kind of data for which an automatic look is chosen.
     arrays : tuple of FileArray
-        The arrays of the volume's file; none where it is no file.
+        The arrays of the volume's file; empty if the volume has no file.
     times, channels, levels : int
-        How many the file has of each, at least 1.
+        The numbers of times, channels and levels in the file, each at least 1.
     time, channel, level : int
-        Which of them was read.
+        The time, the channel and the level that were read.
     series : tuple of FileSeries
-        Of DICOM files: what the folder or archive holds.
+        The DICOM series in the folder or archive.
     segments : tuple of FileSegment
-        Of label maps whose file names its labels.
+        The segments of a label map whose file names its labels.
     channel_list : tuple of FileChannel
-        The file's channels, where it tells anything of them.
+        The file's channels, if the file describes them.
     field_error : FieldError or None
         Of meshes of cells, grids with refinement and sparse grids, whose field is made of what the file says; None for
         volumes that are their voxels.
@@ -159,9 +162,9 @@ def read_info(handle: Any, file: Any, order: Any) -> Info:
     ----------
     handle : hl_volume
     file : char pointer
-        The name of its file; null where there is none.
+        The name of its file; null if there is none.
     order : 3 int or None
-        The voxels along x, y, z, where the library was told other axes than the array's.
+        The order of the voxels along x, y, z, if the library was given other axes than the array's.
     """
     raw = raw_info(handle)
     kind = ffi.new("const char **")
@@ -186,7 +189,7 @@ def _field_error(handle: Any) -> FieldError | None:
 
 
 def _range_end(handle: Any, end: int, value: float) -> float:
-    """The least or the greatest value: an int where a float rounds a whole number."""
+    """The least or the greatest value, as an int if a float would round it."""
     text = ffi.new("char[]", lib.HL_NUMBER_TEXT_BYTES)
     if abs(value) < 2**53 or lib.hl_volume_write_range(handle, end, text) != lib.HL_OK:
         return value
@@ -195,7 +198,7 @@ def _range_end(handle: Any, end: int, value: float) -> float:
 
 
 def _choices(handle: Any) -> dict[str, Any]:
-    """What the volume's file holds, and what was read of it."""
+    """The content of the volume's file, and the part of it that was read."""
     selection, array, series = (_sized(name) for name in ("selection", "array", "series"))
     arrays, many = list[FileArray](), list[FileSeries]()
     for n in range(lib.hl_volume_array_count(handle)):

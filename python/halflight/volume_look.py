@@ -1,4 +1,4 @@
-"""How a volume looks and where it stands: the keywords, and the library's struct that they fill."""
+"""Defines the keywords for a volume's look and its place, and fills the library's struct from them."""
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Sequence
@@ -18,18 +18,18 @@ _MATERIAL = _settings.names(lib.HL_SETTINGS_MATERIAL)
 
 
 class Look(VolumeSettings, MaterialSettings, total=False):
-    """How a volume looks and where it stands: keywords of `Volume`. What is not given is chosen from the data.
+    """Keywords of `Volume` for the volume's look and its place. Keywords that are not given are chosen from the data.
 
     Parameters
     ----------
     name : str
-        What the volume is called.
+        The volume's name.
     transfer_function : TransferFunction
-        Which values are seen, and in which colour.
+        The opacities and colours of values.
     clip : ((x, y, z), (x, y, z)) or None
         The corners of the box that is kept, in the world before the transform.
     scale : float or 3 floats
-        Along the world's axes, before the rotation.
+        The factors along the world's axes, before the rotation.
     iso : a value, (value, color, opacity), or a list of them
         Surfaces on which the volume has one value, in place of what an automatic transfer function shows. Colour and
         opacity may be left out.
@@ -38,10 +38,10 @@ class Look(VolumeSettings, MaterialSettings, total=False):
         {"type": "box", "min": ..., "max": ...}, {"type": "sphere", "center": ..., "radius": ...}; with "keep":
         "inside" all else is cut away.
     mask : a label map (path, array or Volume), or a mapping
-        Where the volume shows: within the map's labels. A mapping has the map as `volume`; as `show` the labels, by
-        name or number, alone or with a colour, an opacity from 0 to 1, or (colour, opacity); as `rest` what is
-        left outside of them; as `table` a file of names and colours: ``{"volume": "organs.seg.nrrd", "show":
-        {"bone": None, "tumour": "red", "liver": 0.3}, "rest": 0.02}``.
+        A label map within whose labels the volume is visible. A mapping has the map as `volume`; as `show` the labels,
+        by name or number, alone or with a colour, an opacity from 0 to 1, or (colour, opacity); as `rest` what is left
+        outside of them; as `table` a file of names and colours: ``{"volume": "organs.seg.nrrd", "show": {"bone": None,
+        "tumour": "red", "liver": 0.3}, "rest": 0.02}``.
     labels : bool, a label, a list of labels, or a mapping
         The volume is a label map, and its labels show as smooth surfaces: all of them, or those that are named, by name or
         number, with what a mask's `show` may say of each; a mapping may have a `table` of names and colours beside `show`.
@@ -65,7 +65,7 @@ class Look(VolumeSettings, MaterialSettings, total=False):
 
 def fill_look(struct: Any, look: Mapping[str, Any], handle: Any, takes_look: bool, as_volume: Callable[[Any], Any],
               keep: list[Any], place: str) -> None:
-    """Set what the keywords of a volume say in an hl_scene_volume.
+    """Set the members of an hl_scene_volume that the keywords of a volume give.
 
     Parameters
     ----------
@@ -77,9 +77,9 @@ def fill_look(struct: Any, look: Mapping[str, Any], handle: Any, takes_look: boo
     takes_look : bool
         Whether the transfer function and shading of the keyword `look` are still to be set.
     as_volume : callable
-        Makes a Volume of what a mask names.
+        A function that makes a Volume of the source that a mask names.
     place : str
-        What begins the messages of errors.
+        The text with which messages of errors begin.
     """
     changes = dict(look)
     if (name := changes.pop("name", None)) is not None:

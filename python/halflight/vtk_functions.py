@@ -1,4 +1,6 @@
-"""VTK's volume properties as transfer functions. VTK is asked, never imported."""
+"""Converts VTK's volume properties to transfer functions. The objects of VTK are asked for their values. VTK itself is
+never imported.
+"""
 from __future__ import annotations
 
 from typing import Any
@@ -10,7 +12,7 @@ from .transfer import TransferFunction
 
 __all__ = ["function_from_vtk"]
 
-_BETWEEN = 16  # points between two of VTK's where its curve is no straight line
+_BETWEEN = 16  # number of points between two of VTK's nodes if the curve between them is no straight line
 
 
 def _nodes(function: Any, width: int) -> np.ndarray[Any, Any]:
@@ -24,7 +26,9 @@ def _nodes(function: Any, width: int) -> np.ndarray[Any, Any]:
 
 
 def _values(nodes: np.ndarray[Any, Any], straight: bool) -> np.ndarray[Any, Any]:
-    """The values at which a curve is read: those of the nodes, and others between them where it is curved."""
+    """The values at which a curve is read: the values of the nodes, and further values between them if the curve is no
+    straight line.
+    """
     x: np.ndarray[Any, Any] = nodes[:, 0]
     if straight or len(x) < 2:
         return x
@@ -33,7 +37,7 @@ def _values(nodes: np.ndarray[Any, Any], straight: bool) -> np.ndarray[Any, Any]
 
 
 def _piecewise(function: Any) -> np.ndarray[Any, Any]:
-    """Rows (value, y) of a curve. Where the nodes have a step, the value occurs twice."""
+    """Rows (value, y) of a curve. If the nodes have a step at a value, the value occurs twice."""
     nodes = _nodes(function, 4)
     straight = bool(np.all(nodes[:, 2] == 0.5) and np.all(nodes[:, 3] == 0))
     if straight:

@@ -1,4 +1,6 @@
-"""Cells of VTK's and PyVista's grids: unstructured and curvilinear ones, and blocks of them, as readers of OpenFOAM and EnSight give."""
+"""Reads the cells of grids of VTK and PyVista: unstructured grids, curvilinear grids, and blocks of such grids, which
+readers of OpenFOAM and EnSight make.
+"""
 from __future__ import annotations
 
 import warnings
@@ -17,7 +19,7 @@ _VOLUMES = [10, 11, 12, 13, 14, 15, 16, 24, 25, 26, 27, 29, 31, 32, 33, 37, 41, 
 
 
 def _is_a(source: Any, name: str) -> bool:
-    # By its class: from VTK 9.5 on images and rectilinear grids, too, have methods that return points and cells.
+    # A grid is recognised by its class, because from VTK 9.5 on images and rectilinear grids also have methods that return points and cells.
     return bool(getattr(source, "IsA", lambda _: False)(name))
 
 
@@ -34,7 +36,7 @@ def _is_of_blocks(source: Any) -> bool:
 
 
 def is_grid(source: Any) -> bool:
-    """Whether `of_vtk` reads it."""
+    """Whether `of_vtk` can read this object."""
     return _is_of_blocks(source) or _is_unstructured(source) or _is_curvilinear(source)
 
 
@@ -54,7 +56,7 @@ def _types(source: Any) -> Any:
     from vtkmodules.util.numpy_support import vtk_to_numpy
 
     with warnings.catch_warnings():
-        warnings.simplefilter("ignore", DeprecationWarning)  # VTK 9.6 has another name for it
+        warnings.simplefilter("ignore", DeprecationWarning)  # VTK 9.6 has another name for this method
         return vtk_to_numpy(source.GetCellTypesArray())
 
 
@@ -118,7 +120,9 @@ def _names(data: Any) -> list[str]:
 
 
 def _active(grids: Sequence[Any]) -> tuple[bool, str]:
-    """Whether the active scalars are of cells, and their name; where no grid has any, the only array of one component."""
+    """Whether the active scalars belong to cells, and their name. If no grid has active scalars, the only array of one
+    component is taken.
+    """
     for grid in grids:
         for of_cells, data in ((False, grid.GetPointData()), (True, grid.GetCellData())):
             if data.GetScalars() is not None:
@@ -132,7 +136,9 @@ def _active(grids: Sequence[Any]) -> tuple[bool, str]:
 
 
 def _named(grids: Sequence[Any], name: str) -> tuple[bool, str]:
-    """Whether an array of this name is of cells. Where points and cells have it, the cells' values are the reader's own."""
+    """Whether an array of this name belongs to cells. If points and cells both have it, the reader has read the cells'
+    values, and computed the others.
+    """
     for of_cells, data in ((True, "GetCellData"), (False, "GetPointData")):
         if any(name in _names(getattr(grid, data)()) for grid in grids):
             return of_cells, name
@@ -141,7 +147,9 @@ def _named(grids: Sequence[Any], name: str) -> tuple[bool, str]:
 
 
 def _values(grid: Any, of_cells: bool, name: str | None) -> Any:
-    """A grid's values; NaN where it lacks the array. Of several components, the length."""
+    """A grid's values. They are NaN if the grid lacks the array. An array of several components gives the lengths of
+    the vectors.
+    """
     from vtkmodules.util.numpy_support import vtk_to_numpy
 
     data = grid.GetCellData() if of_cells else grid.GetPointData()

@@ -1,7 +1,8 @@
-"""What a renderer of VTK shows, as a scene: PyVista's plotters, ParaView's views, Slicer's 3D views.
+"""Makes scenes of the things that a renderer of VTK shows: PyVista's plotters, ParaView's views, Slicer's 3D views.
 
-VTK is asked what its actors and volumes look like; nothing is drawn by it. Everything is taken where the host has it:
-data after the mapper's pipeline, colours as the mapper makes them, matrices, properties, lights and the camera.
+VTK is asked for the look of its actors and volumes, and draws nothing. The data are taken from the places in which the
+host keeps them: data after the mapper's pipeline, colours as the mapper makes them, matrices, properties, lights and
+the camera.
 """
 from __future__ import annotations
 
@@ -28,7 +29,7 @@ __all__ = ["from_pyvista", "from_vtk", "render_pyvista"]
 
 Shading = Literal["light", "display"]
 _COLORS = "halflight colours"  # the array that carries a mapper's colours through filters
-_SUN = 7.0  # degrees: how wide a light is that casts soft shadows
+_SUN = 7.0  # degrees: the angular diameter of a light that casts soft shadows
 
 
 def _matrix(matrix: Any) -> np.ndarray[Any, np.dtype[np.float64]]:
@@ -36,7 +37,7 @@ def _matrix(matrix: Any) -> np.ndarray[Any, np.dtype[np.float64]]:
 
 
 def _parts(renderer: Any) -> Iterator[tuple[Any, np.ndarray[Any, Any]]]:
-    """The visible actors and volumes with their places in the world, those of assemblies, too."""
+    """The visible actors and volumes with their places in the world, including the parts of assemblies."""
     for n in range(renderer.GetViewProps().GetNumberOfItems()):
         prop = renderer.GetViewProps().GetItemAsObject(n)
         if not prop.GetVisibility():
@@ -51,7 +52,7 @@ def _parts(renderer: Any) -> Iterator[tuple[Any, np.ndarray[Any, Any]]]:
 
 
 class _Taken:
-    """What is gathered of one renderer."""
+    """The parts of a scene that are collected from one renderer."""
 
     def __init__(self, renderer: Any, size: tuple[int, int], display: bool) -> None:
         self.renderer, self.size, self.display = renderer, size, display
@@ -61,7 +62,7 @@ class _Taken:
         self.maximum = self.nearest = False
 
     def color(self, shown: Any) -> Any:
-        """A colour of VTK's in the numbers of this scene: linear light, or VTK's own numbers where its shading is asked
+        """A colour of VTK in the numbers of this scene: linear light, or VTK's own numbers if VTK's shading is asked
         for.
         """
         values = np.asarray(shown, dtype=np.float64)
@@ -92,13 +93,16 @@ def _material(prop: Any) -> dict[str, float]:
 
 
 def _mapped_colors(mapper: Any, data: Any) -> tuple[Any, bool] | None:
-    """The RGBA that a mapper gives its data, and whether they are cells'; None: it has one colour."""
+    """The RGBA colours that a mapper gives to its data, and whether they belong to cells; None if the mapper has a
+    single colour.
+    """
     from vtkmodules.util.numpy_support import vtk_to_numpy
 
     if not mapper.GetScalarVisibility():
         return None
     textured = mapper.GetInterpolateScalarsBeforeMapping()
-    mapper.SetInterpolateScalarsBeforeMapping(False)  # else they are a texture, which other renderers cannot read
+    # With True, the colours would be a texture, which other renderers cannot read.
+    mapper.SetInterpolateScalarsBeforeMapping(False)
     try:
         mapped = mapper.MapScalars(data, 1.0)
     finally:
@@ -106,7 +110,7 @@ def _mapped_colors(mapper: Any, data: Any) -> tuple[Any, bool] | None:
     if mapped is None or mapped.GetNumberOfTuples() == 0:
         return None
     rows, points, cells = mapped.GetNumberOfTuples(), data.GetNumberOfPoints(), data.GetNumberOfCells()
-    asked = mapper.GetScalarMode()  # 0 default, 1 and 3 points, 2 and 4 cells
+    asked = mapper.GetScalarMode()  # 0 is the default, 1 and 3 stand for points, 2 and 4 for cells
     of_cells = asked in (2, 4) or asked == 0 and data.GetPointData().GetScalars() is None
     if rows not in (points, cells):
         return None
@@ -115,7 +119,7 @@ def _mapped_colors(mapper: Any, data: Any) -> tuple[Any, bool] | None:
 
 
 def _clipped(data: Any, mapper: Any, matrix: np.ndarray[Any, Any]) -> Any:
-    """The data without what the mapper's clipping planes cut off; the planes are in the world."""
+    """The data without the parts that the mapper's clipping planes cut off. The planes are in the world."""
     planes = mapper.GetClippingPlanes()
     if planes is None or planes.GetNumberOfItems() == 0:
         return data
@@ -139,13 +143,13 @@ def _clipped(data: Any, mapper: Any, matrix: np.ndarray[Any, Any]) -> Any:
 def _edges_filter() -> Any:
     try:
         from vtkmodules.vtkFiltersCore import vtkExtractEdges
-    except ImportError:  # VTK before 9.2
+    except ImportError:  # versions of VTK before 9.2 have the class in another module
         from vtkmodules.vtkFiltersExtraction import vtkExtractEdges
     return vtkExtractEdges()
 
 
 def _surface(data: Any, mapped: tuple[Any, bool] | None, wireframe: bool, points_alone: bool) -> Any:
-    """A vtkPolyData of what the actor draws of its data, with the colours."""
+    """A vtkPolyData of the parts of its data that the actor draws, with their colours."""
     from vtkmodules.util.numpy_support import numpy_to_vtk
     from vtkmodules.vtkFiltersGeneral import vtkVertexGlyphFilter
     from vtkmodules.vtkFiltersGeometry import vtkGeometryFilter
@@ -169,7 +173,9 @@ def _surface(data: Any, mapped: tuple[Any, bool] | None, wireframe: bool, points
 
 
 def _put_radii(taken: _Taken, surface: Any, prop: Any, matrix: np.ndarray[Any, Any]) -> None:
-    """Make points and lines as wide as they are drawn, in pixels: each point of them by its own distance from the eye."""
+    """Set the radii of points and lines so that they are as wide in the picture as VTK draws them, in pixels. The
+    radius at each point depends on the point's distance from the eye.
+    """
     from vtkmodules.util.numpy_support import numpy_to_vtk, vtk_to_numpy
 
     places = vtk_to_numpy(surface.GetPoints().GetData()) @ matrix[:3, :3].T + matrix[:3, 3]
@@ -201,7 +207,7 @@ def _take_actor(taken: _Taken, actor: Any, matrix: np.ndarray[Any, Any]) -> None
 
 
 def _leaves(composite: Any) -> Iterator[Any]:
-    """The data sets of a composite one."""
+    """The data sets of a composite data set."""
     iterator = composite.NewIterator()
     iterator.InitTraversal()
     while not iterator.IsDoneWithTraversal():
@@ -211,7 +217,7 @@ def _leaves(composite: Any) -> Iterator[Any]:
 
 
 def _take_data(taken: _Taken, actor: Any, data: Any, matrix: np.ndarray[Any, Any], color: Any) -> None:
-    """Add a data set as the actor shows it. color: in place of the actor's."""
+    """Add a data set as the actor shows it. color: a colour that replaces the actor's."""
     if data.GetNumberOfPoints() == 0:
         return
     mapper, prop = actor.GetMapper(), actor.GetProperty()
@@ -219,7 +225,8 @@ def _take_data(taken: _Taken, actor: Any, data: Any, matrix: np.ndarray[Any, Any
         warn("an actor's texture or physically based material is left out: it has its plain colour")
     points_alone, wireframe = prop.GetRepresentation() == 0, prop.GetRepresentation() == 1
     mapped = _mapped_colors(mapper, data) if color is None else None
-    if mapped is not None and taken.display:  # a mesh makes bytes linear: of these it makes VTK's numbers
+    # A mesh converts bytes to linear light, and these bytes become VTK's numbers.
+    if mapped is not None and taken.display:
         mapped[0][:, :3] = np.rint(255 * colors.to_srgb(mapped[0][:, :3] / 255.0))
     surface = _clipped(_surface(data, mapped, wireframe, points_alone), mapper, matrix)
     if surface.GetNumberOfCells() == 0:
@@ -228,7 +235,7 @@ def _take_data(taken: _Taken, actor: Any, data: Any, matrix: np.ndarray[Any, Any
         _put_radii(taken, surface, prop, matrix)
     look: dict[str, Any] = {**_material(prop), "opacity": prop.GetOpacity()}
     words: dict[str, Any] = {"scalars": False}
-    # VTK makes a tube's normals itself; a polygon has one of its own where the data have none.
+    # VTK makes a tube's normals itself. A polygon has a normal of its own if the data have no normals.
     round_tubes = surface.GetNumberOfLines() > 0 and surface.GetNumberOfPolys() == 0
     smooth = round_tubes or (prop.GetInterpolation() != 0 and surface.GetPointData().GetNormals() is not None)
     if mapped is None:
@@ -242,7 +249,7 @@ def _take_data(taken: _Taken, actor: Any, data: Any, matrix: np.ndarray[Any, Any
 
 
 def _regular(data: Any) -> Any:
-    """A vtkImageData: other grids are sampled on one."""
+    """A vtkImageData. Other grids are sampled on an image."""
     if hasattr(data, "GetSpacing") and hasattr(data, "GetOrigin"):
         return data
     from vtkmodules.vtkFiltersCore import vtkResampleToImage
@@ -267,7 +274,7 @@ def _regular(data: Any) -> Any:
 
 
 def _image_affine(image: Any) -> np.ndarray[Any, Any]:
-    """From the indices of the active scalars to the data's own space."""
+    """The matrix from the indices of the active scalars to the data's own space."""
     direction = np.eye(3)
     if hasattr(image, "GetDirectionMatrix"):
         matrix = image.GetDirectionMatrix()
@@ -321,7 +328,7 @@ def _take_volume(taken: _Taken, actor: Any, matrix: np.ndarray[Any, Any]) -> Non
 
 
 def _lights(taken: _Taken, soft: bool) -> list[Light]:
-    """The renderer's lights where they stand now."""
+    """The renderer's lights at their current places."""
     renderer = taken.renderer
     renderer.UpdateLightsGeometryToFollowCamera()
     found: list[Light] = []
@@ -339,7 +346,7 @@ def _lights(taken: _Taken, soft: bool) -> list[Light]:
             found.append(Spot(position=tuple(position), direction=direction, opening_angle_deg=2 * light.GetConeAngle(), falloff_angle_deg=0.0, **words))
         else:
             found.append(Point(position=tuple(position), **words))
-    if not found:  # VTK makes one beside the camera when it draws
+    if not found:  # when VTK draws without lights, it makes a light beside the camera
         found.append(Directional(direction=(0.0, 0.0, -1.0), frame="camera"))
     return found
 
@@ -350,7 +357,8 @@ def from_vtk(renderer: Any, *, size: Any = None, shading: Shading = "light", **s
     Parameters
     ----------
     renderer : vtkRenderer
-        Of PyVista (``plotter.renderer``), ParaView (``view.GetRenderer()``), Slicer, or a program of your own.
+        A renderer of PyVista (``plotter.renderer``), ParaView (``view.GetRenderer()``), Slicer, or a program of your
+        own.
     size : (width, height), optional
         Pixels; by default the render window's.
     shading : "light" or "display"
@@ -391,7 +399,7 @@ def from_vtk(renderer: Any, *, size: Any = None, shading: Shading = "light", **s
     else:
         words |= {"ambient": taken.color(renderer.GetAmbient()).tolist(), "shadows": shadows}
     if taken.volumes:
-        words["kernel"] = "linear"  # as VTK samples
+        words["kernel"] = "linear"  # VTK interpolates linearly, too
     return Scene([*taken.volumes, *taken.meshes], **{**words, **settings})
 
 
@@ -417,7 +425,9 @@ def from_pyvista(plotter: Any, *, size: Any = None, shading: Shading = "light", 
 
 
 def _legends(plotter: Any, size: tuple[int, int]) -> np.ndarray[Any, Any] | None:
-    """What the plotter draws flat over its picture, [height][width][4] in sRGB: PyVista draws it over black and over white."""
+    """The things that the plotter draws flat over its picture, [height][width][4] in sRGB: PyVista draws it over black
+    and over white.
+    """
     props = plotter.renderer.GetViewProps()
     parts = [props.GetItemAsObject(n) for n in range(props.GetNumberOfItems())]
     if not any(part.IsA("vtkActor2D") and part.GetVisibility() for part in parts) or plotter.render_window is None:
@@ -461,7 +471,9 @@ def render_pyvista(plotter: Any, *, shading: Shading = "light", legends: bool = 
 
 
 def _lay_over(image: Image, over: np.ndarray[Any, Any]) -> None:
-    """Mix sRGB into a picture as screens do, over its background; over a transparent one in light."""
+    """Mix sRGB colours into a picture as screens do, over its background. If the background is transparent, mix in
+    linear light.
+    """
     pixels, alpha, background = np.asarray(image), over[..., 3:], image.scene.background
     if isinstance(background, str):
         pixels[...] = np.concatenate([colors.to_linear(over[..., :3]), np.ones_like(alpha)], axis=-1) * alpha + (1 - alpha) * pixels

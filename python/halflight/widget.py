@@ -1,9 +1,8 @@
-"""The viewer in a notebook: `show`.
-
-The browser's end of the channel is src/server/page/widget.js. Messages from there ask for frames; each is answered
-by one message with the picture in its buffer. Frames are rendered by a thread of the widget's own, so that a newer
-request can cancel the one under way. While something moves, the page sends what differs from a scene that it has sent
-whole: the thread keeps that scene for each view.
+"""Implements `show`, the viewer in a notebook. The browser's end of the channel is src/server/page/widget.js. Messages
+from the page ask for frames. Each of them is answered by one message with the picture in its buffer. Frames are
+rendered by a thread of the widget's own, so that a newer request can cancel the unfinished frame. While something
+moves, the page sends only the differences from a scene that it has sent as a whole. The thread keeps this scene for
+each view.
 """
 from __future__ import annotations
 
@@ -36,11 +35,11 @@ _MOST_PIXELS = 64 << 20
 
 
 class _OutdatedError(Exception):
-    """Nobody waits for the frame any more."""
+    """An exception that ends a frame for which nobody waits any more."""
 
 
 class _NoBaseError(Exception):
-    """A page sent a difference from a scene that is not held any more."""
+    """An error: a page has sent a difference from a scene that is not kept any more."""
 
 
 def _changed(base: Any, part: Any) -> Any:
@@ -57,7 +56,7 @@ def _changed(base: Any, part: Any) -> Any:
 
 
 def _with_files(scene: Scene, names_of_files: list[str | None]) -> Scene:
-    """The scene with other names of its volumes' files; None: no file."""
+    """The scene with other names of its volumes' files. None stands for no file."""
     description = ffi.new("hl_scene_description *", lib.hl_scene_describe(scene._handle)[0])
     volumes = ffi.new("hl_scene_volume[]", description.volume_count)
     ffi.memmove(volumes, description.volumes, ffi.sizeof(volumes))
@@ -87,7 +86,7 @@ class _Named:
                               ffi.NULL, b"scene", self.scene._handle))
 
     def restored(self, text: str) -> Scene:
-        """The scene of a text, with arrays as arrays."""
+        """The scene of a text, whose volumes have the arrays of this scene."""
         return _with_files(self.read(text), self.files)
 
 
@@ -104,14 +103,14 @@ def _described(volume: Volume) -> dict[str, Any]:
 
 
 def _start(scene: Scene, title: str) -> dict[str, Any]:
-    """What the page is told first, as the program's server tells it."""
+    """The first message to the page, which is the same as the program's server sends."""
     return {"title": title, "scene": json.loads(scene.to_json()), "volumes": [_described(one) for one in scene.volumes],
             "presets": names(lib.hl_preset_name), "looks": choices_of("look"), "rigs": choices_of("light-rig"),
             "colormaps": {name: colormap_points(name) for name in names(lib.hl_colormap_name)}}
 
 
 def _jpeg(image: Image, quality: int) -> tuple[str, bytes]:
-    """For a moment's look: a JPEG where Pillow is installed, else a PNG."""
+    """The picture's file for a frame that is seen only for a moment: a JPEG if Pillow is installed, else a PNG."""
     codes = image.to_srgb8(background=image.scene.background if image.scene.background != "transparent" else "black")
     try:
         from PIL import Image as Pillow
@@ -137,17 +136,18 @@ def _composed(scene: Scene, choices: dict[str, str]) -> Scene:
 
 
 class _Frames(threading.Thread):
-    """Answers what the page asks, in turn; frames of which a newer one is asked for are not rendered."""
+    """Answers the page's requests one after the other. A frame is not rendered if a newer one has been requested."""
 
     def __init__(self, named: _Named, title: str, send: Any, keep: Callable[[bytes], None]) -> None:
         super().__init__(name="halflight.show", daemon=True)
         self.named, self.title, self.send = named, title, send
-        self.keep = keep  # takes the PNG of a frame at rest
-        self.scene = named.scene  # what a page begins with
-        self.last: Image | None = None  # the last frame that was wanted as a picture
+        self.keep = keep  # a function that receives the PNG of a frame at rest
+        self.scene = named.scene  # the scene that a new page shows
+        self.last: Image | None = None  # the last frame that was requested as a picture
         self.asked: queue.SimpleQueue[tuple[contextvars.Context, dict[str, Any]] | None] = queue.SimpleQueue()
         self.newest: dict[tuple[str, str], int] = {}
-        self.bases: dict[str, tuple[int, str]] = {}  # by view: the newest scene that it has sent whole, and the number of its frame
+        # For each view, the newest scene that it has sent as a whole, and the number of that scene's frame.
+        self.bases: dict[str, tuple[int, str]] = {}
         self.renderer, self.quick_renderer = Renderer(), Renderer()
         self.preview: Any = None  # the scene's volumes at coarser resolutions
 
@@ -172,14 +172,14 @@ class _Frames(threading.Thread):
                 pass
             except _NoBaseError as problem:
                 answer |= {"problem": str(problem), "no_base": True}
-            except Exception as problem:  # the page shows it; the thread goes on
+            except Exception as problem:  # the page shows the error, and the thread continues
                 answer["problem"] = str(problem)
             # In the request's context, the answer names the request it belongs to: ipykernel 7.4 routes the page's next
             # message by the request that the answer named, and a thread's own context names none.
             request.run(self.send, answer, buffers)
 
     def _quick(self, scene: Scene) -> Scene:
-        """The scene as it is rendered while something moves (halflight/preview.h); the scene itself where it stays."""
+        """The scene that is rendered while something moves (halflight/preview.h). It may be the scene itself."""
         if self.preview is None:
             self.preview = made(lib.hl_preview_create, "hl_preview", lib.hl_preview_destroy, context, self.named.scene._handle)
         handle = made(lib.hl_preview_scene, "hl_scene", lib.hl_scene_release, self.preview, scene._handle)
@@ -192,13 +192,15 @@ class _Frames(threading.Thread):
         return {"text": _composed(self.named.read(message["scene"]), message.get("choices", {})).to_json()}, []
 
     def _do_leave(self, message: dict[str, Any]) -> tuple[dict[str, Any], list[bytes]]:
-        """A view is closed."""
+        """Notes that a view was closed."""
         self.bases.pop(message["view"], None)
         self.newest = {lane: number for lane, number in self.newest.items() if lane[0] != message["view"]}
         return {}, []
 
     def _text(self, message: dict[str, Any]) -> str:
-        """The scene's text of a frame that is asked for; a whole one of the view itself is kept for differences from it."""
+        """The scene's text of a requested frame. If the view has sent the whole scene, it is kept for later
+        differences.
+        """
         if "base" not in message:
             if not message.get("lane"):
                 self.bases[message["view"]] = message["number"], message["scene"]
@@ -238,12 +240,12 @@ class _Frames(threading.Thread):
 
 
 def _is_still(message: dict[str, Any]) -> bool:
-    """Whether a frame that is asked for is one at rest, as the page shows it where no kernel answers (widget.js)."""
+    """Whether a requested frame is a frame at rest, which a page without a kernel shows (widget.js)."""
     return message["format"] == "png" and message["depth"] == 8 and not message.get("moving") and not message.get("lane")
 
 
 def _make_class() -> Any:
-    """The widget's class; made late, as anywidget is wanted in notebooks alone."""
+    """The widget's class. It is made at the first use, because only notebooks need anywidget."""
     try:
         import anywidget
         import traitlets
@@ -260,7 +262,7 @@ def _make_class() -> Any:
         camera : Camera
         lights : tuple of Light
         scene : Scene
-            What the page shows now.
+            The scene that the page shows now.
         """
 
         camera = traits.Any()
@@ -268,14 +270,14 @@ def _make_class() -> Any:
         _esm = _page.module()
         sheet = traits.Unicode(_page.style()).tag(sync=True)
         height = traits.Int(560).tag(sync=True)
-        # The last frame at rest, a PNG. A page that has a kernel holds its own: an echo would send each frame once more.
+        # The last frame at rest, as a PNG. A page with a kernel has this frame already, and an echo would send each frame once more.
         still = traits.Bytes().tag(sync=True, echo_update=False)
 
         def __init__(self, scene: Scene, title: str, height: int) -> None:
             super().__init__(height=height)
             self._named = _Named(scene)
             self._text = self._named.scene.to_json()
-            self._from_page = True  # what sets the traits now is not for the page
+            self._from_page = True  # changes of the traits that come from the page are not sent to the page
             self.camera, self.lights = scene.camera, scene.lights
             self._from_page = False
             self.observe(self._set_from_python, ["camera", "lights"])
@@ -290,7 +292,7 @@ def _make_class() -> Any:
                 self._frames.ask(message)
 
         def _arrive(self, text: str) -> None:
-            """Take the scene that a page has come to."""
+            """Take the scene that a page has sent as its newest one."""
             scene = self._named.read(text)
             self._text, self._from_page = text, True
             try:
@@ -321,14 +323,15 @@ def _make_class() -> Any:
             return Renderer().render(current)
 
         def to_html(self, path: str | os.PathLike[str] | None = None, *, turntable: int = 0) -> str:
-            """A page that needs nothing else: the last frame or, with `turntable`, so many around it, which dragging turns.
+            """A page that needs no other file. It shows the last frame or, with `turntable`, the frames of a turn,
+            which a person turns by dragging.
 
             Parameters
             ----------
             path : path, optional
-                Where the page is written, too.
+                A file to which the page is also written.
             turntable : int
-                How many frames one turn about the picture's vertical axis has; 0: the last frame alone.
+                The number of frames of one turn about the picture's vertical axis; 0 for the last frame alone.
             """
             from .static_page import page_of
 
@@ -338,7 +341,7 @@ def _make_class() -> Any:
             return text
 
         def _repr_mimebundle_(self, **words: Any) -> Any:
-            """The widget, and its picture for pages that run none, such as GitHub's."""
+            """The widget, and its picture for pages that run no widgets, such as GitHub's."""
             bundle = super()._repr_mimebundle_(**words)
             plain, *rest = bundle if isinstance(bundle, tuple) else (bundle,)
             if plain is None:
@@ -370,9 +373,9 @@ def show(volume: Source, *, height: int = 560, title: str | None = None, **asked
     volume : path, array, Volume, Scene or an object that has an array
         As for `render`.
     height : int
-        Of the viewer, in pixels of the page.
+        The height of the viewer, in pixels of the page.
     title : str, optional
-        What stands above the picture.
+        The title above the picture.
     **asked
         The keywords of `render` that say what is seen: `cmap`, `tf`, `shadows`, `lights`, `camera`, ...
 
