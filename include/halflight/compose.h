@@ -21,7 +21,7 @@ typedef struct hl_option {
                       * a switch, an option without a value */
 } hl_option;
 
-/* How the value of an option is read. */
+/* The form in which the value of an option is read. */
 typedef enum hl_option_kind {
   HL_OPTION_SWITCH = 0,  /* no value */
   HL_OPTION_TEXT = 1,    /* the value is a text in the option's own form; for example "120:gold:0.3" for the

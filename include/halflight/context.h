@@ -42,10 +42,10 @@ typedef enum hl_status {
   HL_ERROR_INTERNAL = 7     /* the library itself has a fault */
 } hl_status;
 
-/* Why a call failed. Every failing call fills the hl_error that it is given; null is always allowed.
- * `message` is one line that names the file or key and the place in it, and says what is wrong and how to
- * mend it. line and column count from 1; they are 0 where the error is not in a text. byte_offset is the
- * place of the error in a file; -1 if unknown. */
+/* An error, which says why a call failed. Every failing call fills the hl_error that it is given; null is
+ * always allowed. `message` is one line that names the file or key and the place in it, and says what is
+ * wrong and how to mend it. line and column count from 1; they are 0 where the error is not in a text.
+ * byte_offset is the place of the error in a file; -1 if unknown. */
 typedef struct hl_error {
   hl_status code;
   int line;

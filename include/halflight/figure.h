@@ -92,7 +92,7 @@ typedef struct hl_figure_panel {
 
 typedef struct hl_figure {
   size_t struct_size;            /* set by hl_figure_defaults() */
-  double width, height;          /* of the page, millimetres */
+  double width, height;          /* the size of the page, in millimetres */
   double pixels_per_inch;        /* the number of pixels per inch in a PNG or TIFF file; default 300 */
   double font_points;            /* size of letters; default 7 */
   const char *font;              /* the name of the texts' font family; default "Sans" */

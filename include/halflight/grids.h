@@ -45,7 +45,7 @@ HL_API HL_WARN_UNUSED hl_status hl_volume_create_cells(hl_context *context,
 
 /* A patch of an adaptive grid: a box of cells of one level. */
 typedef struct hl_patch {
-  int level;           /* from 0, the coarsest */
+  int level;           /* the level, from 0, which is the coarsest */
   int64_t first[3];    /* the index, along x, y, z, of the patch's first cell in the patch's level */
   size_t count[3];     /* number of cells along x, y, z */
   const float *values; /* [count[2]][count[1]][count[0]]; the patch's values, which are means over its

@@ -30,7 +30,7 @@ HL_API const float *hl_image_pixels_const(const hl_image *image);
 HL_API HL_WARN_UNUSED hl_status hl_image_add_layer(hl_image *image, const char *name, const char *channels,
                                                    float **values, hl_error *error);
 
-/* How a PNG shows light that is brighter than white. */
+/* The ways in which a PNG shows light that is brighter than white. */
 typedef enum hl_tone {
   HL_TONE_CLIP = 0,  /* each channel above 1 is set to 1 */
   HL_TONE_FILMIC = 1 /* a curve without clipping. A colour whose brightest channel is at most 0.6 of white is
@@ -55,8 +55,8 @@ typedef struct hl_image_write_options {
                                * null */
   double exposure;            /* exposure in stops, -32 to 32; only for PNG: the picture's light is multiplied
                                * by 2^exposure, but the background is not */
-  hl_tone tone;           /* only for PNG: how light is shown that is brighter than white after the exposure;
-                           * the background keeps its colour */
+  hl_tone tone;           /* only for PNG: the way in which light is shown that is brighter than white after
+                           * the exposure; the background keeps its colour */
   double pixels_per_inch; /* the number of pixels per inch that a PNG or TIFF file states, 1 to 100000; 0
                            * (default): the file states none */
 } hl_image_write_options;
@@ -125,8 +125,8 @@ HL_API HL_WARN_UNUSED hl_status hl_image_find_field_errors(hl_context *context, 
 HL_API HL_WARN_UNUSED hl_status hl_image_find_scene(hl_context *context, const char *name, const void *bytes,
                                                     size_t byte_count, char **text, hl_error *error);
 
-/* How much picture b differs from picture a. All numbers are differences of linear premultiplied R, G, B and
- * A. */
+/* The differences of picture b from picture a. All numbers are differences of linear premultiplied R, G, B
+ * and A. */
 typedef struct hl_image_difference {
   size_t struct_size;     /* set by the caller */
   double rmse;            /* root of the mean square difference over all pixels and channels */

@@ -28,7 +28,7 @@ typedef enum hl_shadows {
   HL_SHADOWS_SOFT = 3
 } hl_shadows;
 
-/* How a light's brightness depends on the distance from the light. */
+/* The dependence of a light's brightness on the distance from the light. */
 typedef enum hl_falloff { HL_FALLOFF_NONE = 0, HL_FALLOFF_INVERSE_SQUARE = 1 } hl_falloff;
 
 /* An image that a light projects, like a slide (section 4 of the paper). The image stands on a screen, a

@@ -38,7 +38,7 @@ HL_API void hl_ranks_leave(hl_ranks *ranks);
 /* Ends the whole job at once, with this exit code. For null, the function does nothing. */
 HL_API void hl_ranks_abort(hl_ranks *ranks, int exit_code);
 
-HL_API int hl_ranks_rank(const hl_ranks *ranks); /* from 0 on; 0 for null */
+HL_API int hl_ranks_rank(const hl_ranks *ranks); /* the rank's number, from 0 on; 0 if `ranks` is null */
 HL_API int hl_ranks_size(const hl_ranks *ranks); /* 1 for null */
 
 /* Adds up the arrays of all ranks, value by value. Rank 0 gets the sums; the other ranks' values stay. This

@@ -11,7 +11,7 @@
 extern "C" {
 #endif
 
-/* How the samples of a thick plane that lie behind each other are combined into one value. */
+/* The ways in which the samples of a thick plane that lie behind each other are combined into one value. */
 typedef enum hl_blend {
   HL_BLEND_MAXIMUM = 1, /* the greatest value: maximum intensity projection */
   HL_BLEND_MINIMUM = 2,

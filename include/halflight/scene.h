@@ -28,7 +28,7 @@ typedef struct hl_camera {
   double height;   /* orthographic camera: the height of the picture in world units */
 } hl_camera;
 
-/* How the matter of a volume is lit. */
+/* The ways in which the matter of a volume is lit. */
 typedef enum hl_shading {
   HL_SHADING_PHONG = 0,
   HL_SHADING_NONE = 1, /* the matter is a medium: it is lit and shadowed, but has no surface */
@@ -36,7 +36,7 @@ typedef enum hl_shading {
                         * it */
 } hl_shading;
 
-/* How a surface reflects light, by Phong's model (docs/equations.md). */
+/* The numbers by which a surface reflects light, in Phong's model (docs/equations.md). */
 typedef struct hl_material {
   double ambient, diffuse, specular, shininess; /* the model's factors ka, kd, ks and its exponent n */
   double emission; /* ke: the fraction of the colour that shines without any light; default 0 */
@@ -70,9 +70,9 @@ typedef struct hl_cut {
               * default 0 */
 } hl_cut;
 
-/* How matter is shaded at the faces that a cut, the clip box or a mask leaves. Behind the face of a cut or of
- * the clip box, this holds down to a depth of one voxel. From there on the effect fades, and it ends at a
- * depth of two voxels. */
+/* The ways in which matter is shaded at the faces that a cut, the clip box or a mask leaves. Behind the face
+ * of a cut or of the clip box, this holds down to a depth of one voxel. From there on the effect fades, and
+ * it ends at a depth of two voxels. */
 typedef enum hl_cut_shading {
   HL_CUT_SHADING_FACE = 0,     /* the matter is shaded by the face's own normal */
   HL_CUT_SHADING_GRADIENT = 1, /* the matter is shaded by the gradient of the data, as if nothing were cut */
@@ -87,8 +87,8 @@ typedef struct hl_label {
   double opacity;   /* 1: the label is solid; below 1: the label's surface is a skin that takes this fraction
                      * of the light that crosses it */
   int visible;
-  double tint; /* only for the labels of a mask: how much of the label's colour the matter takes. 0: the
-                * matter keeps its own colour; 1: the matter has `color`; between: a mixture of both
+  double tint; /* only for the labels of a mask: the fraction of the label's colour that the matter takes. 0:
+                * the matter keeps its own colour; 1: the matter has `color`; between: a mixture of both
                 * colours */
 } hl_label;
 
@@ -200,7 +200,7 @@ typedef enum hl_reconstruction {
   HL_RECONSTRUCTION_GATHER = 2
 } hl_reconstruction;
 typedef enum hl_slicing { HL_SLICING_HALF_VECTOR = 0, HL_SLICING_IMAGE_ALIGNED = 1 } hl_slicing;
-/* How transmittance is interpolated between the pixels of a shadow buffer. */
+/* The ways in which transmittance is interpolated between the pixels of a shadow buffer. */
 typedef enum hl_shadow_lookup {
   HL_LOOKUP_BILINEAR = 0,
   HL_LOOKUP_NEAREST = 1,
@@ -211,7 +211,7 @@ typedef enum hl_shadow_lookup {
                         * shadows */
 } hl_shadow_lookup;
 
-/* How a pixel is computed from the samples along a ray. */
+/* The ways in which a pixel is computed from the samples along a ray. */
 typedef enum hl_compositing {
   HL_COMPOSITING_LIGHT = 0,  /* lit matter is composited from front to back */
   HL_COMPOSITING_MAXIMUM = 1 /* maximum projection, without light: a pixel has the colour of the greatest
@@ -220,7 +220,7 @@ typedef enum hl_compositing {
                               * colours */
 } hl_compositing;
 
-/* How a scene is rendered. */
+/* The settings by which a scene is rendered. */
 typedef struct hl_render_settings {
   hl_shadows shadows; /* off, hard or soft */
   hl_soft_method soft_method;
@@ -283,7 +283,7 @@ typedef struct hl_scene_description {
                        * faces and shadows of a cut volume follow the volume's cut_shading and
                        * cut_casts_shadow. Lengths are in the scene's world, whatever hl_cut.world says */
   size_t cut_count;
-  hl_tone tone; /* how picture files such as PNG show light that is brighter than white; default
+  hl_tone tone; /* the way in which picture files such as PNG show light that is brighter than white; default
                  * HL_TONE_CLIP */
   hl_sky sky;
   int background_sky;   /* non-zero if pictures show the sky in place of the background, and have alpha 1

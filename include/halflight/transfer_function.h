@@ -131,7 +131,7 @@ HL_API HL_WARN_UNUSED hl_status hl_transfer_function_seen_range(const hl_volume 
 HL_API HL_WARN_UNUSED hl_status hl_transfer_function_visible_range(const hl_volume *volume,
                                                                    const hl_transfer_function *function,
                                                                    double range[2], hl_error *error);
-/* How the colours or points of a function are spread over a range of values. */
+/* The ways in which the colours or points of a function are spread over a range of values. */
 typedef enum hl_range_scale {
   HL_RANGE_LINEAR = 0,
   HL_RANGE_LOG = 1 /* they are spread evenly over the logarithms of the values; the range must be above 0 */
@@ -180,7 +180,7 @@ HL_API HL_WARN_UNUSED hl_status hl_transfer_function_load_for(hl_context *contex
                                                               const hl_volume *volume,
                                                               hl_transfer_function *function,
                                                               hl_error *error);
-/* The same, volume null. */
+/* Does what hl_transfer_function_load_for() does if its volume is null. */
 HL_API HL_WARN_UNUSED hl_status hl_transfer_function_load(hl_context *context, const char *path,
                                                           hl_transfer_function *function, hl_error *error);
 HL_API void hl_transfer_function_release(hl_context *context, hl_transfer_function *function);

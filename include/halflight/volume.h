@@ -74,7 +74,7 @@ typedef struct hl_volume_description {
 typedef struct hl_volume_info {
   size_t struct_size; /* set by the caller to sizeof(hl_volume_info) */
   size_t dimensions[3];
-  hl_voxel_type type; /* as in the file */
+  hl_voxel_type type; /* the type of the voxels in the file */
   double spacing[3];  /* the length of each axis' step from voxel to voxel, in world units */
   double origin[3];
   double direction[3][3];   /* direction[row][column]: column a is the unit vector along index axis a */
@@ -171,14 +171,14 @@ HL_API HL_WARN_UNUSED hl_status hl_volume_load_with(hl_context *context, const c
                                                     const hl_volume_load_options *options, hl_volume **volume,
                                                     hl_error *error);
 
-/* How a volume is written. */
+/* The options for writing a volume. */
 typedef struct hl_volume_save_options {
   size_t struct_size; /* set by hl_volume_save_options_defaults() */
   hl_voxel_type type; /* the type of the written voxels. 0 (default): the volume's own type if it holds all
                        * data values and the format has it; else the smallest integer type that holds them;
                        * else float */
   size_t begin[3], end[3]; /* only the voxels with begin[a] <= index < end[a] along each axis a are written;
-                            * end 0 (default): up to the last voxel */
+                            * end is 0, the default, for all voxels up to the last one */
   size_t shrink; /* a written voxel is the mean of a cube of shrink^3 voxels, without the voxels that are not
                   * finite; default 1 */
   int labels;    /* non-zero if the volume holds labels. A written voxel then has the most frequent value of
@@ -225,9 +225,9 @@ HL_API void hl_volume_release(hl_volume *volume); /* null is allowed */
 
 HL_API HL_WARN_UNUSED hl_status hl_volume_get_info(const hl_volume *volume, hl_volume_info *info);
 
-/* How much the field of a volume differs from its file. Meshes of cells, grids with refinement, sparse grids
- * and particles are converted to a field when they are loaded. Other volumes keep the file's voxels, and have
- * no such error. */
+/* The difference between the field of a volume and its file. Meshes of cells, grids with refinement, sparse
+ * grids and particles are converted to a field when they are loaded. Other volumes keep the file's voxels,
+ * and have no such error. */
 typedef struct hl_volume_field_error {
   size_t struct_size; /* set by the caller */
   double value;       /* the difference in data values; NaN: nothing could be compared, as for a mesh with

@@ -89,9 +89,9 @@ static void combine(unsigned char *own, size_t count, size_t step) {
   for (size_t n = 0; n < count; n++) own[n] = own[n] & own[n + step] & own[n + 2 * step] & own[n + 3 * step];
 }
 
-/* How many coefficients of a box are active, as find_active() tells. own: scratch memory of one byte for each
- * cell of cells_of(box). In the case ACTIVE_SOME, own[(k * cells.count[1] + j) * cells.count[0] + i] becomes
- * 1 if coefficient (i, j, k) of the box is active, else 0. */
+/* The answers of find_active(): none, some or all coefficients of a box are active. own: scratch memory of
+ * one byte for each cell of cells_of(box). In the case ACTIVE_SOME, own[(k * cells.count[1] + j) *
+ * cells.count[0] + i] becomes 1 if coefficient (i, j, k) of the box is active, else 0. */
 typedef enum active_part { ACTIVE_NONE, ACTIVE_SOME, ACTIVE_ALL } active_part;
 
 static active_part find_active(const builder *b, int level, const hl_lattice_box *box, unsigned char *own) {

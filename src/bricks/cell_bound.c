@@ -22,7 +22,7 @@
 enum {
   TAPS = 4,
   COEFFICIENTS = TAPS * TAPS * TAPS,
-  HALVINGS = 2, /* of a lattice cell */
+  HALVINGS = 2, /* number of times that a lattice cell is halved along each axis */
   FUNCTIONS = 7 /* number of affine functions that bound a cell: the three coordinates, the cell's three unit
                  * coordinates and, in a tetrahedron, the sum of the unit coordinates */
 };

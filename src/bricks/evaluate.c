@@ -60,7 +60,7 @@ enum { RUN = 8, SPAN = RUN / 2 + TAPS };
 /* A box of points of level 0 whose coefficients come from one brick. */
 typedef struct piece {
   int64_t first[3], count[3]; /* count: 1 .. RUN */
-  double *values;             /* of the first point */
+  double *values;             /* the place of the first point's value */
   int64_t row, slice;         /* distances in `values` from row to row, and from slice to slice */
 } piece;
 

@@ -93,8 +93,8 @@ struct hl_pool {
   pthread_mutex_t mutex;
   pthread_cond_t wake; /* signalled when `generation` or `stop` has changed */
   /* The members below are used by the calling thread only. */
-  _Alignas(64) int64_t asked,
-      read;       /* when the cancel callback was last called and the clock was last read, in nanoseconds */
+  _Alignas(64) int64_t asked, read; /* the times, in nanoseconds, at which the cancel callback was last called
+                                     * and the clock was last read */
   uint64_t waits; /* number of times that the caller waited for other threads, at the end of an offer or of a
                    * run; a run with more indices than a share can hold counts several times */
   /* readings: number of calls between two readings of the clock; unread: number of calls until the next

@@ -25,8 +25,8 @@ void hl_pool_destroy(hl_pool *pool); /* `pool` may be null */
  * the child has no threads of the pool, and can only destroy it. */
 bool hl_pool_is_own(const hl_pool *pool);
 int hl_pool_threads(const hl_pool *pool);
-/* How often the caller has waited for other threads since the pool was made: at the end of each run with
- * several threads, and of each offer. */
+/* The number of times that the caller has waited for other threads since the pool was made. It waits at the
+ * end of each run with several threads, and of each offer. */
 uint64_t hl_pool_waits(const hl_pool *pool);
 
 /* Calls function(data, index, worker) for each index in [0, count), worker in [0, threads). Returns when all

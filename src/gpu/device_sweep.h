@@ -190,9 +190,9 @@ typedef struct device_sweep {
 
 /* The sum a + (1 - thin) b of fields of one level. */
 #define PASS_ADD    0
-#define PASS_HALF   1 /* the same sum, of fields that are twice as fine as the output */
-#define PASS_DOUBLE 2 /* the same sum, with a field b that is twice as coarse as the output */
-#define PASS_BLUR   3 /* the same, where b is blurred */
+#define PASS_HALF   1 /* the sum of PASS_ADD for fields that are twice as fine as the output */
+#define PASS_DOUBLE 2 /* the sum of PASS_ADD with a field b that is twice as coarse as the output */
+#define PASS_BLUR   3 /* the sum of PASS_ADD with a blurred field b */
 #define PASS_SPLIT  4
 #define PASS_ABSORB 5
 #define PASS_REFILL 6

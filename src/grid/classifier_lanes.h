@@ -77,7 +77,7 @@ LANES_INLINE lanes integral_to(const classifier *classifier, lanes x) {
 }
 
 typedef struct second_surface {
-  lanes kept;  /* Of the light that the first surface absorbs, the fraction that counts as absorbed by the
+  lanes kept;  /* the fraction of the light absorbed by the first surface that counts as absorbed by the
                 * second surface */
   lanes ahead; /* the optical depth on the light's way from the place where the light is known to the
                 * beginning of the second surface */

@@ -88,7 +88,8 @@ static void sky_light(const hl_sky *sky, const vec3 *normal, double light[3]) {
   }
 }
 
-/* How a sample is lit: as a surface, whose normal is a unit vector of the world, or as a medium. */
+/* The light of a sample, which is lit as a surface or as a medium. The normal of a surface is a unit vector
+ * of the world. */
 typedef struct sample_light {
   bool surface;
   vec3 normal;

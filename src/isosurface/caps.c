@@ -10,8 +10,9 @@
 #include "grid/relevant.h"
 #include "isosurface/clip.h"
 
-/* How far caps extend beyond the inside of the surface, in voxels. The surface and the cap are made of
- * different triangles. Their edges lie apart by less than this distance, so no gap shows between them. */
+/* The distance, in voxels, by which caps extend beyond the inside of the surface. The surface and the cap are
+ * made of different triangles. Their edges lie apart by less than this distance, so no gap shows between
+ * them. */
 static const double OVERLAP = 0.03;
 
 /* A face of the box or of a cut, described in a space of its own with coordinates q. On the face q[axis] is

@@ -6,8 +6,8 @@
 #include "simd/gathers.h"
 #include "view/rays_lanes.h"
 
-/* How much the screen covers a position along one axis. It rises from 0 to 1 across each edge of the screen,
- * over a width of 1 / sharpness. */
+/* The fraction by which the screen covers a position along one axis. It rises from 0 to 1 across each edge of
+ * the screen, over a width of 1 / sharpness. */
 LANES_INLINE lanes within_edges(lanes u, float size, lanes sharpness) {
   lanes half = lanes_set(0.5f);
   return lanes_clamp(lanes_fma(u, sharpness, half), 0, 1) *

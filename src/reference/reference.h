@@ -283,9 +283,9 @@ double hl_reference_next_face(const reference_volume *volume, vec3 origin, vec3 
  * from two voxels behind the face on. */
 double hl_reference_cut_face(const reference_volume *volume, vec3 point, vec3 to_eye, vec3 *normal,
                              double *surface);
-/* How much the matter at a point belongs to the face of a cut or of the box through which the light reaches
- * the point: 1 at the face, 0 from two voxels behind it on. to_light: a unit vector of the world. uncut: only
- * the faces of the box count, and the faces of cuts do not. */
+/* The fraction of the matter at a point that belongs to the face of a cut or of the box through which the
+ * light reaches the point: 1 at the face, 0 from two voxels behind it on. to_light: a unit vector of the
+ * world. uncut: only the faces of the box count, and the faces of cuts do not. */
 double hl_reference_lit_face(const reference_volume *volume, vec3 point, vec3 to_light, bool uncut);
 
 /* Finds the weights of the four taps along an axis, and the weights' derivatives (slope; may be null). The

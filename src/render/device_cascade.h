@@ -12,7 +12,7 @@ typedef struct device_soft_light {
   int light;           /* its number among the sweep's lights */
   light_shadow shadow; /* a copy of the planned shadow; it owns `state` */
   void *passing;       /* owned; the method's memory that lasts until the sweep ends */
-  occupancy occupancy; /* of the light's view */
+  occupancy occupancy; /* the occupancy of the light's view */
   cascade_slab *slabs; /* owned; [sheets] */
   size_t first_pixel;  /* the places of the light's levels among the pixels of all fields */
 } device_soft_light;

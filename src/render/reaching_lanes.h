@@ -203,8 +203,8 @@ LANES_INLINE way_begin find_begin(const block_density *d, lanes3 towards, lanes 
   return (way_begin){start, change, first, foot, (first != lanes_from_int(entry)) | beyond};
 }
 
-/* How much of the light at the slab's first sheet lights a sample's surface. It has one fraction for light
- * that was absorbed before the slab, and one for light that was not. */
+/* The fractions of the light at the slab's first sheet that light a sample's surface. There is one fraction
+ * for light that was absorbed before the slab, and one for light that was not. */
 typedef struct own_surface {
   lanes kept;    /* the fraction of the light absorbed before the slab that still lights the sample's
                   * surface */

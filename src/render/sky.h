@@ -14,7 +14,7 @@ typedef struct frame_sky {
   const grid *grids;                 /* [scene->volume_count] */
   const frame *frame;
   uint64_t mark;                  /* identifies the pixels of the sky's image */
-  const light_exchange *exchange; /* how light is exchanged with the other parts of the picture; if null, this
+  const light_exchange *exchange; /* the exchange of light with the other parts of the picture; if null, this
                                    * renderer finds all light by itself */
 } frame_sky;
 

@@ -14,7 +14,7 @@
 /* The rays of the eye through sixteen pixels, within a slab. They are the same for all volumes. */
 typedef struct block_geometry {
   lanes3 position;    /* the position in the slab for which the slab is lit; frame space */
-  lanes3 start;       /* where the ray enters the slab */
+  lanes3 start;       /* the point at which the ray enters the slab */
   lanes3 step_sheet;  /* the step along the ray from one sheet to the next */
   lanes3 towards_eye; /* unit */
   lanes path;         /* length of the eye's ray through the slab; 0 behind the eye */

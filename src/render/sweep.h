@@ -51,8 +51,9 @@ typedef struct sweep_counts {
   uint64_t pixels_seen, pixels_covered; /* pixels_seen: number of seen pixels; pixels_covered: number of
                                          * pixels that opaque matter covers; counted only by the sweep of
                                          * hidden.c */
-  double seconds_fill, seconds_shade;   /* of the image stage */
-  double seconds_light;                 /* of the light stage */
+  double seconds_fill, seconds_shade;   /* the times of the image stage, in seconds: for filling tiles, and
+                                         * for shading */
+  double seconds_light;                 /* the time of the light stage, in seconds */
   double seconds_composite;             /* seconds for compositing in the stage of light */
 } sweep_counts;
 

@@ -66,9 +66,9 @@ void hl_scatter_sky_inflow(const hl_sky *sky, scatter_inflow inflow[3]);
  * the matter that gets less of the sky's light gets more scattered light. Under an even sky a medium of
  * albedo 1 is lit by 1 everywhere, exactly. */
 
-/* How meshes attenuate the light along the grid's lines: the fractions of light that meshes let through, and
- * the optical depths that walls.c makes from these fractions and from a channel's extinction. Each array is
- * [nodes]. */
+/* The attenuation of light by meshes along the grid's lines: the fractions of light that meshes let through,
+ * and the optical depths that walls.c makes from these fractions and from a channel's extinction. Each array
+ * is [nodes]. */
 typedef struct scatter_walls {
   float *outside[SCATTER_LINES]; /* at the first node of a line: the fraction of light that meshes let through
                                   * between the sky and the node; at other nodes 0 */

@@ -147,7 +147,7 @@ typedef struct shadow_lookup {
 typedef uint16_t sublight_pixel;
 enum { SUBLIGHT_ONE = 65535 };
 
-/* How samples look up the buffer of one sub-light. */
+/* The data by which samples look up the buffer of one sub-light. */
 typedef struct sublight_lookup {
   shadow_map map;
   const sublight_pixel *transmittance[HL_CHANNELS]; /* pixel (0,0) of each channel of the sub-light's

@@ -79,7 +79,7 @@ typedef struct cascade_group {
   bool filled; /* whether any pixel of the group is not zero */
 } cascade_group;
 
-/* How a column or a row of tiles is blurred. fraction: the variance of the penumbrae in this column or row,
+/* The blur of a column or a row of tiles. fraction: the variance of the penumbrae in this column or row,
  * divided by the variance where the light is widest. box: the box of the current blur. */
 typedef struct cascade_box {
   double fraction;

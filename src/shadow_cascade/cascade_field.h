@@ -50,8 +50,8 @@ typedef struct field_blur_job {
 /* The type of a blurred sum of one tile. It returns whether any pixel of the tile is more than zero. */
 typedef int field_blur_tile_function(const field_blur_job *job, int tile_x, int tile_y);
 
-/* How the buffer is refilled at a chunk's end. A pixel becomes the transmittance of the slabs of the chunk
- * that ends, times 1 - absorbed, which is limited to 0 to 1. */
+/* The work of refilling the buffer at a chunk's end. A pixel becomes the transmittance of the slabs of the
+ * chunk that ends, times 1 - absorbed, which is limited to 0 to 1. */
 typedef struct refill_job {
   const field_pixel *absorbed; /* the light that all groups absorb; rows are `stride` apart */
   /* 1 minus the light at the start of a chunk: before the refill, at the start of the old chunk; after the

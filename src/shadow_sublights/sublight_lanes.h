@@ -73,10 +73,10 @@ LANES_INLINE lanes_int nearest_halves(float scale, float start, float size) {
 
 enum { SUBLIGHT_TAPS = 8 };
 
-/* How sixteen pixels in a row of a sub-light read a row of the slab's copies. If the slab's pixels had the
- * same size as the sub-light's pixels, pixel i would read the half pixel that is 2 i after the half pixel of
- * pixel 0. The slab's pixels are a little larger or smaller. So the half pixel that pixel i reads differs
- * from 2 i by `first` to first + count
+/* The taps by which sixteen pixels in a row of a sub-light read a row of the slab's copies. If the slab's
+ * pixels had the same size as the sub-light's pixels, pixel i would read the half pixel that is 2 i after the
+ * half pixel of pixel 0. The slab's pixels are a little larger or smaller. So the half pixel that pixel i
+ * reads differs from 2 i by `first` to first + count
  * - 1. weight[k] is 1 for pixels with the difference first + k, else 0. */
 typedef struct row_taps {
   /* count: the number of different half pixels that pixels read, counted from `first`; 0 if there are too

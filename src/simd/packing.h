@@ -39,7 +39,7 @@ LANES_INLINE uint64_t chosen_numbers(uint64_t chosen, uint64_t before) {
 }
 #endif
 
-/* How the chosen lanes of sixteen are moved, in their order, to the lanes from `at` on. */
+/* The moves by which the chosen lanes of sixteen come, in their order, to the lanes from `at` on. */
 typedef struct lanes_packing {
 #if defined(__AVX512F__)
   __m512i from; /* for each packed lane, the lane from which it comes */

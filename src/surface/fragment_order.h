@@ -9,7 +9,7 @@
 #include "surface/fragment.h"
 #include "view/view.h"
 
-/* How the fragments of a view are ordered and composited. */
+/* The settings by which the fragments of a view are ordered and composited. */
 typedef struct fragment_order {
   const float *least; /* [mesh_count]; borrowed; a mesh's opacity has one factor each for red, green and blue
                        * light. This is the least of the three factors */

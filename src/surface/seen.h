@@ -47,8 +47,9 @@ typedef struct seen_bounds {
 
 bool hl_see_sphere(const view *view, const float sphere[4], seen_bounds *bounds);
 
-/* How a view sees a box of frame space. BOX_UNSEEN: nothing in it is seen. BOX_WHOLE: everything in it is
- * seen within *bounds, and no triangle in it is cut. BOX_CUT: anything else is possible. */
+/* The answers to the question whether a view sees a box of frame space. BOX_UNSEEN: nothing in it is seen.
+ * BOX_WHOLE: everything in it is seen within *bounds, and no triangle in it is cut. BOX_CUT: anything else is
+ * possible. */
 typedef enum seen_box { BOX_UNSEEN, BOX_WHOLE, BOX_CUT } seen_box;
 seen_box hl_see_box(const view *view, const float low[3], const float high[3], seen_bounds *bounds);
 

@@ -74,7 +74,7 @@ typedef struct cluster_shape {
                                                 * hl_corner_product(); axis by axis */
 } cluster_shape;
 
-/* Where a view sees the vertices of a cluster in which no triangle is cut. */
+/* The places at which a view sees the vertices of a cluster in which no triangle is cut. */
 typedef struct seen_cluster {
   _Alignas(64) int32_t x[CLUSTER_VERTICES], y[CLUSTER_VERTICES]; /* the vertices' places in the view; 1/256
                                                                   * pixels */

@@ -66,8 +66,8 @@ static vec3 look(const surfaces *all, const surface_mesh *mesh, uint32_t primiti
   return *normal;
 }
 
-/* How much a sphere is bent: 1 / radius where it is seen from within, as a hollow, and -1 / radius where it
- * is seen from outside. */
+/* The bend of a sphere: 1 / radius if it is seen from within, as a hollow, and -1 / radius if it is seen from
+ * outside. */
 static double bend(const surfaces *all, const surface_mesh *mesh, uint32_t primitive, vec3 at, vec3 normal,
                    vec3 along) {
   (void)along;

@@ -17,7 +17,7 @@ typedef struct seen_part {
                                                          * sphere */
 } seen_part;
 
-/* How much of a primitive the cuts of a mesh leave. */
+/* The answers to the question which part of a primitive the cuts of a mesh leave. */
 typedef enum cut_answer { CUT_LEAVES_ALL, CUT_LEAVES_SOME, CUT_LEAVES_NOTHING } cut_answer;
 cut_answer hl_surface_cut(const surfaces *all, const surface_mesh *mesh, uint32_t primitive);
 

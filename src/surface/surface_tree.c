@@ -8,9 +8,9 @@
 #include "surface/surface_cuts.h"
 #include "surface/triangle.h"
 
-/* How the tree is made: a range of primitives is divided at the mean of the primitives' middles. From depth
- * DEEP on, it is divided into halves with equal numbers of primitives, so that the tree does not become too
- * deep. */
+/* The limits of making the tree. A range of primitives is divided at the mean of the primitives' middles.
+ * From depth DEEP on, it is divided into halves with equal numbers of primitives, so that the tree does not
+ * become too deep. */
 enum { LEAF_PRIMITIVES = 4, DEEP = 32, DEEPEST = DEEP + 40 };
 
 static float lower(float a, float b) { return a < b ? a : b; }

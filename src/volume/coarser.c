@@ -22,7 +22,7 @@ typedef struct coarsening {
   const hl_volume *volume;
   hl_coarser_kind kind;
   size_t factor[3];      /* 1 or 2 */
-  size_t dimension[3];   /* of the coarser volume */
+  size_t dimension[3];   /* the dimensions of the coarser volume */
   unsigned char *voxels; /* [dimension[2]][dimension[1]][dimension[0]]; stored values of the coarser volume */
   unsigned char *stored; /* owned; [threads][bytes of a row]; scratch memory for reading rows of a volume with
                           * pages */

@@ -4,9 +4,9 @@
 
 #include "volume/volume.h"
 
-/* How voxels are merged. HL_COARSER_MEANS: the result is the mean of the finite values, rounded if values are
- * whole numbers. HL_COARSER_LABELS: the result is the most common label; if several are equally common, the
- * first one of them. */
+/* The ways in which voxels are merged. HL_COARSER_MEANS: the result is the mean of the finite values, rounded
+ * if values are whole numbers. HL_COARSER_LABELS: the result is the most common label; if several are equally
+ * common, the first one of them. */
 typedef enum hl_coarser_kind { HL_COARSER_MEANS, HL_COARSER_LABELS } hl_coarser_kind;
 
 /* Makes a volume by merging two voxels along axes. Only axes whose step is less than 1.5 times the shortest

@@ -245,7 +245,7 @@ static uint16_t half_of(double value) {
   frexp(size, &exponent); /* frexp() splits size into f 2^exponent, with f from 0.5 to 1. The lowest of the 11
                            * bits of a half is therefore worth 2^(exponent - 11) */
   int last = exponent - 11 > -24 ? exponent - 11 : -24;
-  double units = nearbyint(ldexp(size, -last)); /* from 1024 to 2048, or less for subnormals */
+  double units = nearbyint(ldexp(size, -last)); /* a number from 1024 to 2048, or less for subnormals */
   /* The exponent field of the half, less 1. It is used for numbers of 1024 units or more, which are not
    * subnormal. */
   int biased = last + 24;

@@ -28,7 +28,7 @@ DEVICE float left_and_a(float b, GLOBAL const plan_pass *pass, GLOBAL const word
   return pass->thin == PASS_NOTHING ? b + more : fused(b, left_by(fields[pass->thin + at]), more);
 }
 
-/* a + (1 - thin) b of one level. */
+/* The sum a + (1 - thin) b of absorbed light at one level. */
 DEVICE float a_and_b(GLOBAL const plan_pass *pass, GLOBAL const word16 *fields, wide at) {
   if (pass->b == PASS_NOTHING) return (float)fields[pass->a + at];
   return left_and_a((float)fields[pass->b + at], pass, fields, at);

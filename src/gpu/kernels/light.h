@@ -17,7 +17,8 @@ typedef struct slab_sample {
   vector position, start, step_sheet, towards_eye;
   float path; /* length of the eye's ray through the slab */
   covered_span part;
-  float place;         /* where the eye sees the slab's matter, as a fraction of the way through the slab */
+  float place;         /* the place at which the eye sees the slab's matter, as a fraction of the way through
+                        * the slab */
   float before, after; /* coordinates in the tables */
   way_sums sums;
   float extinction, depth, left, opacity;
@@ -201,8 +202,8 @@ DEVICE light_ways ways_in_box(const volume_data *data, GLOBAL const plan_light *
   return ways;
 }
 
-/* How much of a sample's matter belongs to the face: 1 at the face, 0 two voxels behind it, as skin_of_face()
- * in render/slab_lanes.h. */
+/* The fraction of a sample's matter that belongs to the face: 1 at the face, 0 two voxels behind it, as
+ * skin_of_face() in render/slab_lanes.h. */
 DEVICE float skin_of_sample(const slab_sample *s) { return limited(FACE_VOXELS - s->behind, 0.0f, 1.0f); }
 
 DEVICE float coordinate_seen(const slab_sample *s) { return fused(s->after - s->before, s->seen, s->before); }

@@ -23,7 +23,7 @@ sine_and_cosine hl_sincos(double x) __asm__("___sincos_stret");
 double hl_exp10(double x) __asm__("___exp10");
 
 sine_and_cosine hl_sincos(double x) {
-  void sincos(double, double *, double *); /* of musl, which is linked */
+  void sincos(double, double *, double *); /* this function is in musl, which is linked */
   sine_and_cosine both;
   sincos(x, &both.sine, &both.cosine);
   return both;

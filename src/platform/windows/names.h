@@ -12,7 +12,7 @@
  * short. */
 wchar_t *hl_wide_name(const char *path);
 
-/* The same text in UTF-16, with '\' for '/' and without a prefix. */
+/* Converts a text to UTF-16, with '\' for '/' and without a prefix. */
 wchar_t *hl_wide_text(const char *text);
 
 /* Writes UTF-16 of `length` characters as UTF-8, with '/' for '\'. Returns false if the text does not fit. */

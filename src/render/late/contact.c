@@ -170,9 +170,9 @@ static bool look(const sweep *sweep, const contact_light *light, contact_ray *ra
  * that leaves it at an angle whose sine is s meets the circle again after a chord of 2 s / k, if cuts leave
  * the surface there. */
 
-/* How far the normal of a batch's sample turns towards the light, per length along the way to the light. It
- * is above 0 where the surface is hollow. It is 0 on flat and on rough surfaces, and on spheres that let
- * light pass. towards_light: a vector of any length. */
+/* The turn of the normal at a batch's sample towards the light, per length along the way to the light. It is
+ * above 0 where the surface is hollow. It is 0 on flat and on rough surfaces, and on spheres that let light
+ * pass. towards_light: a vector of any length. */
 static double hollow_bend(const surfaces *all, const surface_batch *batch, int sample, vec3 towards_light) {
   const uint32_t primitive = batch->fragments[sample]->primitive;
   const surface_samples *samples = &batch->samples;

@@ -56,9 +56,9 @@ enum { MOST_SEEN_SEAMS = 12 };
  * triangle. It is beside the corner if its distance from the corner is less than this number of pixels. */
 static const double BESIDE_SEAM = 1.5;
 
-/* How far a fragment beside a corner overlaps the other triangle of the corner. The unit is the height by
- * which the other triangle's plane rises over a pixel, because the height at a pixel's middle may differ by
- * that much from the height at the corner. */
+/* The length by which a fragment beside a corner overlaps the other triangle of the corner. The unit is the
+ * height by which the other triangle's plane rises over a pixel, because the height at a pixel's middle may
+ * differ by that much from the height at the corner. */
 static const double SEAM_OVERLAP = 1;
 
 /* ---- rims: triangles near boundary edges and corners (surface_rims.h) ---- */

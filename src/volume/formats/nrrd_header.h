@@ -35,7 +35,7 @@ typedef struct nrrd_header {
     const char *unit; /* unit of the axes, static; null if there is no unit, an unknown one, or not the same
                        * for all axes */
   } space;
-  /* Where the voxels are. */
+  /* The places of the voxels. */
   struct {
     char file[NRRD_NAME_BYTES]; /* "" if the voxels are attached, or in several files */
     hl_file_list files;         /* owned; the list of several data files */

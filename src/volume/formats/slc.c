@@ -12,7 +12,7 @@
 #include "volume/io/text.h"
 
 enum { WORD_BYTES = 64, MARK = 11111, MARK_BYTES = 5, SIZE_MOST = 1 << 24, RUN_MOST = 127 };
-enum { PLAIN = 0, RUNS = 1 }; /* how voxels are packed */
+enum { PLAIN = 0, RUNS = 1 }; /* the packings of voxels */
 
 typedef struct slc_header {
   size_t size[3], bits, packing;

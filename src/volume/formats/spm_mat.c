@@ -37,7 +37,7 @@ static uint32_t load_word(const unsigned char *bytes, bool big_endian) {
 
 /* Reads one variable. Returns false at the end, and if the file is not a MAT-file of version 4. */
 static bool read_variable(mat_file *file, matrix *mat, matrix *older) {
-  static const size_t sizes[] = {8, 4, 4, 2, 2, 1}; /* of numbers, by their kind */
+  static const size_t sizes[] = {8, 4, 4, 2, 2, 1}; /* the sizes in bytes of numbers, by their kind */
   if (file->left < HEAD_BYTES) return false;
   const bool big_endian = load_word(file->at, false) > 9999;
   uint32_t head[5];

@@ -15,7 +15,7 @@ hl_status hl_stream_push_xz(hl_stream **stream, hl_error *error);
  * xz. */
 hl_status hl_stream_unpack(hl_stream **stream, hl_error *error);
 
-/* How VTK's blocks are packed. */
+/* The packings of VTK's blocks. */
 typedef enum hl_vtk_packing { HL_VTK_PLAIN, HL_VTK_ZLIB, HL_VTK_LZ4, HL_VTK_XZ } hl_vtk_packing;
 
 /* Pushes a decoder of VTK's compressed blocks. A header of integers, of header_bytes (4 or 8) each, comes

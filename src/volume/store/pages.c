@@ -124,7 +124,7 @@ static size_t take_place(hl_pages *pages) {
                bytes = hl_storage_bytes(pages->storage);
   static const unsigned char zero[4] = {0};
   count_held(pages, true);
-  if (memcmp(pages->value, zero, bytes) == 0) return place; /* as the system gives it */
+  if (memcmp(pages->value, zero, bytes) == 0) return place; /* memory from the system is zero already */
   unsigned char *to = pages->first + place * pages->page_bytes;
   for (size_t at = 0; at < pages->page_bytes; at += bytes) memcpy(to + at, pages->value, bytes);
   return place;

@@ -62,8 +62,9 @@ typedef struct hl_pages {
   uint32_t *place;      /* owned; [pages] of sparse pages, else null; the place of each page in the mapping,
                          * counted in pages; 0 for pages in which nothing was stored; atomic */
   size_t places;        /* number of places in the mapping that are taken, including place 0; atomic */
-  unsigned char value[4]; /* of sparse pages: the stored value of voxels that were not stored */
-  pthread_cond_t came;    /* over ranks: signalled when a page that was being fetched is complete */
+  unsigned char value[4]; /* for sparse pages, the stored value of voxels that were not stored */
+  pthread_cond_t came;    /* if several ranks share the volume, signalled when a page that was being fetched
+                           * is complete */
   pthread_mutex_t lock;   /* held while values are counted; if several ranks share the volume, also while the
                            * states of pages change */
   uint64_t *counts; /* owned; [hl_values_of(storage)]; how often each stored value occurs; null for floats,
