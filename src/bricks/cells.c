@@ -30,7 +30,8 @@ typedef struct cell_field {
   const char *subject;
   hl_cells_place *place;
   unsigned char *levels; /* owned; [cell_count] */
-  float *edges;          /* owned; [cell_count]; world; if 0, the cell is left out */
+  float *edges;          /* owned; [cell_count]; for each cell, the edge of a tetrahedron or cube with the
+                          * same volume, in the world; 0 if the cell is left out */
   hl_cell_tree tree;
   hl_bricks_source source;
 } cell_field;

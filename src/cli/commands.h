@@ -1,4 +1,4 @@
-/* cli/commands.h - the registry of subcommands. */
+/* cli/commands.h - registers the subcommands. */
 #ifndef HL_CLI_COMMANDS_H
 #define HL_CLI_COMMANDS_H
 

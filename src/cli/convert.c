@@ -1,5 +1,5 @@
-/* cli/convert.c - `halflight convert IN OUT`: a volume, or a box of it, in another format, type or
- * resolution. */
+/* cli/convert.c - implements `halflight convert IN OUT`, which writes a volume, or a box of it, in another
+ * format, type or resolution. */
 #define _GNU_SOURCE
 #include <stdio.h>
 #include <stdlib.h>

@@ -1,4 +1,4 @@
-/* cli/devices.c - `halflight devices`: the GPUs that --device can name. */
+/* cli/devices.c - implements `halflight devices`, which lists the GPUs that --device can name. */
 #include <halflight/device.h>
 #include <inttypes.h>
 #include <stdio.h>

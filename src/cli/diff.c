@@ -1,4 +1,5 @@
-/* cli/diff.c - `halflight diff A B`: prints how much two pictures differ; with limits, fails beyond them. */
+/* cli/diff.c - implements `halflight diff A B`, which prints the differences of two pictures, and fails if a
+ * difference exceeds a limit. */
 #include <inttypes.h>
 #include <math.h>
 #include <stdio.h>
@@ -68,10 +69,10 @@ typedef struct image_pair {
   char **paths;    /* A and B */
   hl_image *a, *b; /* owned */
   hl_image_difference difference;
-  double mean; /* the greatest, over the four channels, of the absolute values of their mean differences */
+  double mean; /* the greatest magnitude of the mean differences of the four channels */
 } image_pair;
 
-/* The measured value that a limit is for. */
+/* The measured value to which a limit applies. */
 static double measured(const image_pair *comparison, int limit) {
   switch (limit) {
     case DIFF_MAX_RMSE: return comparison->difference.rmse;
@@ -81,8 +82,8 @@ static double measured(const image_pair *comparison, int limit) {
   }
 }
 
-/* True if the limit is not given, or not exceeded. A measured value of NaN, which comes from a NaN in a
- * picture, exceeds every limit. */
+/* Returns true if the limit is not given, or not exceeded. A measured value of NaN, which comes from a NaN in
+ * a picture, exceeds every limit. */
 static bool within(const image_pair *comparison, int limit) {
   const cli_value *value = &comparison->values[limit];
   return !value->given || measured(comparison, limit) <= value->number[0];
@@ -136,8 +137,8 @@ static int print_text(const image_pair *comparison) {
   return finish_stdout();
 }
 
-/* Writes |b - a| times a factor, as an opaque picture. A colour channel shows the difference of alpha instead
- * of its own where the former is greater. */
+/* Writes |b - a| times a factor, as an opaque picture. If the difference of alpha is greater than the
+ * difference of a colour channel, the channel shows the difference of alpha. */
 static int write_picture(cli_host *host, const image_pair *comparison) {
   const char *path = comparison->values[DIFF_OUTPUT].text;
   const cli_value *amplify = &comparison->values[DIFF_AMPLIFY];

@@ -1,5 +1,5 @@
-/* cli/export.c - `halflight export SCENE.json -o PAGE.html`: a scene with its data as one page for browsers.
- */
+/* cli/export.c - implements `halflight export SCENE.json -o PAGE.html`, which writes a scene with its data as
+ * one page for browsers. */
 #define _GNU_SOURCE
 #include <limits.h>
 #include <stdio.h>
@@ -51,7 +51,7 @@ static const char *const page_extensions[] = {".html", NULL};
 static const char *const installed_pages[] = {"/../share/halflight/halflight.html", "/../page/halflight.html",
                                               NULL};
 
-/* The page without a scene; null: there is none. */
+/* The page without a scene; null if it is not installed. */
 static const char *viewer_page(const cli_value *values, char path[PATH_MAX]) {
   if (values[EXPORT_PAGE].given) return values[EXPORT_PAGE].text;
   const char *named = getenv("HALFLIGHT_PAGE");

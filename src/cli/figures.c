@@ -1,5 +1,5 @@
-/* cli/figures.c - `halflight figures`: the figures of Zhang and Crawfis's paper, from the scenes that are
- * installed with the program. */
+/* cli/figures.c - implements `halflight figures`, which makes the figures of Zhang and Crawfis's paper from
+ * the scenes that are installed with the program. */
 #define _GNU_SOURCE
 #include <glob.h>
 #include <limits.h>
@@ -52,7 +52,7 @@ static int run_figures(const cli_value *values, char **operands) {
   const char *only = operands[0] != NULL ? operands[0] : "";
   if (strlen(only) >= NAME_BYTES - sizeof "/fig**.json" || strchr(only, '/') != NULL)
     return fail(EXIT_CODE_USAGE, "'%.80s' is no part of a figure's name", only);
-  /* All names begin with "fig", and so may the text. */
+  /* All names begin with "fig". The text may begin with "fig", too. */
   const bool begins = strncmp(only, "fig", 3) == 0;
   snprintf(pattern + length, NAME_BYTES, begins ? "/%s*.json" : "/fig*%s*.json", only);
   glob_t found = {0};

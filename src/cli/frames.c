@@ -1,6 +1,6 @@
-/* cli/frames.c - shared by commands that make many pictures. A picture carries its scene; a picture that
- * carries the right scene is not rendered again. So a run goes on where the last run stopped, and several
- * runs can share a folder. */
+/* cli/frames.c - implements functions for commands that make many pictures. A picture carries its scene. A
+ * picture that carries the right scene is not rendered again. So a run continues where the last run stopped,
+ * and several runs can share a folder. */
 #define _GNU_SOURCE
 #include "frames.h"
 
@@ -58,7 +58,8 @@ unsigned char *frames_read_picture(const char *path, size_t *length) {
   return bytes;
 }
 
-/* The scene that a picture on disk was made of; free with hl_text_release(); null: there is none. */
+/* The text of the scene from which a picture on disk was made; free it with hl_text_release(). Null if there
+ * is none. */
 static char *scene_of_picture(const cli_host *host, const char *path) {
   size_t length;
   char *text = NULL;

@@ -1,5 +1,5 @@
-/* cli/frames.h - functions for commands that make many pictures: dividing the pictures among runs, finding
- * pictures that exist already, and a progress bar with an estimated time. */
+/* cli/frames.h - declares functions for commands that make many pictures. They divide the pictures among
+ * runs, find pictures that exist already, and draw a progress bar with an estimated time. */
 #ifndef HL_CLI_FRAMES_H
 #define HL_CLI_FRAMES_H
 
@@ -29,21 +29,21 @@
  * exit code. */
 int frames_read_part(const cli_value *value, const cli_value *ranks, int *part, int *parts);
 
-/* A picture's bytes, owned by the caller (free); null where it cannot be read. */
+/* The bytes of a picture's file, owned by the caller (free); null if it cannot be read. */
 unsigned char *frames_read_picture(const char *path, size_t *length);
 
-/* Whether a picture is there and carries this scene. */
+/* Returns whether a picture exists and carries this scene. */
 bool frames_have_scene(const cli_host *host, const char *path, const hl_scene *scene);
 
-/* Draws the progress bar. done, wanted: the number of pictures that are finished, and of all pictures.
+/* Draws the progress bar. done: the number of finished pictures. wanted: the number of all pictures.
  * rendered: the number of pictures that this run has rendered in `seconds`. */
 void frames_draw_bar(cli_host *host, int done, int wanted, int rendered, double seconds);
 
 /* How pictures are written. */
 typedef struct frames_style {
-  bool opaque;      /* pictures are opaque even where the scene's background is transparent */
-  bool no_metadata; /* pictures do not carry their scenes */
-  const struct cli_overlay *overlay; /* drawn over each; may be null */
+  bool opaque;      /* whether pictures are opaque even if the scene's background is transparent */
+  bool no_metadata; /* whether pictures do not carry their scenes */
+  const struct cli_overlay *overlay; /* the overlays that are drawn over each picture; may be null */
 } frames_style;
 
 /* Renders a scene to a picture. */

@@ -1,4 +1,4 @@
-/* cli/host.c - callbacks of the context: progress bar, warnings, interruption. */
+/* cli/host.c - implements the callbacks of the context: progress bar, warnings, interruption. */
 #define _GNU_SOURCE
 #include "host.h"
 
@@ -14,7 +14,7 @@
 #include "platform/memory.h"
 #include "platform/paths.h"
 
-/* Set by the signal handler, read by the library's cancel callback. */
+/* A flag that the signal handler sets, and that the library's cancel callback reads. */
 static volatile sig_atomic_t interrupted = 0;
 
 static void on_signal(int signal_number) {
@@ -65,7 +65,7 @@ void host_describe_time(double seconds, char *text, size_t size) {
   else snprintf(text, size, "%ld s", whole);
 }
 
-/* Finds the seconds that the stage of a library call still takes, if it goes on as it did. */
+/* Estimates the seconds that the stage of a library call still takes, if it continues at the same speed. */
 static double seconds_left(cli_host *host, const char *stage, double fraction, double *past) {
   host_stage *now = &host->stage;
   if (strcmp(now->name, stage) != 0 || fraction < now->fraction) {
@@ -77,8 +77,8 @@ static double seconds_left(cli_host *host, const char *stage, double fraction, d
   return fraction > 0 ? *past * (1 - fraction) / fraction : 0;
 }
 
-/* Says once, after `PATIENCE` seconds, how long a slow stage still takes and what makes it faster. A bar says
- * the first of these anew all the time. */
+/* Prints once, after `PATIENCE` seconds, the time that a slow stage still takes, and advice on how to make it
+ * faster. If there is a progress bar, it shows this time anew again and again. */
 static void tell_of_slowness(cli_host *host, double past, double left) {
   enum { PATIENCE = 10, LONG = 60 };
   char text[40];
@@ -90,7 +90,7 @@ static void tell_of_slowness(cli_host *host, double past, double left) {
 }
 
 static void on_progress(void *user_data, const char *stage, double fraction) {
-  enum { SHORT = 3 }; /* seconds that nobody needs an estimate for */
+  enum { SHORT = 3 }; /* the number of seconds for which nobody needs an estimate */
   cli_host *host = user_data;
   char text[80], time[40];
   double past, left = seconds_left(host, stage, fraction, &past);
@@ -153,7 +153,7 @@ static void listen_to_signals(void) {
   struct sigaction action, before;
   memset(&action, 0, sizeof action);
   action.sa_handler = on_signal;
-  action.sa_flags = SA_RESTART; /* SA_RESTART lets interrupted system calls go on; the cancel callback ends
+  action.sa_flags = SA_RESTART; /* SA_RESTART lets interrupted system calls continue; the cancel callback ends
                                  * the work */
   sigemptyset(&action.sa_mask);
   sigaction(SIGINT, &action, NULL);

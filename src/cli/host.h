@@ -1,4 +1,4 @@
-/* cli/host.h - the library's context as the program sets it up: memory limit, warnings, progress bar,
+/* cli/host.h - makes the library's context for the program: memory limit, warnings, progress bar,
  * interruption by signals. */
 #ifndef HL_CLI_HOST_H
 #define HL_CLI_HOST_H
@@ -8,28 +8,31 @@
 #include "message.h"
 #include "output.h"
 
-/* The stage in which a call of the library is, as it reports its progress. */
+/* The current stage of a call of the library, which reports its progress. */
 typedef struct host_stage {
   char name[16];
   double began;     /* seconds of clock_seconds() */
-  double fraction;  /* the part that was done at the last report */
-  const char *hint; /* what makes the command faster; said once where it takes long; null: nothing is said */
+  double fraction;  /* the fraction of the stage that was done at the last report */
+  const char *hint; /* advice on how to make the command faster, which is printed once if the command takes
+                     * long; null if there is no advice */
 } host_stage;
 
 typedef struct cli_host {
   hl_context *context;
-  bool quiet;   /* the program prints no warnings, no bar and no summary */
-  bool bar;     /* stderr is a terminal that can redraw a line */
-  bool own_bar; /* the command draws the progress bar itself, because each call of the library is only a part
-                 * of the command's work */
+  bool quiet;   /* whether the program prints no warnings, no bar and no summary */
+  bool bar;     /* whether stderr is a terminal that can redraw a line */
+  bool own_bar; /* whether the command draws the progress bar itself, because each call of the library is only
+                 * a part of the command's work */
   bool color;
-  bool drawn; /* a bar is on the line now */
+  bool drawn; /* whether a bar is on the current line */
   host_stage stage;
-  double drawn_at;         /* seconds; bars are redrawn ten times a second at most */
+  double drawn_at;         /* the time, in seconds, at which the bar was last drawn; bars are redrawn ten
+                            * times a second at most */
   bool (*cancelled)(void); /* or null */
   void (*progressed)(const char *stage, double fraction); /* or null */
   uint64_t memory_limit;                                  /* bytes; 0: unknown */
-  int preview_pixels;    /* hl_volume_load_options.preview_pixels for the volumes of the command line */
+  int preview_pixels;    /* the value of hl_volume_load_options.preview_pixels for the volumes of the command
+                          * line */
   cli_read_files read;   /* the files that the context has read */
   char *const *operands; /* see cli_host_options */
   char subject[32];      /* the input's name beside the bar, cut to keep the line short */
@@ -43,12 +46,13 @@ typedef struct cli_host_options {
   hl_instruction_set instruction_set;
   const char *device;      /* null: the processors */
   bool keep_unsmoothed;    /* see hl_context_options */
-  hl_mpi mpi;              /* launcher_mpi() (ranks.h) where processes may join */
-  bool (*cancelled)(void); /* asked, in addition to signals, whether the run is to end; called by the thread
-                            * that renders; may be null */
+  hl_mpi mpi;              /* the result of launcher_mpi() (ranks.h) if processes may join */
+  bool (*cancelled)(void); /* a function that is asked, in addition to signals, whether the run should end;
+                            * the thread that renders calls it; may be null */
   void (*progressed)(const char *stage, double fraction); /* receives the progress of a library call, on the
                                                            * thread that made the call; may be null */
-  const char *data_folder;                                /* null: HALFLIGHT_DATA, or ../shared/data */
+  const char *data_folder;                                /* the folder of "data:..." files; null stands for
+                                                           * HALFLIGHT_DATA, or ../shared/data */
   char *const *operands; /* the command line's INPUTs, ended by null; the array must outlive the context.
                           * Files are fetched only from INPUTs that are URLs. May be null */
 } cli_host_options;
@@ -89,7 +93,7 @@ void host_close(cli_host *host);
 /* Writes a time: "3 h 20 min", "4 min 1 s", "12 s". */
 void host_describe_time(double seconds, char *text, size_t size);
 
-/* Draws a bar with a text beside it, ten times a second at most, where there is a terminal. */
+/* Draws a bar with a text beside it, ten times a second at most, if there is a terminal. */
 void host_draw_bar(cli_host *host, double fraction, const char *text);
 
 /* Removes the progress bar, so that a line can be printed. */
@@ -98,7 +102,7 @@ void host_clear_bar(cli_host *host);
 /* Prints the line of a library error after clearing the bar; returns the exit code. */
 int host_fail(cli_host *host, cli_phase phase, hl_status status, const hl_error *error);
 
-/* True once the user has asked to stop. */
+/* Returns whether the user has asked to stop. */
 bool host_interrupted(void);
 
 /* Seconds of a steady clock. */

@@ -1,4 +1,4 @@
-/* cli/input.c - reading INPUT: which kind it is, and its scene or volume. */
+/* cli/input.c - reads INPUT: finds its kind, and loads its scene or volume. */
 #define _GNU_SOURCE
 #include "input.h"
 
@@ -39,7 +39,7 @@ static input_kind kind_by_content(const unsigned char *bytes, size_t length) {
   return word > at + 1 && word < length && bytes[word] == '}' ? INPUT_VOLUME : INPUT_SCENE;
 }
 
-/* Waits until there is something to read; false: the user asked to stop. */
+/* Waits until there are bytes to read. Returns false if the user has asked to stop. */
 static bool await_bytes(int descriptor) {
   enum { MILLISECONDS_BETWEEN_QUESTIONS = 20 };
   struct pollfd wanted = {.fd = descriptor, .events = POLLIN};
@@ -49,7 +49,8 @@ static bool await_bytes(int descriptor) {
   return !host_interrupted();
 }
 
-/* Appends the bytes that can be read now; *ended: there are no more. Returns the exit code. */
+/* Appends the bytes that can be read now. *ended: set to whether there are no more bytes. Returns the exit
+ * code. */
 static int read_piece(cli_input *input, int descriptor, size_t *capacity, uint64_t limit, bool *ended) {
   enum { LEAST_ROOM = 65536 };
   if (!await_bytes(descriptor)) return fail(EXIT_CODE_INTERRUPTED, "interrupted; nothing was written");
@@ -77,8 +78,8 @@ static int read_piece(cli_input *input, int descriptor, size_t *capacity, uint64
 static int read_whole(cli_input *input, int descriptor, uint64_t limit) {
   size_t capacity = 0;
   if (limit == 0) limit = hl_machine_memory() / 2;
-  enum { LONGEST_SCENE = 16 << 20 }; /* the most bytes of a scene's text; the library refuses longer texts */
-  enum { TELLING = 65536 };          /* bytes at the beginning of an input that suffice to tell its kind */
+  enum { LONGEST_SCENE = 16 << 20 }; /* the library refuses a scene's text with more bytes than this */
+  enum { TELLING = 65536 };          /* the first bytes of an input, which suffice to find its kind */
   bool ended = false, scene = false;
   int exit_code = EXIT_CODE_OK;
   while (exit_code == EXIT_CODE_OK && !ended) {
@@ -93,7 +94,7 @@ static int read_whole(cli_input *input, int descriptor, uint64_t limit) {
 
 /* ---- kinds of input ---- */
 
-/* Finds the kind of an input by the ending of its name. False where the name does not tell the kind. */
+/* Finds the kind of an input by the ending of its name. Returns false if the name does not tell the kind. */
 static bool kind_by_name(const char *path, input_kind *kind) {
   static const char *const volumes[] = {".raw",  ".gz",  ".nrrd", ".nhdr", ".mha",  ".mhd", ".vgi",
                                         ".slc",  ".nii", ".vti",  ".vtk",  ".npy",  ".mrc", ".map",

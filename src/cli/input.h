@@ -1,5 +1,5 @@
-/* cli/input.h - INPUT of a subcommand: a scene, a picture that carries a scene, or a bare volume, for which a
- * scene is made.
+/* cli/input.h - reads the operand INPUT of a subcommand: a scene, a picture that carries a scene, or a bare
+ * volume, for which a scene is made.
  *
  * A pipe ("-" is standard input) is read once, into memory, because its first bytes must tell its kind before
  * a reader reads it from the beginning. */
@@ -21,9 +21,10 @@ typedef struct cli_input {
   input_kind kind;
   unsigned char *bytes; /* owned; [length]: the content of a pipe or a picture; else null */
   size_t length;
-  const char *look;     /* look of a bare volume (hl_look_name); null: the look that suits the data */
-  const double *smooth; /* smoothing of a bare volume, voxels (hl_volume_smooth()); null: as much as the data
-                         * need */
+  const char *look;     /* the look of a bare volume (hl_look_name); null stands for the look that suits the
+                         * data */
+  const double *smooth; /* the smoothing of a bare volume, in voxels (hl_volume_smooth()); null stands for the
+                         * smoothing that the data need */
 } cli_input;
 
 /* The rows of --array, --component, --time, --channel and --level in a subcommand's table of options;
@@ -75,12 +76,13 @@ typedef struct cli_input {
   [(first) + READ_LEVEL] = INPUT_OPTION_LEVEL
 extern const cli_choice input_components[];
 
-/* The options that choose what is read of a file, in the order of the rows in a subcommand's table. */
+/* The options that choose the part of a file that is read, in the order of the rows in a subcommand's
+ * table. */
 enum input_reading { READ_ARRAY, READ_COMPONENT, READ_SERIES, READ_TIME, READ_CHANNEL, READ_LEVEL };
 
 /* Finds out the kind of an input, by its name or, if the name does not tell, by its first bytes; reads pipes
- * and pictures into memory. limit: the most bytes to hold; 0: half of the machine's memory. Returns the exit
- * code; call input_close() even after a failure. */
+ * and pictures into memory. limit: the greatest number of bytes to hold; 0 stands for half of the machine's
+ * memory. Returns the exit code; call input_close() even after a failure. */
 int input_open(const char *path, uint64_t limit, cli_input *input);
 void input_close(cli_input *input);
 
@@ -89,11 +91,12 @@ void input_close(cli_input *input);
  * render_load_options(), because its --channel is a text. */
 void input_load_options(const cli_value *reading, const cli_value *spacing, hl_volume_load_options *options);
 
-/* The longer side of a picture whose size nobody has chosen, in pixels: hl_volume_load_options.pixels where
- * no picture's size is known. */
+/* The longer side of a picture whose size nobody has chosen, in pixels: the value of
+ * hl_volume_load_options.pixels if no picture's size is known. */
 int input_picture_side(void);
 
-/* Reads an input that is a volume. options: all but `bytes`, which the input has; null: the defaults. */
+/* Reads an input that is a volume. options: all members except `bytes`, which the input has; null stands for
+ * the defaults. */
 hl_status input_load_volume(hl_context *context, const cli_input *input,
                             const hl_volume_load_options *options, hl_volume **volume, hl_error *error);
 
@@ -108,13 +111,13 @@ void input_name_source(const hl_volume_load_options *options, hl_scene_volume *v
 hl_status input_name_scene(hl_context *context, const hl_volume_load_options *options, hl_scene **scene,
                            hl_error *error);
 
-/* The scene of an input: read from it, or made for a bare volume, which is read by `options` (null: the
- * defaults). */
+/* The scene of an input. It is read from the input, or made for a bare volume. options: the options for
+ * reading a bare volume; null stands for the defaults. */
 hl_status input_load(hl_context *context, const cli_input *input, const hl_volume_load_options *options,
                      hl_scene **scene, hl_error *error);
 
-/* Whether a file holds a mesh. A VTK file of particles, or of cells that enclose a volume and have values, is
- * a volume. A URL is no mesh, because only volumes are read from servers. */
+/* Returns whether a file holds a mesh. A VTK file of particles, or of cells that enclose a volume and have
+ * values, is a volume. A URL is no mesh, because only volumes are read from servers. */
 bool is_mesh_file(hl_context *context, const char *path);
 
 /* Orders names (char **) by the numbers in them, for qsort(). */

@@ -1,4 +1,4 @@
-/* cli/json_writer.c - JSON on stdout. */
+/* cli/json_writer.c - writes JSON to stdout. */
 #include "json_writer.h"
 
 #include <inttypes.h>
@@ -20,7 +20,7 @@ static void print_number(double value) {
   fputs(text, stdout);
 }
 
-/* Comma, line, indentation and key before a value. */
+/* Writes the comma, the new line, the indentation and the key before a value. */
 static void begin_value(json_writer *writer, const char *key) {
   if (writer->depth > 0) printf("%s\n%*s", writer->first ? "" : ",", 2 * writer->depth, "");
   writer->first = false;

@@ -1,8 +1,7 @@
-/* cli/json_writer.h - JSON on stdout, indented by two blanks.
+/* cli/json_writer.h - writes JSON to stdout, indented by two blanks.
  *
- * Calls nest: an object or array opened is closed by json_close(). `key` names the value inside an
- * object and is null inside an array.
- */
+ * Calls nest: an object or array opened is closed by json_close(). `key` names the value inside an object and
+ * is null inside an array. */
 #ifndef HL_CLI_JSON_WRITER_H
 #define HL_CLI_JSON_WRITER_H
 
@@ -12,7 +11,7 @@
 
 typedef struct json_writer {
   int depth;
-  bool first;     /* the innermost open object or array is still empty */
+  bool first;     /* whether the innermost open object or array is still empty */
   char close[16]; /* closing bracket of each level */
 } json_writer;
 

@@ -1,5 +1,5 @@
-/* cli/looks.c - `halflight looks VOLUME -o sheet.png`: a contact sheet of the looks of --look, each with its
- * option under it. */
+/* cli/looks.c - implements `halflight looks VOLUME -o sheet.png`, which makes a contact sheet of the looks of
+ * --look. The option of each look stands under its picture. */
 #include <halflight/compose.h>
 #include <math.h>
 #include <stdio.h>
@@ -74,8 +74,7 @@ typedef struct looks_job {
   hl_renderer *renderer;
   hl_image *sheet;
   int side;                 /* pixels of a picture */
-  size_t shown[MOST_LOOKS]; /* [shown_count]; the looks of the sheet, by their places among the choices of
-                             * --look */
+  size_t shown[MOST_LOOKS]; /* [shown_count]; the looks of the sheet, as indices of the choices of --look */
   size_t shown_count;
 } looks_job;
 
@@ -94,7 +93,7 @@ static void put_letter(hl_image *sheet, int x, int y, int scale, char letter) {
       if (rows[row / scale] >> (column / scale) & 1) put_pixel(sheet, x + column, y + row, white);
 }
 
-/* Writes "--look NAME" as far as it fits. */
+/* Writes "--look NAME", cut to the room under the picture. */
 static void put_caption(const looks_job *job, int left, int top, const char *name) {
   char text[64];
   snprintf(text, sizeof text, "--look %s", name);
@@ -119,7 +118,7 @@ static void put_picture(const looks_job *job, const hl_scene_description *scene,
 
 /* ---- the looks ---- */
 
-/* Reads the names of the looks that are to be shown. Without names, all looks are. */
+/* Reads the names of the looks that are shown. Without names, all looks are shown. */
 static int choose_looks(looks_job *job, const cli_value *names) {
   const hl_setting_choice *all = hl_option_choices("look");
   for (size_t n = 0; !names->given && all[n].name != NULL && n < MOST_LOOKS; n++)
@@ -174,7 +173,7 @@ static hl_status scene_of(const looks_job *job, size_t index, hl_scene **scene, 
   return status;
 }
 
-/* place: of the look in the sheet. */
+/* place: the index of the look in the sheet. */
 static hl_status add_look(looks_job *job, size_t place, hl_error *error) {
   const size_t index = job->shown[place];
   hl_scene *scene = NULL;

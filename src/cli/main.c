@@ -1,4 +1,4 @@
-/* cli/main.c - the program: finds the subcommand, and answers --help and --version. */
+/* cli/main.c - starts the program: finds the subcommand, and answers --help and --version. */
 #define _GNU_SOURCE
 #include <errno.h>
 #include <fcntl.h>
@@ -98,7 +98,8 @@ static void take_errors_for_signals(void) {
   signal(SIGXFSZ, SIG_IGN);
 }
 
-/* Returns the exit code. *command becomes the command that was run; it stays null if there was none. */
+/* Finds and runs the subcommand. Returns the exit code. *command becomes the command that was run; it stays
+ * null if no command was run. */
 static int run_line(int argc, char **argv, const cli_command **command) {
   if (argc < 2) return fail(EXIT_CODE_USAGE, "a command is missing: see 'halflight --help'");
   const char *name = argv[1];

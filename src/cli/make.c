@@ -1,4 +1,5 @@
-/* cli/make.c - `halflight make SHAPE`: volumes of shapes, ready-made or from a JSON file. */
+/* cli/make.c - implements `halflight make SHAPE`, which makes volumes of ready-made shapes, or of shapes in a
+ * JSON file. */
 #define _GNU_SOURCE
 #include <stdio.h>
 #include <stdlib.h>

@@ -1,4 +1,4 @@
-/* cli/message.c - messages on stderr: one line each, whatever file names contain. */
+/* cli/message.c - prints messages on stderr. Each message is one line, for file names of any content. */
 #include "message.h"
 
 #include <errno.h>

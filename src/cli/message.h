@@ -1,4 +1,5 @@
-/* cli/message.h - exit codes, and the line on stderr that is printed with every exit code except success. */
+/* cli/message.h - defines the exit codes, and prints the line on stderr that comes with every exit code
+ * except success. */
 #ifndef HL_CLI_MESSAGE_H
 #define HL_CLI_MESSAGE_H
 
@@ -8,9 +9,9 @@ enum {
   EXIT_CODE_OK = 0,
   EXIT_CODE_FAILURE = 1, /* the run failed after it had begun, or a limit of `diff` was exceeded */
   EXIT_CODE_USAGE = 2,
-  EXIT_CODE_INPUT = 3,       /* a file that was given is missing or malformed */
-  EXIT_CODE_UNSUPPORTED = 4, /* the input was understood, but this version or this machine cannot do what
-                              * is asked */
+  EXIT_CODE_INPUT = 3,       /* a given file is missing or malformed */
+  EXIT_CODE_UNSUPPORTED = 4, /* the input was understood, but this version or this machine cannot do what the
+                              * user asks for */
   EXIT_CODE_INTERRUPTED = 130
 };
 

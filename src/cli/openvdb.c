@@ -1,5 +1,5 @@
-/* cli/openvdb.c - runs a converter, our own openvdb_helper.cpp or else Debian's nanovdb_convert, in a
- * temporary folder and gives its file as memory.
+/* cli/openvdb.c - runs a converter in a temporary folder, and reads the converter's file into memory. The
+ * converter is openvdb_helper.cpp, or else Debian's nanovdb_convert.
  *
  * The converter gets the input as a link in this folder, so that it sees only names that this file
  * chooses. */

@@ -1,4 +1,4 @@
-/* cli/options.c - parsing of a subcommand's arguments against its table of options. */
+/* cli/options.c - parses a subcommand's arguments by its table of options. */
 #include "options.h"
 
 #include <math.h>
@@ -23,15 +23,15 @@ static const char *choice_name(const void *choices, size_t index) {
 /* The number of rows of a command: the rows of its own table and of the table that it shares. */
 static size_t row_count(const cli_command *command) { return command->option_count + command->shared_count; }
 
-/* The option in a row; null: the command does not have the option of this row. */
+/* The option in a row; null if the command does not have the option of this row. */
 static const cli_option *option_in(const cli_command *command, size_t row) {
   if (row < command->option_count) return &command->options[row];
   row -= command->option_count;
   return command->has_shared(row) ? &command->shared[row] : NULL;
 }
 
-/* The names of options, for suggestions. Options that the command does not have, and reserved options, are
- * skipped. */
+/* Gives the names of options, from which suggestions are made. Options that the command does not have, and
+ * reserved options, are skipped. */
 static const char *option_name(const void *data, size_t index) {
   const cli_command *command = data;
   size_t count = row_count(command);
@@ -42,7 +42,7 @@ static const char *option_name(const void *data, size_t index) {
   return index == count ? "help" : NULL;
 }
 
-/* "off, hard, soft": the names of an option's choices, without the reserved ones. */
+/* Writes the names of an option's choices, without the reserved ones: "off, hard, soft". */
 static void list_choices(const cli_option *option, const char *separator, char *text, size_t size) {
   size_t used = 0;
   text[0] = '\0';
@@ -51,7 +51,8 @@ static void list_choices(const cli_option *option, const char *separator, char *
       used += (size_t)snprintf(text + used, size - used, "%s%s", used > 0 ? separator : "", choice->name);
 }
 
-/* The values that an OPTION_NUMBERS accepts, in words: "a whole number from 1 to 64". */
+/* Writes in words which values an option of the kind OPTION_NUMBERS accepts: "a whole number from 1 to
+ * 64". */
 static void describe_numbers(const cli_option *option, char *text, size_t size) {
   const char *kind = option->whole ? "whole number" : "number";
   char range[80];
@@ -75,7 +76,7 @@ static void describe_numbers(const cli_option *option, char *text, size_t size) 
   }
 }
 
-/* Whether a text ends like the name of a picture's file. */
+/* Returns whether a text ends like the name of a picture's file. */
 static bool names_picture(const char *text) {
   static const char *const endings[] = {".png", ".jpg", ".jpeg", ".exr", ".hdr", ".tif", ".tiff"};
   const char *dot = strrchr(text, '.');
@@ -200,17 +201,17 @@ static int parse_value(const cli_option *option, const char *text, cli_value *va
   return EXIT_CODE_OK;
 }
 
-/* Whether a text looks like an option. A value may begin with a dash, too: "-30,20", "-.5". */
+/* Returns whether a text looks like an option. A value may begin with a dash, too: "-30,20", "-.5". */
 static bool looks_like_option(const char *text) {
   return text[0] == '-' && text[1] != '\0' && strchr("0123456789.", text[1]) == NULL;
 }
 
-/* Whether a text is made of a number's characters alone. */
+/* Returns whether a text has only characters that a number may have. */
 static bool is_number(const char *text) {
   return text[0] != '\0' && text[strspn(text, "0123456789+-.eE")] == '\0';
 }
 
-/* Whether the first `length` characters of a name are this word. word: may be null. */
+/* Returns whether the first `length` characters of a name are this word. word: may be null. */
 static bool is_word(const char *word, const char *name, size_t length) {
   return word != NULL && strlen(word) == length && strncmp(word, name, length) == 0;
 }
@@ -252,7 +253,7 @@ static cli_option with_setting(const cli_option *option) {
   return full;
 }
 
-/* Copies the name in a long option: "size" of "--size=8x8". Returns its length; 0: the argument is no long
+/* Copies the name in a long option: "size" of "--size=8x8". Returns its length; 0 if the argument is no long
  * option. */
 static size_t name_in(const char *argument, char *name, size_t size) {
   size_t length = argument[0] == '-' && argument[1] == '-' ? strcspn(argument + 2, "=") : 0;
@@ -324,7 +325,7 @@ static int parse_option(const cli_command *command, int argument_count, char **a
     return EXIT_CODE_OK;
   }
   if (attached == NULL) {
-    cli_value chosen = {0}; /* "-y" may be one of the choices */
+    cli_value chosen = {0}; /* a value such as "-y" may be one of the choices */
     if (*index + 1 >= argument_count) return refuse_missing(option);
     attached = arguments[++*index];
     if (looks_like_option(attached) && !parse_choice(option, &attached, &chosen))
@@ -377,7 +378,7 @@ int options_parse(const cli_command *command, int argument_count, char **argumen
   return EXIT_CODE_OK;
 }
 
-/* "--shadows off|hard|soft": an option's first column in the help. */
+/* Writes the first column of an option in the help: "--shadows off|hard|soft". */
 static void option_heading(const cli_option *option, char *text, size_t size) {
   size_t used = (size_t)(option->letter != '\0'
                              ? snprintf(text, size, "-%c, --%s", option->letter, option->name)
@@ -405,7 +406,8 @@ static void print_option(const char *heading, const char *help) {
   }
 }
 
-/* Prints an option, below the heading of the group that it begins; group: null for none. */
+/* Prints an option, below the heading of the group that it begins; group: null if the option begins no
+ * group. */
 static void print_row(const cli_option *listed, const char *group) {
   const cli_option option = with_setting(listed);
   char heading[120];

@@ -1,9 +1,8 @@
-/* cli/options.h - command-line options as tables.
+/* cli/options.h - describes command-line options by tables.
  *
- * A subcommand states its options once, in a table indexed by its own enum; parsing, help texts and
- * error messages all come from that table. Long options only (and a letter for a few):
- * --name value, --name=value, -o value. Negative numbers are values. "--" ends the options.
- */
+ * A subcommand states its options once, in a table indexed by its own enum; parsing, help texts and error
+ * messages all come from that table. Long options only (and a letter for a few): --name value, --name=value,
+ * -o value. Negative numbers are values. "--" ends the options. */
 #ifndef HL_CLI_OPTIONS_H
 #define HL_CLI_OPTIONS_H
 
@@ -15,9 +14,9 @@
 
 typedef enum cli_option_kind {
   OPTION_SWITCH,  /* takes no value */
-  OPTION_TEXT,    /* any text but an empty one */
-  OPTION_CHOICE,  /* one of `choices`; where `choices` is null, one of the choices of the library's option
-                   * of this name */
+  OPTION_TEXT,    /* any text except an empty one */
+  OPTION_CHOICE,  /* one of `choices`; if `choices` is null, one of the choices of the library's option of
+                   * this name */
   OPTION_NUMBERS, /* `count` numbers joined by `separator`; or one of `choices`, if there are any */
   OPTION_BYTES,   /* a whole number with an optional K, M, G or T (powers of 1024) */
   OPTION_COLOR /* linear R,G,B or a grey, #rgb, #rrggbb, a CSS name; or one of `choices`, if there are any */
@@ -31,30 +30,34 @@ typedef hl_setting_choice cli_choice; /* a null name ends the list */
 
 typedef struct cli_option {
   const char *name; /* without the dashes */
-  const char *also; /* another word for the option, as other programs call it; null: none */
-  char letter;      /* the letter of the short form; 0: none */
+  const char *also; /* another word for the option, which other programs use; null if there is none */
+  char letter;      /* the letter of the short form; 0 if there is none */
   cli_option_kind kind;
-  const char *argument; /* the option's value as help shows it; null: the option is a switch, or help lists
-                         * its choices */
+  const char *argument; /* the option's value as help shows it; null if the option is a switch, or if help
+                         * lists its choices */
   const char *help;     /* lines, the first one short */
-  const char *hint;     /* added to the error where the option has no value; null: none */
-  const char *group;    /* heading above this option in help; null: the option belongs to the same group as
+  const char *hint;     /* a text that is added to the error if the option has no value; null if there is
+                         * none */
+  const char *group;    /* heading above this option in help; null if the option belongs to the same group as
                          * the option before it */
   const cli_choice *choices;
-  int count;           /* OPTION_NUMBERS: how many numbers, 1 to 3 */
+  int count;           /* for OPTION_NUMBERS: the number of numbers, 1 to 3 */
   char separator;      /* between the numbers: ',' or 'x' */
   bool whole;          /* whole numbers only */
-  bool even;           /* OPTION_NUMBERS: one number alone stands for all */
+  bool even;           /* for OPTION_NUMBERS: whether a single number stands for all numbers */
   bool above;          /* low itself is excluded */
-  bool percent;        /* OPTION_NUMBERS: each number may also be a percentile, from 0% to 100% */
+  bool percent;        /* for OPTION_NUMBERS: whether each number may also be a percentile, from 0% to 100% */
   double low, high;    /* the accepted range */
-  const char *setting; /* key of a scene's setting, whose range and choices take the place of the members
-                        * above; or null */
+  const char *setting; /* the key of a scene's setting, whose range and choices replace the members above; or
+                        * null */
   hl_setting_kind setting_kind;
-  bool optional;   /* OPTION_NUMBERS: the numbers may be left out; they are then 0, and `count` is 0 */
-  bool repeatable; /* OPTION_TEXT: may be given again; every text is kept */
-  bool reserved;   /* not in this version yet: the option is not shown in help, and is refused when given */
-  bool joins;      /* processes of an MPI launcher that are given this option wait for each other */
+  bool optional;   /* for OPTION_NUMBERS: whether the numbers may be left out; they are then 0, and `count` is
+                    * 0 */
+  bool repeatable; /* for OPTION_TEXT: whether the option may be given several times; every text is kept */
+  bool reserved;   /* whether this version does not have the option yet: it is not shown in help, and is
+                    * refused if it is given */
+  bool joins;      /* whether processes of an MPI launcher wait for each other if they are given this
+                    * option */
 } cli_option;
 
 enum { MAXIMUM_REPEATS = 32 };
@@ -64,7 +67,7 @@ typedef struct cli_value {
   const char *text;                   /* the value as it was typed; for a repeatable option the last value */
   const char *texts[MAXIMUM_REPEATS]; /* the values as typed; [count] */
   int count;
-  bool chosen; /* one of the choices was given; `choice` is its value */
+  bool chosen; /* whether one of the choices was given; if so, `choice` is its value */
   int choice;
   double number[3];
   bool percent[3]; /* the number is a percentile */
@@ -75,13 +78,13 @@ typedef struct cli_command {
   const char *name;
   const char *operands; /* as help shows them: "INPUT" */
   int operand_count;    /* the least number of operands */
-  int operand_most;     /* the greatest number of operands; 0: there must be exactly operand_count */
-  const char *summary;  /* one line, for the list of commands */
+  int operand_most;     /* the greatest number of operands; 0 if there must be exactly operand_count */
+  const char *summary;  /* the command's line in the list of commands */
   const char *description;
   const cli_option *options;
   size_t option_count;
-  const cli_option *shared; /* the table of another subcommand, of whose options this subcommand has some,
-                             * too; null: none */
+  const cli_option *shared; /* the table of another subcommand, some of whose options this subcommand has,
+                             * too; null if there is none */
   size_t shared_count;
   bool (*has_shared)(size_t row); /* whether this subcommand has the option in this row of `shared` */
   /* values: [option_count + shared_count]; values for the command's own table come first. operands: ended by
@@ -91,8 +94,8 @@ typedef struct cli_command {
 
 enum { MAXIMUM_OPTIONS = 128, MAXIMUM_OPERANDS = 16 };
 
-/* Whether one of the arguments is an option that joins processes, or is most like such an option. The
- * arguments may be wrong. */
+/* Returns whether one of the arguments is an option that joins processes, or is nearest to such an option.
+ * The arguments may have mistakes. */
 bool options_join(const cli_command *command, int argument_count, char **arguments);
 
 /* Parses the arguments after the subcommand's name. Returns EXIT_CODE_OK, or another exit code after printing

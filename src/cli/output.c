@@ -1,4 +1,4 @@
-/* cli/output.c - names of files, and checks before the work that OUT can be written. */
+/* cli/output.c - makes names of files, and checks before the work that OUT can be written. */
 #define _GNU_SOURCE
 #include "output.h"
 

@@ -1,4 +1,4 @@
-/* cli/output.h - names of files, and checks before the work that OUT can be written. */
+/* cli/output.h - makes names of files, and checks before the work that OUT can be written. */
 #ifndef HL_CLI_OUTPUT_H
 #define HL_CLI_OUTPUT_H
 
@@ -11,7 +11,8 @@
 /* The part of a path after its last slash. */
 const char *base_name(const char *path);
 
-/* True if path ends in extension (".png"), in upper or lower case, and has something before it. */
+/* Returns true if the path ends in the extension (".png"), in upper or lower case, and has at least one
+ * character before it. */
 bool has_extension(const char *path, const char *extension);
 
 /* The extensions that can be written; null after the last. */
@@ -30,34 +31,34 @@ hl_status output_scene_text(hl_context *context, const hl_scene *scene, const ch
                             hl_error *error);
 
 /* Makes the default name of an output: "head.png", in the current folder, for "scans/head.nii.gz" and ".png".
- * A URL's query does not become part of the name. Owned by the caller (free); null without memory. */
+ * A URL's query does not become part of the name. Owned by the caller (free); null if memory is short. */
 char *output_default_name(const char *input, const char *extension);
 
 /* ---- names of pictures that are made of the inputs' names ---- */
 
-/* True if the text has one "%s", which stands for an input's name, and no other '%' but "%%". */
+/* Returns true if the text has one "%s", which stands for an input's name, and no other '%' but "%%". */
 bool output_has_name(const char *text);
 
-/* True if the path names a folder: it ends in '/', or a folder is there. */
+/* Returns true if the path names a folder: it ends in '/', or is the path of an existing folder. */
 bool output_is_folder(const char *path);
 
 /* The pattern "FOLDER/%s.png" of the pictures in a folder. extension: ".png". Owned by the caller (free);
- * null without memory. */
+ * null if memory is short. */
 char *output_pattern(const char *folder, const char *extension);
 
 /* Makes the name of an input's picture: the pattern with the input's name, without folder and extension, in
- * place of its "%s" (output_has_name()). Owned by the caller (free); null without memory. */
+ * place of its "%s" (output_has_name()). Owned by the caller (free); null if memory is short. */
 char *output_name_picture(const char *pattern, const char *input);
 
 /* Makes a folder for pictures, if it is missing. Returns the exit code. */
 int output_make_folder(const char *folder);
 
-/* The same for the folder of the file at this path. */
+/* Makes the folder of the file at this path, if it is missing. Returns the exit code. */
 int output_make_folder_of(const char *path);
 
 /* ---- files that the run has read: it must write over none of them ---- */
 
-/* Identifies a file, by whichever of its names or links it is opened. */
+/* The identity of a file, which is the same for all of its names and links. */
 typedef struct cli_file_identity {
   dev_t device;
   ino_t inode;
@@ -66,7 +67,7 @@ typedef struct cli_file_identity {
 typedef struct cli_read_files {
   cli_file_identity *files; /* owned; [count] */
   size_t count, capacity;
-  bool incomplete; /* memory was short: at least one of the read files is not in the list */
+  bool incomplete; /* whether memory was short, so that at least one of the read files is not in the list */
 } cli_read_files;
 
 void read_files_add(cli_read_files *read, const char *path);

@@ -1,4 +1,4 @@
-/* cli/overlay.c - pictures as files, with their overlays. */
+/* cli/overlay.c - writes pictures to files, with their overlays. */
 #include "overlay.h"
 
 #include <stdlib.h>
@@ -56,8 +56,8 @@ hl_status overlay_check_scene(hl_context *context, const cli_overlay *overlay, c
   return status;
 }
 
-/* Begins to write a picture's file: describes its page and sets the physical size that a file of pixels
- * states. False: the picture is written as it is, without a figure. */
+/* Begins to write a picture's file: describes its page, and sets the physical size that a file of pixels
+ * states. Returns false if the picture is written as it is, without a figure. */
 static bool begin(const cli_overlay *overlay, const hl_image *image, const hl_scene *scene, bool vectors,
                   hl_image_write_options *options, hl_figure *figure, hl_figure_panel *panel) {
   if (overlay == NULL) return false;

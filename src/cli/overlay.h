@@ -1,4 +1,5 @@
-/* cli/overlay.h - the overlays that options of `halflight render` ask for, and the files of pictures. */
+/* cli/overlay.h - draws the overlays that options of `halflight render` ask for, and writes the files of
+ * pictures. */
 #ifndef HL_CLI_OVERLAY_H
 #define HL_CLI_OVERLAY_H
 
@@ -8,13 +9,13 @@
 #define MILLIMETRES_PER_INCH 25.4
 
 typedef struct cli_overlay {
-  hl_overlay overlay; /* its texts are borrowed from the options, or from `texts` and `unit` */
+  hl_overlay overlay; /* the overlay, whose texts are borrowed from the options, or from `texts` and `unit` */
   hl_annotation notes[MAXIMUM_REPEATS];
   char *texts[MAXIMUM_REPEATS]; /* owned; of `notes` */
   char unit[40];                /* unit of --scale-bar */
-  double width;                 /* width from --width, millimetres; 0: not stated */
-  double pixels_per_inch;       /* the pixels per inch that files state, from --dpi; 0: they follow from
-                                 * --width, or files state none */
+  double width;                 /* the width from --width, in millimetres; 0 if it is not given */
+  double pixels_per_inch;       /* the pixels per inch that files state, from --dpi; 0 if they follow from
+                                 * --width, or if files state none */
   double font_points;           /* 0: the default */
   bool drawn;                   /* anything is drawn over pictures */
 } cli_overlay;
@@ -24,16 +25,16 @@ double overlay_unit(const char *name);
 
 void overlay_release(cli_overlay *overlay);
 
-/* Whether overlays, or a physical size that the file states, make a picture's file different from what its
- * scene alone describes. */
+/* Returns whether a picture's file has overlays or states a physical size, so that the scene alone does not
+ * describe the file. */
 bool overlay_is_any(const cli_overlay *overlay);
 
 /* Finds out, before a picture of the scene is made, whether all overlays can be drawn over it. */
 hl_status overlay_check_scene(hl_context *context, const cli_overlay *overlay, const hl_scene *scene,
                               hl_error *error);
 
-/* Writes a picture with its overlays, in the format that the path's ending names. options: the scene's, as
- * for hl_image_write(). overlay: may be null. */
+/* Writes a picture with its overlays, in the format that the path's ending names. options: the scene's
+ * options for writing, as for hl_image_write(). overlay: may be null. */
 hl_status overlay_write(hl_context *context, const cli_overlay *overlay, const hl_image *image,
                         const hl_scene *scene, const char *path, hl_image_write_options *options,
                         hl_error *error);

@@ -11,8 +11,8 @@
 #include "message.h"
 #include "text/hash.h"
 
-/* The known launchers: that of Open MPI; that of MPICH, Intel MPI and MVAPICH; and Slurm's srun, which starts
- * processes of either kind. */
+/* The known launchers: the launcher of Open MPI; the launcher of MPICH, Intel MPI and MVAPICH; and Slurm's
+ * srun, which starts processes of either kind. */
 static const launcher launchers[] = {
     {.rank_name = "OMPI_COMM_WORLD_RANK", .size_name = "OMPI_COMM_WORLD_SIZE", .mpi = HL_MPI_OPEN_MPI},
     {.rank_name = "PMI_RANK", .size_name = "PMI_SIZE", .mpi = HL_MPI_MPICH},
@@ -66,7 +66,7 @@ static uint64_t add_text(uint64_t hash, const char *text) {
   return hl_hash_bytes(hash, text, strlen(text));
 }
 
-/* Adds what is known of all voxels of a volume. */
+/* Adds the facts that are known about all voxels of a volume. */
 static uint64_t add_volume(uint64_t hash, const hl_volume *volume) {
   hl_volume_info info = {.struct_size = sizeof info};
   if (volume == NULL || hl_volume_get_info(volume, &info) != HL_OK) return hash;
@@ -92,7 +92,8 @@ static hl_status number_scene(hl_context *context, const hl_scene *scene, uint64
 }
 
 int ranks_compare(cli_host *host, hl_ranks *ranks, const hl_scene *scene) {
-  enum { PIECES = 4, BITS = 16 }; /* a float holds each piece exactly */
+  /* A number of 64 bits is sent as pieces of 16 bits, because a float holds such a piece exactly. */
+  enum { PIECES = 4, BITS = 16 };
   uint64_t hash = 0;
   hl_error error = {0};
   int size = hl_ranks_size(ranks), rank = hl_ranks_rank(ranks);
@@ -102,7 +103,7 @@ int ranks_compare(cli_host *host, hl_ranks *ranks, const hl_scene *scene) {
   float *pieces = calloc((size_t)size * PIECES, sizeof *pieces);
   if (pieces == NULL) return fail(EXIT_CODE_FAILURE, "out of memory");
   for (int n = 0; n < PIECES; n++) pieces[rank * PIECES + n] = (float)(hash >> (n * BITS) & 0xffff);
-  hl_ranks_sum(ranks, pieces, (size_t)size * PIECES); /* rank 0 has the pieces of all */
+  hl_ranks_sum(ranks, pieces, (size_t)size * PIECES); /* now rank 0 has the pieces of all ranks */
   int other = 0;
   for (int r = 1; rank == 0 && r < size && other == 0; r++)
     if (memcmp(pieces, pieces + r * PIECES, PIECES * sizeof *pieces) != 0) other = r;
@@ -124,14 +125,14 @@ void ranks_check(hl_ranks *ranks, int exit_code) {
 
 /* ---- failing before the ranks have joined ---- */
 
-/* Ends this process after a while, since the other processes may be no ranks, and never join. */
+/* Ends this process after some time, because the other processes may be no ranks, and may never join. */
 static void *stop_waiting(void *exit_code) {
   nanosleep(&(struct timespec){.tv_sec = 60}, NULL);
   _exit(*(const int *)exit_code);
 }
 
 void ranks_end_others(int exit_code) {
-  static int code; /* lives as long as the thread */
+  static int code; /* this variable must exist as long as the thread */
   pthread_t clock;
   hl_context_options options;
   hl_context *context = NULL;

@@ -1,4 +1,4 @@
-/* cli/sheet_font.c - see sheet_font.h: the letters of the looks' names. */
+/* cli/sheet_font.c - defines the letters of the looks' names. */
 #include "sheet_font.h"
 
 #include <string.h>

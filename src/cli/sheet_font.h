@@ -1,5 +1,5 @@
-/* cli/sheet_font.h - letters for the words under the pictures of a contact sheet. A letter has five by seven
- * dots, and two rows of dots below its line. */
+/* cli/sheet_font.h - defines the letters for the words under the pictures of a contact sheet. A letter has
+ * five by seven dots, and two rows of dots below its line. */
 #ifndef HL_CLI_SHEET_FONT_H
 #define HL_CLI_SHEET_FONT_H
 

@@ -1,5 +1,5 @@
-/* cli/suggest.c - suggestions for an unknown name: this program's
- * names for words of ParaView, VTK, ImageMagick, ffmpeg, Blender, Mitsuba and plotting libraries. */
+/* cli/suggest.c - finds suggestions for an unknown name: this program's names for words of ParaView, VTK,
+ * ImageMagick, ffmpeg, Blender, Mitsuba and plotting libraries. */
 #include "suggest.h"
 
 #include <stdbool.h>
@@ -102,7 +102,7 @@ static bool has_word(const char *words, const char *word) {
   return false;
 }
 
-/* Whether the list of options has the option in `meaning`, which may be followed by a value. */
+/* Returns whether the list of options has the option in `meaning`, which may be followed by a value. */
 static bool takes(const char *(*option)(const void *data, size_t index), const void *data,
                   const char *meaning) {
   const char *known;

@@ -1,6 +1,5 @@
-/* cli/animate/animate.c - `halflight animate INPUT`: a film of a scene in which numbers change from frame to
- * frame.
- */
+/* cli/animate/animate.c - implements `halflight animate INPUT`, which makes a film of a scene in which
+ * numbers change from frame to frame. */
 #define _GNU_SOURCE
 #include "animate.h"
 
@@ -96,17 +95,19 @@ static const cli_option animate_options[ANIMATE_OPTION_COUNT] = {
          .help = "keep the pictures, in a folder beside the film, named\nlike it with \"-frames\""},
 };
 
-/* Whether this command has an option of `render`: those that say what is shown and how. */
+/* Returns whether this command has an option of `render`. It has the options that decide what is shown, and
+ * in which way. */
 static bool has_render_option(size_t row) { return !render_is_of_picture((enum render_option)row); }
 
 /* One run. */
 typedef struct animate_job {
   cli_host host;
-  const cli_value *values, *render; /* values of the command's own options, and of the options of `render` */
+  const cli_value *values, *render; /* the values of the command's own options, and of the options of
+                                     * `render` */
   char **inputs;                    /* null after the last */
   cli_overlay overlay;              /* owned; drawn over each frame */
   char *input;
-  char *output; /* owned; a film, or the folder itself */
+  char *output; /* owned; the path of the film, or of the folder itself */
   char *folder; /* owned; of the pictures */
   bool film_wanted;
   int part, parts; /* part: from 0 */
@@ -199,7 +200,7 @@ static void find_motion(const animate_job *job, bool series, motion *found) {
       .turntable = turn};
 }
 
-/* Whether the first volume's file has several time steps. */
+/* Returns whether the first volume's file has several time steps. */
 static bool has_times(const animate_job *job) {
   const hl_scene_description *description = hl_scene_describe(job->scene);
   hl_volume_selection selection = {.struct_size = sizeof selection};
@@ -233,7 +234,7 @@ static int count_digits(int frames) {
   return digits;
 }
 
-/* Joins the pictures to a film, if all of them are there. */
+/* Joins the pictures to a film, if all of them exist. */
 static int finish(const animate_job *job, const animate_frames *frames) {
   double rate = frames_per_second(job);
   const int count = film_frames(job->film);

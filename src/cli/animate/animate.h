@@ -1,4 +1,4 @@
-/* cli/animate/animate.h - shared by the files of `halflight animate`. */
+/* cli/animate/animate.h - declares the functions that the files of `halflight animate` share. */
 #ifndef HL_CLI_ANIMATE_ANIMATE_H
 #define HL_CLI_ANIMATE_ANIMATE_H
 
@@ -13,21 +13,21 @@ typedef struct animate_frames {
   const char *folder;
   frames_style style;
   int digits; /* number of digits of a picture's number */
-  int done;   /* number of this run's pictures that are finished, those that were there before included */
+  int done;   /* number of this run's finished pictures, including pictures that existed before */
   int rendered;
 } animate_frames;
 
 /* The path of a picture; path: [size]. */
 void animate_frame_path(const animate_frames *frames, int frame, char *path, size_t size);
 
-/* Whether a frame's picture is there and was made of the frame's own scene. */
+/* Returns whether a frame's picture exists and was made from the frame's own scene. */
 bool animate_frame_is_there(const animate_frames *frames, int frame);
 
-/* Renders the pictures that are missing: every `parts`-th one, beginning with number `part` (from 0). Draws a
+/* Renders the missing pictures among every `parts`-th picture, beginning with number `part` (from 0). Draws a
  * progress bar with the estimated time to the end. Returns the exit code. */
 int animate_render(animate_frames *frames, int part, int parts);
 
-/* Whether all pictures of the film are there. */
+/* Returns whether all pictures of the film exist. */
 bool animate_is_complete(const animate_frames *frames);
 
 /* Joins the pictures to a film. Returns the exit code. */

@@ -1,8 +1,8 @@
-/* cli/animate/frames.c - the numbered pictures of `halflight animate`: pictures that are missing are
- * rendered; then pictures are joined to a film, and removed.
+/* cli/animate/frames.c - makes the numbered pictures of `halflight animate`. Missing pictures are rendered.
+ * Then all pictures are joined to a film, and removed.
  *
  * A picture carries its scene. A picture that carries the scene of its frame is kept and not rendered again.
- * So a run goes on where the last run stopped, and several runs can share a folder. */
+ * So a run continues where the last run stopped, and several runs can share a folder. */
 #define _GNU_SOURCE
 #include <errno.h>
 #include <stdio.h>

@@ -1,5 +1,5 @@
-/* cli/bench/bench.c - `halflight bench [INPUT ...]`: times frames of a moving scene with each kind of
- * shadows. */
+/* cli/bench/bench.c - implements `halflight bench [INPUT ...]`, which measures the times of frames of a
+ * moving scene with each kind of shadows. */
 #define _GNU_SOURCE
 #include "bench.h"
 
@@ -153,7 +153,8 @@ static int open_renderers(bench_job *job) {
   return EXIT_CODE_OK;
 }
 
-/* Processor time of all threads together. On a busy machine it is a better measure than the elapsed time. */
+/* The processor time of all threads together, in seconds. On a busy machine it is a better measure than the
+ * elapsed time. */
 static double processor_seconds(void) {
   struct timespec now;
   clock_gettime(CLOCK_PROCESS_CPUTIME_ID, &now);
@@ -251,8 +252,8 @@ static const bench_run *first_measured(const bench_result *result) {
   return &result->run[setting];
 }
 
-/* Milliseconds of one stage; stage may also be WHOLE_FRAME or PROCESSOR. NAN where the setting is not
- * supported. */
+/* The milliseconds of one stage. stage: a stage, WHOLE_FRAME or PROCESSOR. The result is NAN if the setting
+ * is not supported. */
 static double median_ms(const bench_run *run, int frames, int stage) {
   double *values = run->supported ? malloc((size_t)frames * sizeof *values) : NULL;
   if (values == NULL) return NAN;
@@ -270,7 +271,7 @@ static void print_pair(json_writer *json, const char *key, uint64_t filled, uint
   json_close(json);
 }
 
-/* The work of the last frame. */
+/* Prints the numbers of the last frame's work. */
 static void print_work(json_writer *json, const char *key, const hl_render_statistics *s) {
   json_open_object(json, key);
   json_text(json, "device", s->device);

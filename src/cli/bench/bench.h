@@ -1,4 +1,4 @@
-/* cli/bench/bench.h - shared by the files of `halflight bench`. */
+/* cli/bench/bench.h - declares the functions that the files of `halflight bench` share. */
 #ifndef HL_CLI_BENCH_BENCH_H
 #define HL_CLI_BENCH_BENCH_H
 
@@ -33,10 +33,10 @@ enum bench_setting {
 };
 extern const cli_choice bench_settings[SETTING_COUNT + 1]; /* their names, in that order */
 
-/* What changes from frame to frame. */
+/* The kinds of motion: the part of the scene that changes from frame to frame. */
 enum bench_move { MOVE_CAMERA, MOVE_LIGHT, MOVE_TF };
 
-/* One frame's seconds, in the order in which they are reported. */
+/* The stages of one frame whose times are measured, in the order of the report. */
 enum bench_stage {
   STAGE_PREPARE,
   STAGE_SORT,
@@ -51,8 +51,8 @@ enum bench_stage {
 };
 
 typedef struct bench_sample {
-  double frame, processor, stage[STAGE_COUNT]; /* seconds; `processor` is the time of all threads
-                                                * together */
+  double frame, processor, stage[STAGE_COUNT]; /* times in seconds; `processor` is the processor time of all
+                                                * threads together */
 } bench_sample;
 
 typedef struct bench_run {

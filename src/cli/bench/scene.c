@@ -1,4 +1,5 @@
-/* cli/bench/scene.c - the scenes of `halflight bench`: one for each setting and moment of the motion. */
+/* cli/bench/scene.c - makes the scenes of `halflight bench`. There is one scene for each setting and moment
+ * of the motion. */
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
@@ -9,7 +10,7 @@ static const double turn = 2 * 3.14159265358979323846;
 
 enum { SUBLIGHTS_SIDE = 4 };
 
-/* v turned about a unit axis (Rodrigues). */
+/* Returns the vector v turned about a unit axis (Rodrigues' formula). */
 static void rotate(double v[3], const double axis[3], double angle_rad) {
   double c = cos(angle_rad), s = sin(angle_rad), dot = v[0] * axis[0] + v[1] * axis[1] + v[2] * axis[2],
          turned[3];
@@ -27,8 +28,8 @@ static void turn_camera(hl_camera *camera, const double axis[3], double angle_ra
   for (int i = 0; i < 3; i++) camera->position[i] += camera->target[i];
 }
 
-/* Turns a light about the camera's target and up vector. A light that goes with the camera is described in
- * axes of its own: there the target is the origin and up is the second axis. */
+/* Turns a light about the camera's target and up vector. A light that moves with the camera is described in
+ * axes of its own, in which the target is the origin and up is the second axis. */
 static void turn_light(hl_light *light, const double target_in_world[3], const double axis_in_world[3],
                        double angle_rad) {
   static const double origin[3] = {0, 0, 0}, up[3] = {0, 1, 0};
@@ -40,7 +41,8 @@ static void turn_light(hl_light *light, const double target_in_world[3], const d
   for (int i = 0; i < 3; i++) light->position[i] += target[i];
 }
 
-/* Lights swing 30 degrees to either side: seen from the camera, they stay on their side of the volume. */
+/* Lights swing 30 degrees to either side, so that each light stays on its side of the volume, as seen from
+ * the camera. */
 static double light_angle(double at) { return turn / 12 * sin(turn * at); }
 
 static void set_shadows(hl_scene_description *description, hl_light *lights, enum bench_setting setting) {

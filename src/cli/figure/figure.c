@@ -1,5 +1,5 @@
-/* cli/figure/figure.c - `halflight figure FIGURE.json`: pictures side by side on a page, which share a
- * camera, a light or a range of values.
+/* cli/figure/figure.c - implements `halflight figure FIGURE.json`, which draws pictures side by side on a
+ * page. The pictures may share a camera, a light or a range of values.
  *
  * All scenes are made before the first picture, so that a panel which cannot be drawn is refused at once. */
 #define _GNU_SOURCE
@@ -48,7 +48,8 @@ typedef struct figure_job {
 
 /* ---- scenes ---- */
 
-/* Gives a panel the width of its place, in pixels, and the shape that it asks for. */
+/* Gives a panel's picture the width of the panel's place, in pixels, and the proportions that the panel asks
+ * for. */
 static void size_panel(const figure_page *page, figure_panel *panel) {
   int width = (int)fmax(1, round(panel->place.width / MILLIMETRES_PER_INCH * page->pixels_per_inch));
   hl_scene_description shape;
@@ -140,8 +141,8 @@ static int read_options(figure_job *job, figure_panel *panel) {
   return exit_code;
 }
 
-/* Places panels row by row, as many in a row as fit into the page's width. Insets are placed with their
- * panels. */
+/* Places panels row by row. A row has the number of panels that fit into the page's width. Insets are placed
+ * with their panels. */
 static void place_widths(figure_page *page) {
   int outer = 0;
   for (int p = 0; p < page->count; p++) outer += page->panels[p].inset.of < 0;
@@ -187,8 +188,9 @@ static double place_panels(figure_page *page) {
   return top + high;
 }
 
-/* Whether a file is a picture as it is: a PNG without a scene in it, OpenEXR, Radiance HDR, or an .npy of
- * R, G, B and A as `halflight render` writes it. Any other .npy is a volume. */
+/* Returns whether a file is a picture that need not be rendered: a PNG without a scene in it, OpenEXR,
+ * Radiance HDR, or an .npy file of R, G, B and A as `halflight render` writes it. Any other .npy file is a
+ * volume. */
 static bool is_plain_picture(const char *path) {
   size_t length = 0;
   hl_image_about about = {.struct_size = sizeof about};

@@ -1,4 +1,4 @@
-/* cli/figure/panels.c - reads FIGURE.json of `halflight figure`.
+/* cli/figure/panels.c - reads the file FIGURE.json of `halflight figure`.
  *
  * A panel's keys are "input", "letter", "aspect", "inset" and the options of `halflight render`. The options
  * are put on a command line and parsed by the parser of `render`, so that they mean the same. The names of
@@ -23,7 +23,7 @@
 
 enum { MOST_WORDS = 4 * MAXIMUM_OPTIONS, MOST_KEY = 40 };
 
-/* The reading of one FIGURE.json. Errors name the file and the place in it. */
+/* The state of reading one FIGURE.json. Errors name the file and the place in it. */
 typedef struct page_reading {
   const char *path;
   figure_page *page;
@@ -32,7 +32,7 @@ typedef struct page_reading {
 
 /* ---- names of files ---- */
 
-/* Whether a text, or the part of it after '=', is a name that leads out of the folder. */
+/* Returns whether a text, or the part of it after '=', is a name that leads out of the folder. */
 static bool leads_out(const char *text) {
   const char *equals = strchr(text, '=');
   for (const char *at = text; at != NULL; at = at == text && equals != NULL ? equals + 1 : NULL) {
@@ -43,8 +43,8 @@ static bool leads_out(const char *text) {
   return false;
 }
 
-/* Whether an option must not be given for a panel: the page sets it for all panels, or it concerns the whole
- * run. */
+/* Returns whether an option must not be given for a panel, because the page sets it for all panels, or
+ * because it concerns the whole run. */
 static bool is_of_the_page(int which) {
   static const int kept[] = {RENDER_OUTPUT,      RENDER_FORMAT, RENDER_SIZE,        RENDER_DEPTH,
                              RENDER_NO_METADATA, RENDER_LAYERS, RENDER_WIDTH,       RENDER_DPI,
@@ -88,7 +88,7 @@ static int find_option(const char *name) {
   return -1;
 }
 
-/* One value of an option: a text, a number, or several numbers. */
+/* Reads one value of an option: a text, a number, or several numbers. */
 static int add_value(const page_reading *reading, figure_panel *panel, int which, const json_t *value) {
   char text[160] = "";
   const char *name = render_options[which].name;
@@ -115,7 +115,8 @@ static int add_value(const page_reading *reading, figure_panel *panel, int which
               name);
 }
 
-/* An option as JSON has it: true, a value, or a list of values where the option may be given again. */
+/* Reads an option from JSON. Its value is true, a value, or a list of values if the option may be given
+ * several times. */
 static int add_json_option(const page_reading *reading, figure_panel *panel, const char *key,
                            const json_t *value) {
   char name[MOST_KEY];
@@ -206,7 +207,7 @@ static int read_corner(const page_reading *reading, figure_panel *panel, const j
   return EXIT_CODE_OK;
 }
 
-/* Whether an inset states a direction or a projection of its own, and is therefore framed anew. */
+/* Returns whether an inset states a direction or a projection of its own, and is therefore framed anew. */
 static bool has_own_view(const json_t *inset) {
   static const int framing[] = {RENDER_VIEW, RENDER_UP,   RENDER_AZIMUTH, RENDER_ELEVATION,
                                 RENDER_ROLL, RENDER_FOVY, RENDER_ORTHO};
@@ -215,9 +216,9 @@ static bool has_own_view(const json_t *inset) {
   return false;
 }
 
-/* Reads how many times as large as its panel an inset shows things. The inset then has the panel's camera,
- * and its "zoom" is no option of `halflight render`: it is removed from the inset's keys. An inset with a
- * view of its own keeps the option. */
+/* Reads the factor by which an inset shows things larger than its panel. The inset then has the panel's
+ * camera, and its "zoom" is no option of `halflight render`, so that the key is removed from the inset's
+ * keys. An inset with a view of its own keeps the option. */
 static int read_zoom(const page_reading *reading, figure_panel *panel, json_t *inset) {
   if (has_own_view(inset)) return EXIT_CODE_OK;
   const json_t *zoom = json_object_get(inset, "zoom");
@@ -232,7 +233,7 @@ static int read_zoom(const page_reading *reading, figure_panel *panel, json_t *i
   return EXIT_CODE_OK;
 }
 
-/* Joins two objects of options. Where both have an option of one name, the value in `above` counts. Both
+/* Joins two objects of options. If both have an option of the same name, the value in `above` counts. Both
  * objects may be null. */
 static json_t *join(const json_t *below, const json_t *above) {
   json_t *joined = json_object();

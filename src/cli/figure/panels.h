@@ -1,4 +1,4 @@
-/* cli/figure/panels.h - the content of a FIGURE.json of `halflight figure`: a page, and the pictures on
+/* cli/figure/panels.h - reads the content of a FIGURE.json of `halflight figure`: a page, and the pictures on
  * it. */
 #ifndef HL_CLI_FIGURE_PANELS_H
 #define HL_CLI_FIGURE_PANELS_H
@@ -7,12 +7,12 @@
 
 enum { FIGURE_MOST_PANELS = 64 };
 
-/* Where an inset lies in another panel. */
+/* The place of an inset in another panel. */
 typedef struct figure_inset {
-  int of;            /* the number of the panel in which this inset lies; -1: the panel is no inset */
+  int of;            /* the number of the panel in which this inset lies; -1 if the panel is no inset */
   double part;       /* the inset's width divided by the width of the panel in which it lies */
   bool right, lower; /* whether the inset lies at the right and at the lower side of that panel */
-  double zoom;       /* the inset shows the middle of that panel this many times as large; 0: the inset has a
+  double zoom;       /* the factor by which the inset enlarges the middle of that panel; 0 if the inset has a
                       * view of its own */
 } figure_inset;
 
@@ -28,11 +28,11 @@ typedef struct figure_panel {
   size_t word_count;
   char *operands[MAXIMUM_OPERANDS + 1]; /* null after the last */
   char *letter;                         /* owned; null: none */
-  double aspect;                        /* width over height; 0: the scene's */
+  double aspect;                        /* width divided by height; 0 stands for the scene's proportions */
   figure_inset inset;
   bool bare;
   char size_text[RENDER_SIZE_TEXT]; /* text of --size */
-  hl_scene *scene;                  /* owned; null: the panel's input is a picture without a scene */
+  hl_scene *scene;                  /* owned; null if the panel's input is a picture without a scene */
   hl_image *image;                  /* owned */
   cli_overlay overlay;
   figure_place place;
@@ -46,7 +46,8 @@ typedef struct figure_page {
   int columns;
   double background[3];
   bool transparent;
-  bool share_camera, share_light, share_function; /* the panel shares these properties of the first panel */
+  bool share_camera, share_light, share_function; /* whether the panel shares these properties of the first
+                                                   * panel */
 } figure_page;
 
 /* Reads the file. Call figure_page_release() even after a failure. Returns the exit code. */

@@ -1,4 +1,5 @@
-/* cli/info/formats.c - `halflight info --formats`: the formats that this program reads and writes. */
+/* cli/info/formats.c - implements `halflight info --formats`, which lists the formats that this program reads
+ * and writes. */
 #include "formats.h"
 
 #include <halflight/halflight.h>
@@ -23,7 +24,7 @@ static const format_kind kinds[] = {
     {"figures", "figures", hl_figure_get_format}};
 enum { KIND_COUNT = sizeof kinds / sizeof *kinds };
 
-/* Gets format number `index` of a kind. False where the kind has no more formats. */
+/* Gets format number `index` of a kind. Returns false if the kind has no more formats. */
 static bool get_format(const format_kind *kind, size_t index, hl_file_format *format) {
   *format = (hl_file_format){.struct_size = sizeof *format};
   if (kind->get(index, format) != HL_OK) return false;

@@ -1,4 +1,5 @@
-/* cli/info/info.c - `halflight info FILE`: what a volume, a scene or a mesh file holds. */
+/* cli/info/info.c - implements `halflight info FILE`, which prints the properties of a volume, a scene or a
+ * mesh. */
 #include <errno.h>
 #include <inttypes.h>
 #include <stdio.h>
@@ -48,7 +49,7 @@ static int info_of_volume(cli_host *host, const cli_value *values, const cli_inp
   hl_error error = {0};
   json_writer json = {0};
   input_load_options(&values[INFO_ARRAY], &values[INFO_SPACING], &load);
-  load.pixels = input_picture_side(); /* what is told is of the resolution that a picture shows */
+  load.pixels = input_picture_side(); /* the properties are printed for the resolution that a picture shows */
   hl_status status = input_load_volume(host->context, input, &load, &volume, &error);
   int exit_code = status == HL_OK
                       ? info_tell_volume(host, values[INFO_JSON].given ? &json : NULL, input->title, volume)
@@ -57,8 +58,8 @@ static int info_of_volume(cli_host *host, const cli_value *values, const cli_inp
   return exit_code == EXIT_CODE_OK ? finish_stdout() : exit_code;
 }
 
-/* Prints what a scene is like: its picture, the numbers of its volumes, lights and so on, and each volume as
- * for a volume file. picture: the picture that holds the scene; null: the scene is a file. */
+/* Prints the properties of a scene: its picture, the numbers of its volumes, lights and so on, and each
+ * volume as for a volume file. picture: the picture that holds the scene; null if the scene is a file. */
 static int tell_scene(cli_host *host, bool as_json, const char *title, const hl_scene_description *scene,
                       const info_picture *picture) {
   json_writer json = {0};
@@ -94,7 +95,7 @@ static int tell_scene(cli_host *host, bool as_json, const char *title, const hl_
   return exit_code == EXIT_CODE_OK ? finish_stdout() : exit_code;
 }
 
-/* Refuses the options that choose among what a volume file holds. */
+/* Refuses the options that choose a part of a volume file. */
 static int refuse_reading(const cli_value *values, const char *title, const char *what) {
   for (int which = INFO_ARRAY; which <= INFO_SPACING; which++)
     if (values[which].given)
@@ -103,7 +104,8 @@ static int refuse_reading(const cli_value *values, const char *title, const char
   return EXIT_CODE_OK;
 }
 
-/* Tells what a picture's own metadata say of its scene, whose files cannot be read. */
+/* Prints the facts about a picture's scene that the picture's own metadata state, because the files of the
+ * scene cannot be read. */
 static int tell_without_files(const info_picture *picture, const char *title, bool as_json,
                               const hl_error *error) {
   if (as_json) return info_of_plain_picture(picture, title, true);
@@ -140,7 +142,7 @@ static int info_of_picture(cli_host *host, const cli_value *values, const cli_in
   return exit_code;
 }
 
-/* An OpenEXR or Radiance HDR picture. */
+/* Prints the properties of an OpenEXR or Radiance HDR picture. */
 static int info_of_light(cli_host *host, const cli_value *values, const char *path) {
   size_t length = 0;
   errno = 0;
@@ -200,7 +202,7 @@ static int info_of_mesh(cli_host *host, const cli_value *values, const char *pat
   return exit_code == EXIT_CODE_OK ? finish_stdout() : exit_code;
 }
 
-/* --formats stands alone or with --json. */
+/* Refuses --formats together with options other than --json. */
 static int run_formats(const cli_value *values, char **operands) {
   for (int which = INFO_FORMATS + 1; which < INFO_OPTION_COUNT; which++)
     if (values[which].given)
@@ -211,8 +213,8 @@ static int run_formats(const cli_value *values, char **operands) {
   return info_formats(values[INFO_JSON].given);
 }
 
-/* Whether a file is a picture of linear light. The headers of ANALYZE volumes end in .hdr, too, so that the
- * mark of Radiance HDR counts there. */
+/* Returns whether a file is a picture of linear light. The headers of ANALYZE volumes also end in .hdr, so
+ * that such a file is a picture only if it has the mark of Radiance HDR. */
 static bool is_light(const char *path) {
   char mark[2] = {0};
   if (has_extension(path, ".exr")) return true;

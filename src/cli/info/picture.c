@@ -1,5 +1,5 @@
-/* cli/info/picture.c - `halflight info PICTURE`: the picture's size and bits, and what its metadata say of
- * its scene, whether or not the scene's files are there. */
+/* cli/info/picture.c - implements `halflight info PICTURE`, which prints the picture's size and bits, and the
+ * facts about its scene that its metadata state. The files of the scene need not exist. */
 #include "picture.h"
 
 #include <inttypes.h>

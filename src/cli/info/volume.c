@@ -1,5 +1,5 @@
-/* cli/info/volume.c - what a volume holds: its arrays, channels, labels, range and histogram, as text and as
- * JSON. */
+/* cli/info/volume.c - prints the properties of a volume as text and as JSON: its arrays, channels, labels,
+ * range and histogram. */
 #include "volume.h"
 
 #include <inttypes.h>
@@ -9,7 +9,7 @@
 
 #include "picture.h"
 
-/* Prints the file's arrays, and which array and component the volume was read from. */
+/* Prints the file's arrays, and the array and the component from which the volume was read. */
 static void print_json_arrays(json_writer *json, const hl_volume *volume) {
   hl_volume_array array = {.struct_size = sizeof array}, chosen = {.components = 1};
   json_open_array(json, "arrays");
@@ -30,7 +30,7 @@ static void print_json_arrays(json_writer *json, const hl_volume *volume) {
   else json_whole_number(json, "component", (uint64_t)chosen.component);
 }
 
-/* Prints the numbers of time steps, channels and resolutions in the file, and which of them were read. */
+/* Prints the numbers of time steps, channels and resolutions in the file, and the ones that were read. */
 static void print_json_selection(json_writer *json, const hl_volume *volume) {
   hl_volume_selection selection = {.struct_size = sizeof selection};
   if (hl_volume_get_selection(volume, &selection) != HL_OK) return;
@@ -87,7 +87,7 @@ static const char *color_text(const double srgb[3], char text[8]) {
   return text;
 }
 
-/* Whether the file tells anything of a channel. */
+/* Returns whether the file describes a channel. */
 static bool is_told(const hl_volume_channel *channel) {
   return channel->name[0] != '\0' || channel->has_color || isfinite(channel->window[0]);
 }
@@ -167,8 +167,8 @@ static void print_label_maps(json_writer *json, const char *path, const hl_volum
   if (json != NULL) json_close(json);
 }
 
-/* Whether a file's only array has no more to tell than its type and its time steps, which are printed on
- * lines of their own. */
+/* Returns whether the list of arrays can be left out, because the file has a single array, whose type and
+ * time steps are printed on lines of their own. */
 static bool is_plain(const hl_volume *volume, const hl_volume_array *array) {
   hl_volume_selection s = {.struct_size = sizeof s};
   bool steps = hl_volume_get_selection(volume, &s) == HL_OK && array->components == s.times;
@@ -259,8 +259,8 @@ static void print_json(json_writer *json, const char *path, const hl_volume *vol
   json_close(json);
 }
 
-/* Prints a histogram of sixteen bars. Their lengths are logarithmic: there are often a thousand times as many
- * voxels of air as of anything else. */
+/* Prints a histogram of sixteen bars. The lengths of the bars are logarithmic, because the voxels of air are
+ * often a thousand times more numerous than all others. */
 static void print_histogram(const hl_volume_info *info) {
   enum { BARS = 16, LONGEST = 40, BINS = HL_HISTOGRAM_BINS / BARS };
   uint64_t count[BARS] = {0}, most = 0, total = 0;
@@ -281,8 +281,8 @@ static void print_histogram(const hl_volume_info *info) {
   printf("  %11.5g\n", info->range[1]);
 }
 
-/* The text of the volume's least or greatest data value; whole numbers have all their digits. end: 0: the
- * least; 1: the greatest. */
+/* The text of the volume's least or greatest data value; whole numbers have all their digits. end: 0 for the
+ * least value, 1 for the greatest. */
 static const char *value_text(const hl_volume *volume, int end, double value,
                               char text[HL_NUMBER_TEXT_BYTES]) {
   bool whole = value == floor(value) && fabs(value) <= 0x1p64;

@@ -1,12 +1,12 @@
-/* cli/info/volume.h - what a volume holds. */
+/* cli/info/volume.h - prints the properties of a volume. */
 #ifndef HL_CLI_INFO_VOLUME_H
 #define HL_CLI_INFO_VOLUME_H
 
 #include "cli/host.h"
 #include "cli/json_writer.h"
 
-/* Prints what a volume is like. json: the object is added there; null: text is printed. path: the name of the
- * volume's file, from which its kind is guessed, too. Returns the exit code. */
+/* Prints the properties of a volume. json: the writer to which an object is added; if null, text is printed.
+ * path: the name of the volume's file, from which its kind is guessed, too. Returns the exit code. */
 int info_tell_volume(cli_host *host, json_writer *json, const char *path, hl_volume *volume);
 
 #endif

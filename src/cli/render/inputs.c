@@ -1,8 +1,8 @@
-/* cli/render/inputs.c - one scene from the operands of `halflight render`: a scene, or volumes.
+/* cli/render/inputs.c - makes one scene from the operands of `halflight render`: a scene, or volumes.
  *
- * Where there are several volumes, each keeps the look that it would have alone. Light, background and render
- * settings come from the first volume; the camera frames all volumes, and the distance between sheets is the
- * one that the finest volume needs. */
+ * If there are several volumes, each of them keeps the look that it would have alone. Light, background and
+ * render settings come from the first volume; the camera frames all volumes, and the distance between sheets
+ * suits the finest volume. */
 #include <limits.h>
 #include <math.h>
 #include <stdio.h>
@@ -55,8 +55,8 @@ static hl_space space_of(const hl_scene *scene) {
   return known ? info.space : HL_SPACE_UNKNOWN;
 }
 
-/* The length in pixels that a volume on the command line fills, by which its resolution is chosen: the
- * picture's longer side times the zoom. */
+/* The length, in pixels, that a volume on the command line fills. The volume's resolution is chosen by it. It
+ * is the picture's longer side times the zoom. */
 static int pixels_of(const cli_value *values) {
   hl_scene_description description;
   hl_scene_description_defaults(&description);
@@ -128,7 +128,8 @@ static int load_each(cli_host *host, const cli_value *values, cli_input *inputs,
     bool bare = inputs[n].kind == INPUT_VOLUME;
     inputs[n].look = render_look_name(values);
     inputs[n].smooth = values[RENDER_SMOOTH].given ? &values[RENDER_SMOOTH].number[0] : NULL;
-    /* A pipe cannot be read again. --smooth is measured in voxels of the resolution that is to be seen. */
+    /* A volume that must be read at its final resolution gets no coarser first resolution: a pipe cannot be
+     * read again, and --smooth is measured in voxels of the resolution that the picture shows. */
     bool is_read_once = inputs[n].bytes != NULL || inputs[n].smooth != NULL;
     options.preview_pixels = is_read_once ? 0 : host->preview_pixels;
     hl_status status = bare && render_has_channels(values)

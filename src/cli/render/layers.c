@@ -1,4 +1,5 @@
-/* cli/render/layers.c - `halflight render --layers`: adds layers to the picture, and checks where they go. */
+/* cli/render/layers.c - implements `halflight render --layers`: adds layers to the picture, and checks that
+ * their files can be written. */
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>

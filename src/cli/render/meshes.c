@@ -1,5 +1,5 @@
-/* cli/render/meshes.c - meshes among the operands of `halflight render`: they are added to the scene that the
- * other operands make, each in a colour of its own. */
+/* cli/render/meshes.c - adds meshes among the operands of `halflight render` to the scene that the other
+ * operands make. Each mesh gets a colour of its own. */
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>

@@ -1,4 +1,4 @@
-/* cli/render/option_checks.c - which options of `halflight render` exclude each other. */
+/* cli/render/option_checks.c - refuses options of `halflight render` that exclude each other. */
 #include <math.h>
 #include <string.h>
 
@@ -7,8 +7,8 @@
 #include "cli/output.h"
 #include "render.h"
 
-/* The checks below judge OUT by the ending of its name. Where --format is given, they judge one of these
- * names instead. There is one name for each choice of --format, in the order of the choices. */
+/* The checks below judge OUT by the ending of its name. If --format is given, they judge one of these names
+ * instead. There is one name for each choice of --format, in the order of the choices. */
 static const char *const format_extensions[] = {"-.png", "-.exr", "-.npy", "-.tif", "-.pdf", "-.svg"};
 
 bool render_is_of_picture(enum render_option which) {
@@ -34,7 +34,7 @@ bool render_is_of_picture(enum render_option which) {
   }
 }
 
-/* Exposure, tone and depth are for pictures on a screen. */
+/* Refuses --exposure, --tone and --depth for .exr and .npy files, which hold linear light. */
 static int check_linear_output(const cli_value *values, bool named) {
   static const int of_png[] = {RENDER_EXPOSURE, RENDER_TONE, RENDER_DEPTH};
   const cli_value *output = &values[RENDER_OUTPUT], *format = &values[RENDER_FORMAT];

@@ -1,4 +1,4 @@
-/* cli/render/options.c - the table of options of `halflight render`. */
+/* cli/render/options.c - defines the table of options of `halflight render`. */
 #include <math.h>
 #include <string.h>
 

@@ -14,8 +14,8 @@ static const double default_pixels_per_inch = 300;
 
 /* ---- reading ---- */
 
-/* Reads a length, "89mm", "8.9cm", "3.5in" or "252pt", and converts it to millimetres; 0: the text is no such
- * length. */
+/* Reads a length, "89mm", "8.9cm", "3.5in" or "252pt", and converts it to millimetres; 0 if the text is no
+ * such length. */
 static double read_width(const char *text) {
   char *rest;
   double number = hl_plain_number(text, &rest);
@@ -24,8 +24,8 @@ static double read_width(const char *text) {
   return width >= 1 && width <= 5000 ? width : 0;
 }
 
-/* Reads the value of --scale-bar: a length ("auto", "50um" or "5"), and the depth at which the bar is right
- * ("@target" or "@300"). */
+/* Reads the value of --scale-bar: a length ("auto", "50um" or "5"), and the depth at which the bar's length
+ * is right ("@target" or "@300"). */
 static int read_scale_bar(const cli_value *value, cli_overlay *made) {
   char text[80];
   snprintf(text, sizeof text, "%s", value->text);

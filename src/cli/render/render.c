@@ -1,5 +1,5 @@
-/* cli/render/render.c - `halflight render INPUT`: loads a scene, changes it by the options, renders it,
- * writes the picture and reports. */
+/* cli/render/render.c - implements `halflight render INPUT`: loads a scene, changes it by the options,
+ * renders it, writes the picture and reports. */
 #define _GNU_SOURCE
 #include "render.h"
 
@@ -13,7 +13,7 @@
 #include "cli/output.h"
 #include "cli/ranks.h"
 
-/* One run, from INPUT to OUT. */
+/* The state of one run, from INPUT to OUT. */
 typedef struct render_job {
   cli_host host;
   cli_value values[RENDER_OPTION_COUNT]; /* --size is set by --width */
@@ -30,7 +30,7 @@ typedef struct render_job {
   hl_image *image;      /* owned */
   render_layers layers; /* owned */
   cli_overlay overlay;  /* owned */
-  hl_ranks *ranks;      /* owned; the ranks of --strips-over-ranks and --volume-over-ranks; null: this
+  hl_ranks *ranks;      /* owned; the ranks of --strips-over-ranks and --volume-over-ranks; null if this
                          * process is alone */
   double started;       /* seconds of clock_seconds() */
   render_result result;
@@ -38,7 +38,7 @@ typedef struct render_job {
 
 static const char *const format_names[] = {"png", "exr", "npy", "tif", "pdf", "svg"};
 
-/* The extension that --format asks for; .png without it. */
+/* The extension that --format asks for; .png if --format is not given. */
 static const char *wanted_extension(const cli_value *values) {
   static const char *const extensions[] = {".png", ".exr", ".npy", ".tif", ".pdf", ".svg"};
   return extensions[values[RENDER_FORMAT].given ? values[RENDER_FORMAT].choice : 0];
@@ -50,7 +50,7 @@ static const char *nameable(const char *input) {
   return strncmp(input, "/dev/fd/", 8) == 0 ? "pipe" : input;
 }
 
-/* Whether the command only prints a text, and makes no picture. */
+/* Returns whether the command only prints a text, and makes no picture. */
 static bool prints_text(const cli_value *values) {
   return values[RENDER_PRINT_SCENE].given || values[RENDER_PRINT_PLAN].given;
 }
@@ -63,13 +63,13 @@ static char *default_output(const render_job *job) {
   return output_default_name(nameable(job->input.first), again ? "-again.png" : extension);
 }
 
-/* The picture's name by --output, in which %s is INPUT's name. Null without memory. */
+/* The picture's name by --output, in which %s is INPUT's name. Null if memory is short. */
 static char *named_output(const render_job *job) {
   const char *output = job->values[RENDER_OUTPUT].text;
   return output_has_name(output) ? output_name_picture(output, nameable(job->input.first)) : strdup(output);
 }
 
-/* Decides where the picture goes: to the path of --output, or to a name made from INPUT. */
+/* Chooses the picture's path: the path of --output, or a name that is made from INPUT. */
 static int choose_output(render_job *job) {
   const cli_value *values = job->values, *output = &values[RENDER_OUTPUT];
   job->to_stdout = output->given && strcmp(output->text, "-") == 0;
@@ -153,7 +153,7 @@ static uint64_t count_voxels(const hl_scene_description *description) {
   return voxels;
 }
 
-/* The layers to render; null: none. */
+/* The layers to render; null if there are none. */
 static const hl_layers *wanted_layers(const render_job *job) {
   return job->values[RENDER_LAYERS].given ? &job->layers.all : NULL;
 }
@@ -249,7 +249,8 @@ static hl_status describe_frame(const render_job *job, char **text, hl_error *er
   return status;
 }
 
-/* --print-scene, --print-plan: prints the scene that would be rendered, or the plan of its frame. */
+/* Does the work of --print-scene and --print-plan: prints the scene that would be rendered, or the plan of
+ * its frame. */
 static int job_print(render_job *job) {
   char *text = NULL;
   hl_error error = {0};
@@ -288,8 +289,8 @@ static int job_write(render_job *job) {
   return status == HL_OK ? exit_code : host_fail(&job->host, PHASE_RUN, status, &error);
 }
 
-/* Finds out, for the report, which kind of data a bare volume was taken for, and which look to try next. Only
- * volumes whose transfer function was chosen by their kind have such a report. */
+/* Finds, for the report, the kind of data for which a bare volume was taken, and the look that a user may try
+ * next. Only volumes whose transfer function was chosen by their kind have such a report. */
 static void find_choice(render_job *job) {
   const hl_scene_description *description = job->result.description;
   bool wanted = job->values[RENDER_JSON].given || (!job->host.quiet && isatty(STDERR_FILENO));

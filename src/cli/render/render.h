@@ -1,4 +1,4 @@
-/* cli/render/render.h - shared by the files of `halflight render`. */
+/* cli/render/render.h - declares the functions that the files of `halflight render` share. */
 #ifndef HL_CLI_RENDER_RENDER_H
 #define HL_CLI_RENDER_RENDER_H
 
@@ -106,21 +106,21 @@ extern const cli_choice instruction_set_choices[];
 
 extern const cli_option render_options[RENDER_OPTION_COUNT];
 
-/* Whether an option is about a single picture or its file. Commands that make several pictures do not have
- * such options. */
+/* Returns whether an option concerns a single picture or its file. Commands that make several pictures do not
+ * have such options. */
 bool render_is_of_picture(enum render_option which);
 
 /* render_is_series() tells whether the operands or the options ask for a series: a picture of each of several
  * files. render_series() makes these pictures. motion: the numbers that change from file to file
- * (film/film.h); its context, scene and frames are not used; null: nothing changes. *count: set to the number
- * of files, or of time steps; may be null. */
+ * (film/film.h); its context, scene and frames are not used; null if nothing changes. *count: set to the
+ * number of files, or of time steps; may be null. */
 struct film_options;
 bool render_is_series(const cli_value *values, char **operands);
 int render_series(const cli_value *values, char **operands, const struct film_options *motion, int *count);
 /* --views: pictures of several sides. */
 int render_views(const cli_value *values, char **operands);
 
-/* Whether the operand is a pattern of scenes' names, as 'fig*.json'. */
+/* Returns whether the operand is a pattern of scenes' names, such as 'fig*.json'. */
 bool render_are_scenes(char **operands);
 
 /* Makes the picture of one scene; returns the exit code. */
@@ -128,7 +128,7 @@ typedef int render_one_fn(const cli_value *values, char **operands);
 
 /* Renders each scene that the pattern finds; returns the exit code. */
 int render_scenes(const cli_value *values, char **operands, render_one_fn *render_one);
-/* Whether one of the operands is a pattern that stands for several files. */
+/* Returns whether one of the operands is a pattern that stands for several files. */
 bool render_has_pattern(char **operands);
 
 /* Refuses options that contradict each other. */
@@ -136,15 +136,16 @@ int render_check_options(const cli_value *values);
 
 /* Divides operands by their names into meshes and others; both lists end with null. */
 void render_part_meshes(hl_context *context, char **operands, char **meshes, char **others);
-/* Loads meshes and adds them to a scene. Their colours are those of hl_surface_color(), from number `first`
- * on. If *scene is null, a scene is made for the meshes. bare: the camera frames the meshes, too. */
+/* Loads meshes and adds them to a scene. Their colours are the colours of hl_surface_color(), from number
+ * `first` on. If *scene is null, a scene is made for the meshes. bare: whether the camera frames the meshes,
+ * too. */
 int render_add_meshes(cli_host *host, char *const *paths, size_t first, bool bare, hl_scene **scene);
 
-/* Whether the options say that a bare volume is itself a label map. */
+/* Returns whether the options say that a bare volume is itself a label map. */
 bool render_is_label_map(const cli_value *values);
 
 /* Makes the scene of a label map's layers, with the names of --label-table for the labels. It shows the
- * labels that --show names; labels of --show that the map lacks are passed over. */
+ * labels that --show names; labels of --show that the map lacks are ignored. */
 hl_status render_load_label_map(cli_host *host, const cli_value *values, const char *path,
                                 const hl_volume_load_options *reading, hl_scene **scene, hl_error *error);
 
@@ -153,12 +154,12 @@ hl_status render_load_label_map(cli_host *host, const cli_value *values, const c
 int render_load_volumes(cli_host *host, const cli_value *values, char **operands, bool *bare,
                         hl_scene **scene);
 
-/* Reads the channels that --channel names. *count becomes their number; it becomes 0 for "all" and where the
+/* Reads the channels that --channel names. *count becomes their number; it becomes 0 for "all", and if the
  * option was not given. Other values are refused. */
 int render_channels(const cli_value *values, int channels[HL_CHANNELS_MOST], size_t *count);
 
-/* Whether --channel may ask for more than one channel; "all" counts as several, though a file may have only
- * one. */
+/* Returns whether --channel may ask for more than one channel; "all" counts as several, although a file may
+ * have only one. */
 bool render_has_channels(const cli_value *values);
 
 /* Finds the options for loading volumes that the command line asks for. */
@@ -171,18 +172,18 @@ void render_load_options(const cli_value *values, hl_volume_load_options *option
 int render_load_inputs(cli_host *host, const cli_value *values, char **operands, bool *bare,
                        hl_scene **scene);
 
-/* Puts the input's name before an error line that begins with a JSON pointer into the scene. bare: the scene
- * was made for volume files. */
+/* Puts the input's name before an error line that begins with a JSON pointer into the scene. bare: whether
+ * the scene was made for volume files. */
 void render_name_scene(const char *input, bool bare, hl_error *error);
 
-/* Applies the options to *scene, which becomes a new scene (hl_scene_compose()). bare: the scene was made for
- * volume files. Returns the exit code. */
+/* Applies the options to *scene, which becomes a new scene (hl_scene_compose()). bare: whether the scene was
+ * made for volume files. Returns the exit code. */
 int render_change_scene(cli_host *host, const cli_value *values, bool bare, hl_scene **scene);
 
 /* Refuses options about the scene that contradict each other or cannot be read. */
 int render_check_scene_options(const cli_value *values);
 
-/* The library's look that --look asks for; null: none, or a maximum projection. */
+/* The library's look that --look asks for; null if it asks for none, or for a maximum projection. */
 const char *render_look_name(const cli_value *values);
 
 /* The layers that --layers asks for; their buffers are owned by the picture. */
@@ -192,9 +193,8 @@ typedef struct render_layers {
 } render_layers;
 
 /* Adds the layers "ambient", "light0", "light0_shadow", ..., "depth_first", "depth_mean", "normal" and
- * "object" to the picture, "emission" where a volume shines by itself, "sky" and "sky_shadow" where the scene
- * has a sky. Call render_layers_release() even after a failure.
- */
+ * "object" to the picture, "emission" if a volume shines by itself, and "sky" and "sky_shadow" if the scene
+ * has a sky. Call render_layers_release() even after a failure. */
 hl_status render_layers_create(hl_image *image, const hl_scene_description *description,
                                render_layers *layers, hl_error *error);
 void render_layers_release(render_layers *layers);
@@ -214,16 +214,17 @@ int render_overlay_read(const cli_value *values, cli_overlay *overlay);
  * file. path: the name of the file, or "-.png" and so on. */
 int render_overlay_check_options(const cli_value *values, const char *path);
 
-/* Sets --size to width x height, as if the user had typed it. text: the caller's room for the typed text, to
- * which the value of --size points afterwards. */
-/* The options of --reference for a scene. */
+/* The options of --reference with which a scene is rendered. */
 hl_reference_options render_reference_options(const cli_value *values,
                                               const hl_scene_description *description);
+
+/* Sets --size to width x height, as if the user had typed it. text: memory of the caller for the typed text,
+ * to which the value of --size points afterwards. */
 void render_set_size(cli_value *size, double width, double height, char text[RENDER_SIZE_TEXT]);
 
 /* Sets --size, if it is not given, to the size that --width and --dpi ask for. The picture has the
- * proportions of this scene's picture; scene null: those of a bare volume's picture. text: room for the text
- * of --size, which the values borrow. */
+ * proportions of this scene's picture. If scene is null, it has the proportions of a bare volume's picture.
+ * text: room for the text of --size, which the values borrow. */
 void render_overlay_set_size(cli_value *values, const hl_scene *scene, char text[RENDER_SIZE_TEXT]);
 
 typedef struct render_seconds {
@@ -233,16 +234,17 @@ typedef struct render_seconds {
 /* The data of a report on a finished rendering. */
 typedef struct render_result {
   const char *input, *output;
-  const char *taken_for;    /* the kind of data by which the transfer function was chosen; null: it was not
+  const char *taken_for;    /* the kind of data by which the transfer function was chosen; null if it was not
                              * chosen by a kind */
-  const char *next_look;    /* the look to try next for such data; null if the user asked for a look */
-  const char *field_errors; /* JSON that says how much the fields of the scene's volumes differ from their
-                             * files; null: no difference is known */
+  const char *next_look;    /* the look that a user may try next for such data; null if the user asked for a
+                             * look */
+  const char *field_errors; /* JSON with the differences between the fields of the scene's volumes and their
+                             * files; null if no difference is known */
   bool reference;
   const hl_scene_description *description;
   hl_render_statistics statistics;
   render_seconds seconds;
-  const hl_ranks *ranks; /* borrowed; the ranks that made the picture; null: one process made it */
+  const hl_ranks *ranks; /* borrowed; the ranks that made the picture; null if one process made it */
 } render_result;
 
 /* Prints the statistics as JSON on stdout, or in one line on stderr. */

@@ -1,4 +1,4 @@
-/* cli/render/report.c - statistics of a finished rendering. */
+/* cli/render/report.c - prints the statistics of a finished rendering. */
 #define _GNU_SOURCE
 #include <stdio.h>
 #include <string.h>
@@ -18,8 +18,8 @@ static const char *soft_method_name(hl_soft_method method) {
   return choice->name == NULL ? "unknown" : choice->name;
 }
 
-/* The most memory that this program ever had resident. On Linux, /proc has this number; elsewhere ru_maxrss
- * has it (KiB), which may include the memory of the program that started this one. */
+/* The greatest amount of memory that this program has had resident. On Linux, /proc has this number;
+ * elsewhere ru_maxrss has it (KiB), which may include the memory of the program that started this one. */
 static uint64_t peak_memory_bytes(void) {
   unsigned long long kibibytes = 0;
   FILE *status = fopen("/proc/self/status", "r");
@@ -78,7 +78,7 @@ static bool is_maximum(const hl_scene_description *description) {
   return description->render.compositing == HL_COMPOSITING_MAXIMUM;
 }
 
-/* Prints how many voxels this process has received from other ranks, of volumes that lie over the ranks. */
+/* Prints the number of voxels that this process has received from other ranks that share its volumes. */
 static void print_traffic(json_writer *json, const hl_ranks *ranks) {
   uint64_t bytes, requests;
   double seconds;

@@ -1,5 +1,5 @@
-/* cli/render/scene.c - hands the options of `halflight render` that are about a scene to hl_scene_compose().
- */
+/* cli/render/scene.c - passes the options of `halflight render` that concern a scene to
+ * hl_scene_compose(). */
 #include <halflight/compose.h>
 #include <stdio.h>
 #include <string.h>
@@ -12,7 +12,7 @@ enum { MOST_OPTIONS = RENDER_OPTION_COUNT * MAXIMUM_REPEATS, RANGE_BYTES = 64 };
 typedef struct option_list {
   hl_option options[MOST_OPTIONS];
   size_t count;
-  char range[RANGE_BYTES]; /* text of the range that was found for --range-of-all */
+  char range[RANGE_BYTES]; /* the text of the range that was found for --range-of-all */
 } option_list;
 
 static bool is_of_scene(const char *name) {

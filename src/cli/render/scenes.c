@@ -1,5 +1,5 @@
-/* cli/render/scenes.c - `halflight render 'examples/fig*.json'`: makes a picture of each scene that a pattern
- * finds.
+/* cli/render/scenes.c - implements `halflight render 'examples/fig*.json'`: makes a picture of each scene
+ * that a pattern finds.
  *
  * Each scene is rendered as if it stood alone on the command line, in the order of the numbers in the names.
  * A scene that fails has no picture; the other pictures are made nevertheless. */
@@ -43,7 +43,7 @@ int render_scenes(const cli_value *values, char **operands, render_one_fn *rende
   if (found.gl_pathc > 0) qsort(found.gl_pathv, found.gl_pathc, sizeof *found.gl_pathv, compare_by_number);
   for (size_t n = 0; n < found.gl_pathc && exit_code == EXIT_CODE_OK; n++) {
     char *one[] = {found.gl_pathv[n], NULL};
-    memcpy(own, values, RENDER_OPTION_COUNT * sizeof *own); /* render_one() puts the scene's name for %s */
+    memcpy(own, values, RENDER_OPTION_COUNT * sizeof *own); /* render_one() replaces %s by the scene's name */
     exit_code = render_one(own, one);
     bool goes_on = exit_code == EXIT_CODE_INPUT || exit_code == EXIT_CODE_UNSUPPORTED;
     failed += goes_on;

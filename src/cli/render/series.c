@@ -1,11 +1,11 @@
-/* cli/render/series.c - `halflight render 'dump_*.vti' -o 'frames/%04d.png'`: makes a picture of each file of
- * a series.
+/* cli/render/series.c - implements `halflight render 'dump_*.vti' -o 'frames/%04d.png'`: makes a picture of
+ * each file of a series.
  *
- * Look, the camera's direction and lights come from the first file that can be read. The camera stands so
- * that what is seen of the first, the middle and the last file is in its picture. All other files that the
- * options name (label maps, masks, meshes, skies) are read before the first picture. Files are in the order
- * of the numbers in their names. Pictures are numbered from 0 in this order, or have the files' names.
- */
+ * Look, the camera's direction and lights come from the first file that can be read. The camera is placed so
+ * that the visible parts of the first, the middle and the last file are in its picture. All other files that
+ * the options name (label maps, masks, meshes, skies) are read before the first picture. Files are in the
+ * order of the numbers in their names. Pictures are numbered from 0 in this order, or have the files'
+ * names. */
 #define _GNU_SOURCE
 #include "series.h"
 
@@ -61,7 +61,7 @@ static int check_options(series_job *job) {
   return exit_code == EXIT_CODE_OK ? render_overlay_read(job->values, &job->overlay) : exit_code;
 }
 
-/* --range-of-all: sets --range to the range of all files that can be read. */
+/* Does the work of --range-of-all: sets --range to the range of all files that can be read. */
 static int find_range(series_job *job) {
   cli_value *range = &job->values[RENDER_RANGE];
   if (!job->values[RENDER_RANGE_OF_ALL].given || range->given || job->files.of_meshes) return EXIT_CODE_OK;
@@ -131,8 +131,8 @@ static int try_motion(series_job *job) {
   return status == HL_OK ? EXIT_CODE_OK : host_fail(&job->host, PHASE_CHANGE, status, &error);
 }
 
-/* Frames what is seen of a file as the camera looks at it. Returns the exit code; a file that cannot be read
- * is no failure, but has no camera (*found). */
+/* Places the camera so that it frames the visible part of a file from the same direction. Returns the exit
+ * code; a file that cannot be read is no failure, but has no camera (*found). */
 static int frame_file(series_job *job, int number, hl_camera *camera, bool *found) {
   hl_scene *scene = NULL;
   hl_error error = {0};
@@ -153,8 +153,8 @@ static bool show_the_same(const hl_camera *a, const hl_camera *b) {
   return memcmp(a->position, b->position, sizeof a->position) == 0 && a->height == b->height;
 }
 
-/* Places the camera so that the first, the middle and the last file fit into the picture. Where the first
- * file's camera shows the others whole, it stays. */
+/* Places the camera so that the first, the middle and the last file fit into the picture. If the first file's
+ * camera shows the other files as a whole, the camera is not changed. */
 static int frame_all(series_job *job) {
   const int numbers[] = {job->files.first, (job->files.first + job->files.count - 1) / 2,
                          job->files.count - 1};
@@ -184,7 +184,8 @@ static int frame_all(series_job *job) {
   return EXIT_CODE_OK;
 }
 
-/* Makes the first scene: of the first file that can be read, and of the files that are in every picture. */
+/* Makes the first scene from the first file that can be read, and from the files that are in every
+ * picture. */
 static int make_scene(series_job *job) {
   bool bare;
   render_overlay_set_size(job->values, NULL, job->size_text);
@@ -199,18 +200,19 @@ static int make_scene(series_job *job) {
 
 /* ---- pictures ---- */
 
-/* Whether a picture is there, was made of this scene, and is not older than the file. */
+/* Returns whether a picture exists, was made from this scene, and is not older than the file. */
 static bool is_there(const series_job *job, int number, const hl_scene *scene, const char *path) {
   struct stat picture, file;
-  if (overlay_is_any(&job->overlay)) return false; /* a picture's scene omits its overlays */
+  /* The scene in a picture does not contain the picture's overlays. */
+  if (overlay_is_any(&job->overlay)) return false;
   if (stat(path, &picture) != 0 || stat(job->files.names[number], &file) != 0 ||
       picture.st_mtim.tv_sec < file.st_mtim.tv_sec)
     return false;
   return frames_have_scene(&job->host, path, scene);
 }
 
-/* Whether the picture exists and was made of the right scene. The texts of the scenes are compared. For the
- * right scene's text no volume or mesh is read: the first file's volume or mesh takes its place. */
+/* Returns whether the picture exists and was made from the right scene. The texts of the scenes are compared.
+ * For the right scene's text no volume or mesh is read: the first file's volume or mesh takes its place. */
 static bool is_made(series_job *job, int number, const char *path) {
   hl_scene *scene = NULL;
   hl_error error = {0};

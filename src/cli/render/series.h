@@ -1,14 +1,14 @@
-/* cli/render/series.h - shared by the files of `halflight render` that make a series of pictures. */
+/* cli/render/series.h - declares the functions by which `halflight render` makes a series of pictures. */
 #ifndef HL_CLI_RENDER_SERIES_H
 #define HL_CLI_RENDER_SERIES_H
 
 #include "film/film.h"
 #include "render.h"
 
-/* How far a series has come. */
+/* The progress of a series. */
 typedef struct series_progress {
   int wanted;     /* number of pictures in this run's part of the series */
-  int done;       /* number of pictures that are there */
+  int done;       /* number of pictures that exist */
   int rendered;   /* number of pictures that this run has rendered */
   int failed;     /* number of files that cannot be read */
   double seconds; /* for the rendered pictures */
@@ -16,13 +16,14 @@ typedef struct series_progress {
 
 typedef struct series_job {
   cli_host host;
-  cli_value values[RENDER_OPTION_COUNT]; /* --range is set by --range-of-all */
-  const char *pattern; /* pattern of OUT, with one %d for a number or one %s for the file's name */
+  cli_value values[RENDER_OPTION_COUNT]; /* whether --range is set by --range-of-all */
+  const char *pattern; /* the pattern of OUT, with one %d for a number or one %s for the file's name */
   struct {
-    char **names; /* owned; [count]: paths of volumes, or of meshes where there is no volume */
+    char **names; /* owned; [count]: paths of volumes, or of meshes if there is no volume */
     int count;
     bool of_meshes; /* the files are meshes */
-    bool of_times;  /* --time all: all names are one file's, and the numbers are its time steps */
+    bool of_times;  /* whether --time all was given: all names are the name of one file, and the numbers are
+                     * its time steps */
     bool *bad;      /* owned; [count]; whether the file could not be read; its error line was printed then */
     int first;      /* the number of the file from which `scene` was made */
   } files;
@@ -30,14 +31,14 @@ typedef struct series_job {
   int mesh_count;
   int part, parts;
   series_progress progress;
-  hl_scene *scene;                  /* owned; made of the first file that can be read */
-  char size_text[RENDER_SIZE_TEXT]; /* text of --size, where --width sets it */
+  hl_scene *scene;                  /* owned; the scene that was made from the first file that can be read */
+  char size_text[RENDER_SIZE_TEXT]; /* the text of --size, if --width sets it */
   cli_overlay overlay;              /* owned; drawn over each picture */
   const film_options *motion;       /* borrowed; the keys that change numbers of the scene from picture to
-                                     * picture; null: nothing changes */
+                                     * picture; null if nothing changes */
 } series_job;
 
-/* True if the text has one "%d" or "%04d", and no other '%' but "%%". */
+/* Returns true if the text has one "%d" or "%04d", and no other '%' but "%%". */
 bool series_has_number(const char *text);
 
 /* Finds the files that the operands name. Files of the series are separated from files that are in every
@@ -45,8 +46,8 @@ bool series_has_number(const char *text);
 int series_find_files(series_job *job, char **operands);
 void series_release_files(series_job *job);
 
-/* With --time all: makes the series one of all time steps of its only file, which must be a volume. Returns
- * the exit code. */
+/* Handles --time all: makes a series of all time steps of the only file, which must be a volume. Returns the
+ * exit code. */
 int series_find_times(series_job *job);
 
 /* Reads a volume of the series. channel: HL_INDEX_DEFAULT means the channel that the options ask for. A

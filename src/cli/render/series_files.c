@@ -1,4 +1,4 @@
-/* cli/render/series_files.c - the files of a series: their names, and the scene of each.
+/* cli/render/series_files.c - finds the files of a series, and makes the scene of each file.
  *
  * The files of a series are volumes, which may be label maps, or meshes. Meshes beside volumes are in every
  * picture. */
@@ -23,7 +23,7 @@ static bool is_pattern(const char *path) {
   return strpbrk(path, "*?[") != NULL && !hl_plain_is_url(path) && access(path, F_OK) != 0;
 }
 
-/* True if the text has one "%d" or "%04d", and no other '%' but "%%". */
+/* Returns true if the text has one "%d" or "%04d", and no other '%' but "%%". */
 bool series_has_number(const char *text) {
   int numbers = 0;
   for (const char *c = strchr(text, '%'); c != NULL; c = strchr(c + 1, '%')) {
@@ -78,9 +78,9 @@ static int add_pattern(series_job *job, const char *pattern) {
   return exit_code;
 }
 
-/* Decides whether the series is one of meshes or of volumes. Meshes that were named one by one are in every
- * picture and are not here, unless there are only meshes. A pattern that finds meshes beside volumes is
- * refused, because nothing says which mesh belongs to which volume. */
+/* Decides whether the files of the series are meshes or volumes. Meshes that were named one by one are in
+ * every picture, and do not belong to the series, unless there are only meshes. A pattern that finds meshes
+ * beside volumes is refused, because nothing says which mesh belongs to which volume. */
 static int part_meshes(series_job *job) {
   int meshes = 0;
   for (int n = 0; n < job->files.count; n++) meshes += is_mesh_file(job->host.context, job->files.names[n]);
@@ -91,7 +91,7 @@ static int part_meshes(series_job *job) {
               "by its whole name");
 }
 
-/* A file and the name that its picture takes from it. */
+/* A file, and the name of the file's picture. */
 typedef struct named_file {
   const char *file;
   char *picture; /* owned */
@@ -178,7 +178,7 @@ static int check_space(const series_job *job, int number, const hl_volume *volum
               job->files.names[number], job->files.names[job->files.first]);
 }
 
-/* Marks the file as bad if the exit code of reading it says so. */
+/* Marks the file as bad if the exit code after reading it means a fault of the file. */
 static int note(series_job *job, int number, int exit_code) {
   job->files.bad[number] = exit_code == EXIT_CODE_INPUT || exit_code == EXIT_CODE_UNSUPPORTED;
   return exit_code;
@@ -225,7 +225,8 @@ int series_find_times(series_job *job) {
 
 /* ---- the scene of a file ---- */
 
-/* Makes a scene like the first file's, but with other volumes; with volumes null, with another first mesh. */
+/* Makes a scene like the first file's, but with other volumes; if volumes is null, with another first
+ * mesh. */
 static hl_status make_scene(const series_job *job, hl_scene_volume *volumes, size_t volume_count,
                             const hl_scene_mesh *mesh, hl_scene **scene, hl_error *error) {
   hl_scene_description description = *hl_scene_describe(job->scene);
@@ -259,9 +260,9 @@ static size_t volumes_of_file(const series_job *job) {
   return count;
 }
 
-/* Makes a scene like the first file's, with this file's volumes in place of the first file's. loaded null:
- * the first file's voxels stay. Bare label maps get the labels of their own voxels. The label maps of
- * --labels stay. */
+/* Makes a scene like the first file's, with this file's volumes in place of the first file's. If `loaded` is
+ * null, the first file's voxels are kept. Bare label maps get the labels of their own voxels. The label maps
+ * of --labels are kept. */
 static hl_status scene_of_volumes(const series_job *job, int number, hl_volume *const *loaded,
                                   hl_scene **scene, hl_error *error) {
   const hl_scene_description *description = hl_scene_describe(job->scene);

@@ -1,7 +1,7 @@
-/* cli/render/views.c - `halflight render INPUT --views front,left,top`: one scene from several sides, on one
- * sheet or, where OUT has a %s, in a file for each.
+/* cli/render/views.c - implements `halflight render INPUT --views front,left,top`, which renders one scene
+ * from several sides. The pictures are on one sheet or, if OUT has a %s, in a file for each side.
  *
- * The input is loaded once; each side is the picture that --view makes of it. */
+ * The input is loaded once. The picture of each side is the same that --view makes. */
 #define _GNU_SOURCE
 #include <math.h>
 #include <stdio.h>
@@ -18,12 +18,12 @@ static const double gap_part = 1.0 / 50;
 
 typedef struct views_job {
   cli_host host;
-  cli_value values[RENDER_OPTION_COUNT]; /* --view is set for each side */
+  cli_value values[RENDER_OPTION_COUNT]; /* the values of the options; --view is set for each side */
   char size_text[RENDER_SIZE_TEXT];
   char width_text[WIDTH_BYTES]; /* the width of one side on the sheet */
   char **inputs;
   const char *output;
-  bool files; /* there is a file for each side */
+  bool files; /* whether there is a file for each side */
   char names[MOST_VIEWS][NAME_BYTES];
   int choices[MOST_VIEWS];
   size_t count;
@@ -59,7 +59,7 @@ static int read_views(views_job *job) {
   return EXIT_CODE_OK;
 }
 
-/* Makes --width the width of each side: the option states the width of the whole sheet. */
+/* Sets --width to the width of each side, because the option states the width of the whole sheet. */
 static int divide_width(views_job *job) {
   cli_value *width = &job->values[RENDER_WIDTH];
   const double sides = (double)job->count;
@@ -121,7 +121,7 @@ static int load(views_job *job) {
     if (exit_code != EXIT_CODE_OK) break;
     hl_status status = overlay_check_scene(job->host.context, &job->overlay, job->scenes[v], &error);
     if (status != HL_OK) exit_code = host_fail(&job->host, PHASE_CHANGE, status, &error);
-    job->host.quiet = true; /* warnings were told with the first side */
+    job->host.quiet = true; /* the warnings were printed for the first side */
   }
   job->host.quiet = job->values[RENDER_QUIET].given;
   return exit_code;

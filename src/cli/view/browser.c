@@ -1,4 +1,4 @@
-/* cli/view/browser.c - see view/browser.h. */
+/* cli/view/browser.c - opens the viewer's page in the user's browser. */
 #define _GNU_SOURCE
 #include "browser.h"
 

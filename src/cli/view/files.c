@@ -29,7 +29,8 @@ enum { MOST_PATHS = 1024 };
 
 /* The absolute paths of a description's files. The description borrows them. */
 typedef struct path_list {
-  const char *folder; /* the folder to which relative names are relative; null: the current folder */
+  const char *folder; /* the folder to which relative names are relative; null stands for the current
+                       * folder */
   char *paths[MOST_PATHS];
   size_t count;
 } path_list;
@@ -86,8 +87,8 @@ hl_status view_name_absolutely(hl_context *context, const char *folder, hl_scene
 
 /* ---- files that pages open ---- */
 
-/* A volume of several resolutions is read as the command line's volumes are. A dropped file is gone when
- * finer resolutions could be read. */
+/* A volume of several resolutions is read like the volumes of the command line. A dropped file is read at its
+ * finest resolution at once, because it does not exist any more when finer resolutions could be read. */
 static hl_status for_volume(hl_context *context, const server_file *file, const char *path, hl_scene **scene,
                             hl_error *error) {
   hl_volume *volume = NULL;
@@ -133,7 +134,8 @@ hl_status view_open_file(void *user_data, const server_file *file, hl_scene **sc
 
 /* ---- finer resolutions ---- */
 
-/* Loads a file of an absolute path. As when a page opened it, nothing outside of its folder is read. */
+/* Loads a file by its absolute path. Nothing outside of the file's folder is read, as when a page opens the
+ * file. */
 static hl_status load_again(hl_context *context, const char *path, const hl_volume_load_options *options,
                             hl_volume **volume, hl_error *error) {
   hl_context *confined = NULL;
@@ -152,7 +154,7 @@ static hl_status load_again(hl_context *context, const char *path, const hl_volu
 }
 
 /* Reads a scene's volume at the next finer resolution, from the file and with the options with which it was
- * read. *finer: null if the volume is as fine as it is to be. */
+ * read. *finer: null if the volume has the wanted resolution already. */
 static hl_status read_finer(hl_context *context, const hl_scene_volume *volume, hl_volume **finer,
                             hl_error *error) {
   hl_volume_selection read = {.struct_size = sizeof read};

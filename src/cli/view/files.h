@@ -8,8 +8,8 @@
 /* The longer side, in pixels, of the first picture of a volume of several resolutions. */
 enum { VIEW_PREVIEW_PIXELS = 128 };
 
-/* Replaces the names of files in a scene by absolute paths, so that the page's scene can be rendered from
- * any folder. folder: the folder from which the scene's names start; null: the current folder. */
+/* Replaces the names of files in a scene by absolute paths, so that the page's scene can be rendered from any
+ * folder. folder: the folder from which the scene's names start; null stands for the current folder. */
 hl_status view_name_absolutely(hl_context *context, const char *folder, hl_scene **scene, hl_error *error);
 
 /* Opens a file, and makes its scene. The file may hold a scene, a mesh or a volume. context: the hl_context

@@ -1,4 +1,4 @@
-/* cli/view/token.c - see view/token.h. */
+/* cli/view/token.c - keeps the token of a viewer's URL for the next viewer. */
 #define _GNU_SOURCE
 #include "token.h"
 
@@ -11,7 +11,7 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
-/* Whether a file or folder belongs to the user, and nobody else has access to it. */
+/* Returns whether a file or folder belongs to the user, and nobody else has access to it. */
 static bool is_private(const struct stat *about) {
   return about->st_uid == getuid() && (about->st_mode & (S_IRWXG | S_IRWXO)) == 0;
 }
@@ -42,7 +42,7 @@ static bool make_token(char token[VIEW_TOKEN_DIGITS + 1]) {
   return true;
 }
 
-/* Writes the token to a new file, in place of whatever has this path. */
+/* Writes the token to a new file, which replaces any file at this path. */
 static bool write_token(const char *path, const char *token) {
   unlink(path);
   int descriptor = open(path, O_WRONLY | O_CREAT | O_EXCL | O_NOFOLLOW | O_CLOEXEC, S_IRUSR | S_IWUSR);

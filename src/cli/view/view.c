@@ -1,4 +1,5 @@
-/* cli/view/view.c - `halflight view INPUT`: the viewer's server, and the browser that shows its page. */
+/* cli/view/view.c - implements `halflight view INPUT`, which runs the viewer's server and opens its page in a
+ * browser. */
 #define _GNU_SOURCE
 #include <limits.h>
 #include <stdio.h>
@@ -37,8 +38,8 @@ static const cli_option view_options[VIEW_OPTION_COUNT] = {
          .help = "print the URL, and open no browser (default: one is\nopened where there is a screen)"},
 };
 
-/* Whether this command has an option of `render`: those that say what is shown and how, except those that the
- * page sets itself. */
+/* Returns whether this command has an option of `render`. It has the options that decide what is shown, and
+ * in which way, except the options that the page sets itself. */
 static bool has_render_option(size_t row) {
   switch ((enum render_option)row) {
     case RENDER_SIZE:
@@ -108,7 +109,7 @@ static void make_title(char **inputs, char *title, size_t size) {
   else snprintf(title, size, "%s and %zu more", name, count - 1);
 }
 
-/* Loads the module, which stays loaded; null after a message. */
+/* Loads the module, which stays loaded. Returns null, after a message, on failure. */
 static const server_module *load_module(void) {
   void *module = dlopen(SERVER_MODULE_FILE, RTLD_NOW);
   const server_module *found = module != NULL ? dlsym(module, SERVER_MODULE_NAME) : NULL;
