@@ -24,7 +24,7 @@ typedef struct hl_ranks hl_ranks;
 /* Joins the processes of a communicator. This call is collective. communicator: an MPI_Comm of the library
  * that the process has loaded, as (void *)(intptr_t)comm: a pointer in Open MPI, a number in MPICH; Halflight
  * works on a duplicate of the communicator. MPI must have been started with MPI_THREAD_MULTIPLE, because a
- * thread of Halflight answers the other ranks while the caller does other work. communicator null: all
+ * thread of Halflight answers the other ranks while the caller does other work. If communicator is null, all
  * processes of the job are joined; this function starts MPI if it was not started, and hl_ranks_leave() then
  * ends it. Where the process has no library of MPI, `mpi` of hl_context_options says which one is loaded.
  * *ranks is owned by the caller, who releases it with hl_ranks_leave() before the context. */

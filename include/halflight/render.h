@@ -134,7 +134,7 @@ typedef struct hl_reference_options {
   int light_points;   /* number of points on each extended light, and number of cells of the sky; default
                        * 1024 */
   double step;        /* the longest marching step, in units of the shortest voxel edge; default 0.25 */
-  int threads;        /* 0: one per processor */
+  int threads;        /* 0 stands for one thread per processor */
   int rays;  /* number of rays along each side of a pixel, from 1 to 8, that are averaged; default 1. 0 stands
               * for the renderer's number of rays, which is greater than 1 where voxels are smaller than
               * pixels */

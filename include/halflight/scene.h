@@ -372,10 +372,10 @@ HL_API HL_WARN_UNUSED hl_status hl_scene_join(hl_context *context, hl_scene *con
 
 /* Makes a scene of several channels of a file, such as a microscope's. Each channel is a volume with the look
  * that hl_scene_for_volume_look() gives it, in the colour of hl_scene_channel_color(). The volume's name is
- * the channel's name in the file, or else "channel0" and so on. path, options (null: the defaults): as for
- * hl_volume_load_with(); options->channel is not used, and options->bytes is read once for each channel.
- * channels: [count], the numbers of the channels, from 0. count 0: all channels of the file. A scene has at
- * most HL_CHANNELS_MOST channels. */
+ * the channel's name in the file, or else "channel0" and so on. path, options: as for hl_volume_load_with();
+ * options may be null, which stands for the defaults; options->channel is not used, and options->bytes is
+ * read once for each channel. channels: [count], the numbers of the channels, from 0. count 0: all channels
+ * of the file. A scene has at most HL_CHANNELS_MOST channels. */
 enum { HL_CHANNELS_MOST = 16 };
 HL_API HL_WARN_UNUSED hl_status hl_scene_for_channels(hl_context *context, const char *path,
                                                       const hl_volume_load_options *options,
@@ -565,7 +565,7 @@ HL_API HL_WARN_UNUSED hl_status hl_camera_join(const hl_camera *cameras, size_t 
 /* Finds the direction in which a light travels, a unit vector, for a lamp that stands beside the camera.
  * azimuth, elevation: the lamp's angles from the line of sight. The lamp stands to the right of the camera if
  * azimuth is positive, and above the camera if elevation is positive. At 0, 0 the lamp stands at the camera
- * and shines along the line of sight. camera null: direction becomes 0, 0, 0, which hl_scene_create()
+ * and shines along the line of sight. If camera is null, direction becomes 0, 0, 0, which hl_scene_create()
  * refuses; direction null: nothing is done. */
 HL_API void hl_light_direction(const hl_camera *camera, double azimuth_deg, double elevation_deg,
                                double direction[3]);

@@ -20,7 +20,7 @@ typedef struct hl_shapes_options {
   int size;    /* above 0: the number of voxels along the grid's longest side, which replaces the text's
                 * voxel_size */
   int seed;    /* a number that is added to the seed of every hypertexture; default 0 */
-  int threads; /* 0: one per processor */
+  int threads; /* 0 stands for one thread per processor */
 } hl_shapes_options;
 
 HL_API void hl_shapes_options_defaults(hl_shapes_options *options);

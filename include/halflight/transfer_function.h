@@ -145,11 +145,11 @@ HL_API HL_WARN_UNUSED hl_status hl_transfer_function_spread(hl_context *context,
                                                             const double old[2], const double range[2],
                                                             hl_range_scale scale, hl_transfer_function *to,
                                                             hl_error *error);
-/* What hl_transfer_function_spread_over() spreads a function for. */
+/* The uses for which hl_transfer_function_spread_over() spreads a function. */
 typedef enum hl_spread_use {
   HL_SPREAD_ALONE = 0,     /* the function's own colours are shown */
-  HL_SPREAD_COLORMAP = 1,  /* a colormap over the range takes the place of the colours */
-  HL_SPREAD_PROJECTION = 2 /* a maximum projection */
+  HL_SPREAD_COLORMAP = 1,  /* a colormap over the range replaces the function's colours */
+  HL_SPREAD_PROJECTION = 2 /* the function is for a maximum projection */
 } hl_spread_use;
 /* Spreads a volume's function over a range, as the option "range" does: the value from which opacity rises
  * becomes range[0], and the value at which opacity ends becomes range[1]. The same holds for colours. Evenly

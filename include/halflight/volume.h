@@ -157,7 +157,7 @@ typedef struct hl_volume_load_options {
   int pixels; /* the longer side, in pixels, of a picture that the volume will fill; 0 (default): unknown. Of
                * several resolutions, the library reads the coarsest whose longest axis has at least this
                * number of voxels. Not used if `level` is given */
-  int preview_pixels; /* above 0: a coarser one of several resolutions is read for a first picture, whose
+  int preview_pixels; /* if above 0, a coarser one of several resolutions is read for a first picture, whose
                        * longer side has this number of pixels. hl_volume_selection.aim is then the resolution
                        * that would be read without this option. Default 0 */
 } hl_volume_load_options;

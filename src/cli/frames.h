@@ -39,7 +39,7 @@ bool frames_have_scene(const cli_host *host, const char *path, const hl_scene *s
  * rendered: the number of pictures that this run has rendered in `seconds`. */
 void frames_draw_bar(cli_host *host, int done, int wanted, int rendered, double seconds);
 
-/* How pictures are written. */
+/* The options for writing pictures. */
 typedef struct frames_style {
   bool opaque;      /* whether pictures are opaque even if the scene's background is transparent */
   bool no_metadata; /* whether pictures do not carry their scenes */

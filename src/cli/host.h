@@ -30,7 +30,7 @@ typedef struct cli_host {
                             * times a second at most */
   bool (*cancelled)(void); /* or null */
   void (*progressed)(const char *stage, double fraction); /* or null */
-  uint64_t memory_limit;                                  /* bytes; 0: unknown */
+  uint64_t memory_limit;                                  /* bytes; 0 if it is unknown */
   int preview_pixels;    /* the value of hl_volume_load_options.preview_pixels for the volumes of the command
                           * line */
   cli_read_files read;   /* the files that the context has read */
@@ -42,9 +42,9 @@ typedef struct cli_host_options {
   bool quiet;
   bool progress;
   const char *subject;
-  uint64_t memory_limit; /* bytes; 0: the machine's memory */
+  uint64_t memory_limit; /* bytes; 0 stands for the machine's memory */
   hl_instruction_set instruction_set;
-  const char *device;      /* null: the processors */
+  const char *device;      /* null stands for the processors */
   bool keep_unsmoothed;    /* see hl_context_options */
   hl_mpi mpi;              /* the result of launcher_mpi() (ranks.h) if processes may join */
   bool (*cancelled)(void); /* a function that is asked, in addition to signals, whether the run should end;

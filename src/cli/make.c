@@ -77,7 +77,7 @@ static const char *preset_name(const void *data, size_t index) {
   return hl_shape_preset_name(index);
 }
 
-/* *Reads a file's text. text: the content, owned by the caller (free). */
+/* Reads a file's text. text: the content, owned by the caller (free). */
 static int read_text(const char *path, char **text, size_t *length) {
   FILE *file = fopen(path, "rb");
   if (file == NULL && !has_extension(path, ".json")) {

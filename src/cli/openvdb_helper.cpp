@@ -1,7 +1,8 @@
-// cli/openvdb_helper.cpp - halflight-openvdb IN.vdb OUT.nvdb: an OpenVDB file as a NanoVDB file.
+// cli/openvdb_helper.cpp - implements the program `halflight-openvdb IN.vdb OUT.nvdb`, which converts an OpenVDB file to
+// a NanoVDB file.
 //
-// A program of its own: the library and `halflight` link nothing of OpenVDB and run this one as a child, with limits.
-// Tiles and leaves are handed over as they are; what no NanoVDB grid can hold is passed over with a word.
+// The library and `halflight` do not link OpenVDB. They run this program as a child process, with limits. Tiles and
+// leaves are copied as they are. Content that no NanoVDB grid can hold is left out, with a message.
 #define NANOVDB_USE_OPENVDB
 #include <openvdb/openvdb.h>
 
@@ -16,7 +17,7 @@ namespace {
 
 using Handle = nanovdb::GridHandle<nanovdb::HostBuffer>;
 
-// Converts one grid that NanoVDB has a kind for; others, such as points, are passed over with a word.
+// Converts a grid if NanoVDB has a kind for it. Other grids, such as points, are left out, with a message.
 void convert(openvdb::GridBase::Ptr grid, const std::string &name, std::vector<Handle> &made) {
   try {
     made.push_back(nanovdb::openToNanoVDB(grid));

@@ -16,7 +16,7 @@ typedef struct cli_overlay {
   double width;                 /* the width from --width, in millimetres; 0 if it is not given */
   double pixels_per_inch;       /* the pixels per inch that files state, from --dpi; 0 if they follow from
                                  * --width, or if files state none */
-  double font_points;           /* 0: the default */
+  double font_points;           /* 0 stands for the default */
   bool drawn;                   /* anything is drawn over pictures */
 } cli_overlay;
 

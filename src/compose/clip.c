@@ -14,7 +14,8 @@ static bool read_range(const char *text, hl_axis_range *range) {
   return hl_read_range(&text, range) && *text == '\0';
 }
 
-/* Reads a range that may begin with NAME=. Returns the range's text; null: it is none. */
+/* Reads a range that may begin with NAME=. Returns the part of the text after NAME=, or null if the text is
+ * no range. */
 static const char *read_clip(const char *text, hl_axis_range *range) {
   const char *equals = strchr(text, '=');
   if (read_range(text, range)) return text;

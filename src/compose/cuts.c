@@ -78,7 +78,8 @@ static bool read_cut(hl_cut_type type, const char *text, typed_cut *cut) {
   return type == HL_CUT_PLANE ? read_normal(text, cut->normal) : read_radius(text, &cut->radius);
 }
 
-/* Reads a cut that may begin with NAME=. Returns the cut's text; null: it is none. */
+/* Reads a cut that may begin with NAME=. Returns the part of the text after NAME=, or null if the text is no
+ * cut. */
 static const char *read_named_cut(hl_cut_type type, const char *text, typed_cut *cut) {
   const char *equals = strchr(text, '=');
   if (read_cut(type, text, cut)) return text;
@@ -146,11 +147,12 @@ static void place_cut(const typed_cut *typed, const double low[3], const double 
                                        : hl_length_of(&typed->radius, metres);
 }
 
-/* What the options' cuts are added to. */
+/* The target to which the options' cuts are added: a volume or a scene. */
 typedef struct cut_target {
-  const hl_scene_volume *volume; /* takes the cuts that name it; null: none */
+  const hl_scene_volume *volume; /* the volume, which takes the cuts that name it; null if the target is a
+                                  * scene */
   size_t index;                  /* the volume's */
-  bool nameless;                 /* takes the cuts without a name */
+  bool nameless;                 /* whether the target takes the cuts without a name */
 } cut_target;
 
 static bool takes(const hl_composer *composer, const cut_target *target, const char *text, bool named) {

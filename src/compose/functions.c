@@ -35,8 +35,8 @@ static const char *find_known(const char *text, const char *(*known)(const void 
   return NULL;
 }
 
-/* The colormap that a text names; null: none. "gray" is the colormap that ParaView, matplotlib and Fiji have
- * under this name, although CSS has a colour of this name. */
+/* The colormap that a text names; null if there is none. "gray" is the colormap that ParaView, matplotlib and
+ * Fiji have under this name, although CSS has a colour of this name. */
 static const char *find_colormap(const char *text) {
   const bool gray = hl_plain_equal(text, "gray") || hl_plain_equal(text, "grey");
   return find_known(gray ? "grays" : text, colormap_name);
@@ -138,7 +138,8 @@ static size_t length_without_size(const char *name) {
   return strlen(name);
 }
 
-/* Whether a value "NAME=..." names the part. *rest: the text after "NAME="; null: the value has no name. */
+/* Returns whether a value "NAME=..." names the part. *rest: the text after "NAME="; null if the value has no
+ * name. */
 static bool names_part(const hl_composer *composer, const char *text, part part, const char **rest) {
   char own[256];
   *rest = after_name(composer->context, text);

@@ -1,4 +1,4 @@
-/* compose/hidden.c - tells of label maps that nobody sees, because matter of other volumes hides them. */
+/* compose/hidden.c - logs that label maps are not seen, because matter of other volumes hides them. */
 #include <math.h>
 #include <string.h>
 
@@ -13,7 +13,7 @@
 #include "text/stem.h"
 #include "volume/volume.h"
 
-/* SEEN: a place from which this fraction of the light reaches the eye is seen. */
+/* SEEN: a place counts as seen if this fraction of its light reaches the eye. */
 #define SEEN 0.05
 
 enum { TABLE = 1024, EXAMINED = 400000, PLACES = 256 };
@@ -29,7 +29,7 @@ typedef struct screen {
   double opacity[TABLE]; /* of a step; entries over the volume's range */
 } screen;
 
-/* The shapes of a volume's own cuts and of its scene's. *shapes is owned by the caller. */
+/* Makes the shapes of a volume's own cuts and of its scene's cuts. *shapes is owned by the caller. */
 static hl_status find_cuts(const hl_composer *composer, const hl_scene_description *scene,
                            const hl_scene_volume *volume, cut_shape **shapes, size_t *count) {
   hl_scene_volume both = *volume;
@@ -44,7 +44,8 @@ static hl_status find_cuts(const hl_composer *composer, const hl_scene_descripti
   return status;
 }
 
-/* Whether a volume can hide labels as far as can be told here: it shows values by their opacity alone. */
+/* Returns whether a volume is examined for hiding labels. Only volumes whose opacity depends on the value
+ * alone are examined. */
 static bool hides(const hl_scene_volume *volume) {
   const hl_transfer_function *function = &volume->transfer_function;
   return volume->visible && volume->label_count == 0 && volume->mask.volume == NULL &&
@@ -101,14 +102,14 @@ static bool is_shown(const hl_scene_volume *map, double value) {
          map->labels[low].opacity > 0;
 }
 
-/* The number of a voxel that is examined, of `all` voxels: a step of about a golden section reaches evenly
+/* The number of an examined voxel among `all` voxels. Steps of about the golden section reach evenly
  * distributed voxels. */
 static uint64_t examined(uint64_t n, uint64_t all) {
   return all <= EXAMINED ? n : (uint64_t)(fmod((double)n * 0.6180339887498949, 1) * (double)all);
 }
 
-/* Whether any of a label map's visible labels is seen through the screens. *any: whether they have voxels at
- * all. */
+/* Returns whether any of a label map's visible labels is seen through the screens. *any: set to whether these
+ * labels have any voxels. */
 static bool is_seen(const hl_scene_description *scene, const hl_scene_volume *map, const screen *own,
                     const screen *screens, size_t count, bool *any) {
   const size_t *size = map->volume->dimension;

@@ -35,7 +35,7 @@ static void name_after_file(const char *file, hl_label_layers *layers, hl_label 
 }
 
 /* Loads one layer and its labels. reading: the options for reading the file; a layer is read as a component
- * of the file. over: the volume that the labels lie over; null: none. */
+ * of the file. over: the volume that the labels lie over; null if there is none. */
 static hl_status load_layer(hl_context *context, const char *file, const char *table,
                             const hl_volume_load_options *reading, const hl_scene_volume *over,
                             hl_label_layers *layers, hl_error *error) {

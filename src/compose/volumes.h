@@ -10,7 +10,8 @@ typedef struct hl_changed_volumes {
   hl_scene_volume *volumes;        /* [count] */
   hl_transfer_function *functions; /* [count]; with their points */
   hl_isosurface *surfaces;         /* [count][values of "iso"] */
-  hl_cut *cuts; /* with the options' cuts: those of a scene of several volumes, then those of each volume */
+  hl_cut *cuts; /* all cuts, including the options' cuts: first the cuts of a scene of several volumes, then
+                 * the cuts of each volume */
   size_t cuts_used;
   size_t count;
   bool seen; /* whether the visible part of the volumes has changed */

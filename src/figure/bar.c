@@ -25,7 +25,7 @@ static const char *name_of(const hl_scene_volume *volume) {
   return volume->name != NULL ? volume->name : volume->file != NULL ? volume->file : "volume";
 }
 
-/* The unit of a volume's lengths; null: neither the overlay nor the volume's file tells it. */
+/* The unit of a volume's lengths; null if neither the overlay nor the volume's file states it. */
 static const char *unit_of(const hl_overlay *overlay, const hl_scene_volume *volume) {
   return overlay->world_unit != NULL ? overlay->world_unit : hl_volume_unit(volume->volume);
 }

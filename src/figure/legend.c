@@ -47,7 +47,7 @@ static size_t count_rows(const hl_scene_volume *volume) {
   return count;
 }
 
-/* The title of a volume's part of the legend; null: the part has no title. Of several volumes, a volume
+/* The title of a volume's part of the legend; null if the part has no title. Of several volumes, a volume
  * without a name has the name of its file, without folder and extension. name: [NAME_BYTES], room for it. */
 static const char *title_of(const hl_overlay_place *place, const hl_scene_volume *volume, bool first,
                             char *name) {

@@ -24,8 +24,9 @@ void hl_overlay_take(hl_overlay_place *place, hl_rectangle box) {
   if (place->taken_count < HL_MOST_TAKEN) place->taken[place->taken_count++] = box;
 }
 
-/* The way, to the left or to the right, that takes a box clear of everything that is taken. 0: the box is
- * clear where it is, or no such place lies within the picture. */
+/* The distance, to the left or to the right, by which a box must be moved so that it overlaps no taken
+ * rectangle. The result is 0 if the box overlaps none already, or if no such place lies within the
+ * picture. */
 static double way_to_clear(const hl_overlay_place *place, hl_rectangle box, bool to_left) {
   const double from = box.left;
   for (size_t turn = 0; turn <= place->taken_count; turn++) {
@@ -40,8 +41,8 @@ static double way_to_clear(const hl_overlay_place *place, hl_rectangle box, bool
 
 /* ---- texts ---- */
 
-/* Fills a text as the annotation says. circle: the radius of the ring around a point of the world; 0: the
- * annotation has no ring. */
+/* Fills a text with the content of an annotation. circle: the radius of the ring around a point of the world;
+ * 0 if the annotation has no ring. */
 static hl_status lay_annotation(const hl_ink *ink, const hl_overlay_place *place, const hl_annotation *note,
                                 hl_line_of_text *line, double *circle, hl_error *error) {
   const hl_rectangle picture = place->picture;

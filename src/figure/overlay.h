@@ -20,17 +20,17 @@ typedef struct hl_overlay_place {
   size_t taken_count;
 } hl_overlay_place;
 
-/* Draws the whole overlay over a picture. scene: may be null. image: what the picture shows; where it shows
- * matter behind the bar, the legend or the arrows, a ground lies between; null: there is no such ground.
- * insets: [inset_count]; rectangles on the page that will lie over the picture. The parts of the overlay that
- * have corners move sideways to where no inset covers them. */
+/* Draws the whole overlay over a picture. scene: may be null. image: the picture. If it shows matter behind
+ * the bar, the legend or the arrows, a ground is drawn between the matter and the part. If image is null, no
+ * ground is drawn. insets: [inset_count]; rectangles on the page that will lie over the picture. The parts of
+ * the overlay that have corners move sideways to where no inset covers them. */
 hl_status hl_overlay_draw(const hl_ink *ink, const hl_overlay *overlay, const hl_scene *scene,
                           const hl_image *image, hl_rectangle picture, const hl_rectangle *insets,
                           size_t inset_count, hl_error *error);
 
-/* Whether a rectangle lies within the picture and clear of all rectangles that are taken. */
+/* Returns whether a rectangle lies within the picture and overlaps no taken rectangle. */
 bool hl_overlay_is_free(const hl_overlay_place *place, hl_rectangle box);
-/* Adds a rectangle to those that are taken. */
+/* Adds a rectangle to the taken rectangles. */
 void hl_overlay_take(hl_overlay_place *place, hl_rectangle box);
 
 /* The height, from the picture's lower margin, that the arrows of the axes take; points. */

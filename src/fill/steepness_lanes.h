@@ -42,7 +42,7 @@ typedef struct matter_way {
   lanes extinction;        /* the mean extinction on the way, without the factor */
   uint32_t active, starts; /* active: the lanes with extinction, of which there is at least one; starts:
                             * the first lane of each block of pixels; both: one bit for each lane */
-  int wants_slope;         /* not 0: the caller reads the slope, even if the factor does not depend on it */
+  int wants_slope;         /* not 0 if the caller reads the slope, even if the factor does not depend on it */
 } matter_way;
 
 /* The factor by which a volume's extinction is multiplied. */

@@ -33,7 +33,7 @@ typedef struct gpu_device {
 
 /* Memory of a device. */
 typedef struct gpu_buffer {
-  uint64_t handle; /* 0: no buffer */
+  uint64_t handle; /* 0 if there is no buffer */
   size_t bytes;
 } gpu_buffer;
 

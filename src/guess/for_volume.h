@@ -16,7 +16,7 @@ void hl_scene_key_light(hl_light *light);
 #define BESIDE_SKY 0.04
 
 /* Chooses a sky that is brighter above than below, so that folds and hollows are darker, and a little
- * constant light beside it. strength 0: there is no sky and no constant light. */
+ * constant light beside it. If the strength is 0, there is no sky and no constant light. */
 void hl_scene_choose_sky(double strength, hl_scene_description *description);
 
 #endif

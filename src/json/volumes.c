@@ -259,8 +259,8 @@ static hl_status smooth_loaded(hl_json_reader *reader, double smooth, hl_volume 
   return status;
 }
 
-/* Finds a mask that was already made from this file. over: the volume that it masks. A map with as many
- * voxels as a volume with a stated spacing has this spacing, too (hl_volume_load_beside()). */
+/* Finds a mask that was already made from this file. over: the volume that it masks. If a volume has a stated
+ * spacing, a map with the same numbers of voxels has this spacing, too (hl_volume_load_beside()). */
 static const hl_loaded_volume *find_mask(const hl_json_reader *reader, const hl_volume_shelf *shelf,
                                          const char *path, const hl_volume_load_options *options,
                                          const hl_scene_volume *over) {
@@ -276,7 +276,7 @@ static const hl_loaded_volume *find_mask(const hl_json_reader *reader, const hl_
 }
 
 /* Loads a volume's file, or takes the volume from the shelf if it was loaded before. over: the volume that
- * the file's labels mask; null: it is no mask. */
+ * the file's labels mask; null if the file is no mask. */
 static hl_status load(hl_json_reader *reader, const char *file, const hl_volume_load_options *options,
                       double smooth, hl_volume_shelf *shelf, const hl_scene_volume *over,
                       hl_scene_volume *volume) {

@@ -8,7 +8,7 @@
 #include "simd/gathers.h"
 
 /* The greatest value between low and high that the transfer function shows. All values are coordinates in the
- * volume's table. A result below 0: no value is shown. */
+ * volume's table. A result below 0 means that no value is shown. */
 LANES_INLINE lanes greatest_shown(const float (*shown)[4], lanes low, lanes high) {
   lanes of_entry[3], of_next[3];
   lanes_gather_row_pairs(&shown[0][0], split_coordinate(high).entry, of_entry, of_next);

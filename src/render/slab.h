@@ -32,7 +32,7 @@ typedef struct shade_volume {
   const grid *grid;
   const kernel *kernel;
   int phong, visible, receives_shadow;
-  int lit;     /* 0: the volume is shaded flat: its colour does not depend on light */
+  int lit;     /* 0 if the volume is shaded flat, so that its colour does not depend on light */
   int even;    /* whether surfaces reflect all light that arrives, from any angle; set in the passes for a
                 * light's shadow layer */
   float voxel; /* the smallest edge of a voxel; frame units */

@@ -60,7 +60,7 @@ typedef struct server_options {
   void *files_data;                        /* data for `open` and `refine` */
   uint64_t most_upload_bytes;              /* the greatest number of bytes of a dropped file; 0 if there is no
                                             * limit */
-  int port;                                /* 0: any free port */
+  int port;                                /* 0 stands for any free port */
   bool (*token)(int port, char token[33]); /* sets the URL's token, 32 hexadecimal digits, to the token that
                                             * was kept for this port. The server calls the function when it
                                             * has the port. If the function is null or returns false, the

@@ -211,8 +211,8 @@ LANES_INLINE attenuated_block attenuate_block(const attenuate_job *job, int volu
   lanes depth[HL_CHANNELS] = {lanes_set(0), lanes_set(0), lanes_set(0)}, total = lanes_set(0);
   kept_light kept = {lanes_set(0), lanes_set(0)};
   lanes path = path_through_sheet(&job->rays, job->path, block_u(corner[0]), block_v(corner[1]));
-  /* not 0: a factor may hide the surface's matter, so that the surface has ended, although the values are not
-   * low */
+  /* not 0 if a factor may hide the surface's matter, so that the surface has ended, although the values are
+   * not low */
   int hidden = 0;
   for (int i = 0; i < volume_count; i++) {
     const attenuate_volume *volume = &job->volumes[i];

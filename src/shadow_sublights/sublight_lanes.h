@@ -125,8 +125,8 @@ LANES_INLINE void tiles_of_row(const sublight_job *job, const row_taps *taps, in
   if (*last >= job->slab_tiles_x) *last = job->slab_tiles_x - 1;
 }
 
-/* Finds the rows that have a pixel below 1 in either of two copies of the slab. between: 1: the two copies
- * that are shifted along v; 0: the other two copies. */
+/* Finds the rows that have a pixel below 1 in either of two copies of the slab. between: 1 for the two copies
+ * that are shifted along v, 0 for the other two copies. */
 LANES_INLINE uint32_t rows_of_either(slab_rows rows, int between) {
   rows >>= 2 * TILE * between;
   return (uint32_t)(rows | rows >> TILE) & EVERY_ROW;

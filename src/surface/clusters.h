@@ -16,8 +16,8 @@ enum { CLUSTER_SIZE = CLUSTER_TRIANGLES };
 struct surface_cluster {
   float low[3], high[3]; /* the corners of the box around the cluster's primitives; frame space */
   float axis[3];         /* the axis of the cone that holds the normals; unit vector */
-  float cosine;          /* the cosine of the greatest angle between the axis and a normal; below 0: the
-                          * normals may have any direction */
+  float cosine;          /* the cosine of the greatest angle between the axis and a normal; a number below 0
+                          * if the normals may have any direction */
   uint32_t first; /* the index, in all->order, of the cluster's first primitive. All primitives of a cluster
                    * are of the same kind, because the order keeps primitives of one kind together */
   uint16_t count, mesh;

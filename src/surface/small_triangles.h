@@ -20,9 +20,9 @@ typedef struct small_view {
   float normal[3], first; /* the sheets' normal; a point's height is normal.X - first */
   float spacing, last_slab;
   int32_t columns, rows; /* number of the tile's columns and rows that lie within the view */
-  int of_light;          /* not 0: the view is a light's; in other views the members from `perspective` to
+  int of_light;          /* not 0 if the view is a light's; in other views the members from `perspective` to
                           * `rise` are not used */
-  int perspective;       /* not 0: the rays come from the point `from`; else they run along the vector
+  int perspective;       /* not 0 if the rays come from the point `from`; if 0, they run along the vector
                           * `from` */
   float from[3], du[3], dv[3];
   float depth[3];    /* in a perspective view: the vector that gives the distance of a point X from the eye,

@@ -35,19 +35,19 @@ char *web_text(size_t bytes);
  * Answer: its start.json. */
 int web_open(const char *title);
 
-/* Adds the file, folder or scene at a path to the text's scene, whose volumes are those of the open scene.
- * The result becomes the open scene. path_and_title: two texts, each with a zero at its end. Answer: the
+/* Adds the file, folder or scene at a path to the text's scene, whose volumes are the open scene's. The
+ * result becomes the open scene. path_and_title: two texts, each with a zero at its end. Answer: the
  * start.json of the result. */
 int web_join(size_t length, const char *path_and_title);
 
-/* Answer: the text's scene, whose volumes are those of the open scene, with all defaults written out.
- * look_and_rig: the names of a look and of a light rig that are applied first, as two texts, each with a zero
- * at its end; "" if none is applied. */
+/* Answer: the text's scene, whose volumes are the open scene's, with all defaults written out. look_and_rig:
+ * the names of a look and of a light rig that are applied first, as two texts, each with a zero at its end;
+ * "" if none is applied. */
 int web_complete(size_t length, const char *look_and_rig);
 
-/* Renders the text's scene, whose volumes are those of the open scene. format: "png", "npy", or "rgba" (bytes
- * of opaque sRGB, top row first). depth: bits of a PNG's channels. metadata: whether a PNG carries the
- * scene's text. moving: whether to make a quick picture, with coarser volumes if the sheets are far apart
+/* Renders the text's scene, whose volumes are the open scene's. format: "png", "npy", or "rgba" (bytes of
+ * opaque sRGB, top row first). depth: bits of a PNG's channels. metadata: whether a PNG carries the scene's
+ * text. moving: whether to make a quick picture, with coarser volumes if the sheets are far apart
  * (halflight/preview.h). */
 int web_frame(size_t length, const char *format, int depth, int metadata, int moving);
 

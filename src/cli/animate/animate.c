@@ -189,7 +189,7 @@ static void find_motion(const animate_job *job, bool series, motion *found) {
   write_sweep(job, found->sweep);
   if (sweeps(job)) found->keys[count++] = found->sweep;
   const bool turns = values[ANIMATE_TURNTABLE].given || (values[ANIMATE_PRESET].given && !sweeps(job));
-  int turn = (int)values[ANIMATE_TURNTABLE].number[0]; /* 0: the number is not said */
+  int turn = (int)values[ANIMATE_TURNTABLE].number[0]; /* 0 if the number is not given */
   if (turns && turn == 0) turn = series ? FILM_WHOLE_TURN : (int)fmax(1, round(4 * frames_per_second(job)));
   found->film = (film_options){
       .context = job->host.context,

@@ -27,7 +27,7 @@ enum { MOST_WORDS = 4 * MAXIMUM_OPTIONS, MOST_KEY = 40 };
 typedef struct page_reading {
   const char *path;
   figure_page *page;
-  json_t *shared; /* borrowed; "options"; null: none */
+  json_t *shared; /* borrowed; "options"; null if there is none */
 } page_reading;
 
 /* ---- names of files ---- */

@@ -27,7 +27,7 @@ typedef struct figure_panel {
   char **words;                          /* owned; [word_count]; options and inputs as a command line */
   size_t word_count;
   char *operands[MAXIMUM_OPERANDS + 1]; /* null after the last */
-  char *letter;                         /* owned; null: none */
+  char *letter;                         /* owned; null if there is none */
   double aspect;                        /* width divided by height; 0 stands for the scene's proportions */
   figure_inset inset;
   bool bare;

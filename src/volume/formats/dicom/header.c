@@ -39,8 +39,8 @@ bool hl_dicom_is_remnant(const char *path, const unsigned char *bytes, size_t le
   return length < PREAMBLE_BYTES + 4 && (zeros == length || hl_dicom_is_named(path));
 }
 
-/* Whether the bytes begin a DICOM file, also one without the mark "DICM". Such a file begins with an element
- * of group 2 or 8 that has a short value. */
+/* Returns whether the bytes begin a DICOM file, also one without the mark "DICM". Such a file begins with an
+ * element of group 2 or 8 that has a short value. */
 bool hl_dicom_may_begin(const unsigned char *bytes, size_t length) {
   if (hl_dicom_has_mark(bytes, length)) return true;
   if (length < 16 || (bytes[0] != 2 && bytes[0] != 8) || bytes[1] != 0 || bytes[3] != 0) return false;

@@ -100,10 +100,11 @@ static inline size_t hl_dicom_read_samples(const hl_dicom_pixels *p) {
  * this mark (hl_dicom_may_begin()). */
 bool hl_dicom_has_mark(const unsigned char *bytes, size_t length);
 bool hl_dicom_may_begin(const unsigned char *bytes, size_t length);
-/* Whether the name ends as names of DICOM files do. */
+/* Returns whether the name ends as names of DICOM files do. */
 bool hl_dicom_is_named(const char *path);
-/* Whether a file may be the rest of a DICOM file that was cut before the end of its mark: it holds nothing
- * but zeros, or it has such a name. length: that of the file, or at least 132. */
+/* Returns whether a file may be the rest of a DICOM file that was cut before the end of its mark: it holds
+ * only zeros, or its name ends as names of DICOM files do. length: the length of the file, or at least
+ * 132. */
 bool hl_dicom_is_remnant(const char *path, const unsigned char *bytes, size_t length);
 
 /* Reads the file's meta information, which states the transfer syntax, and prepares the reader for the
