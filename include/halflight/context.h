@@ -1,4 +1,4 @@
-/* halflight/context.h - the context: memory, messages, progress and cancellation.
+/* halflight/context.h - makes the context: memory, messages, progress and cancellation.
  *
  * Pointers may be null only where a function says so; otherwise null is refused with HL_ERROR_ARGUMENT.
  * Functions without a status as result do nothing for such a null, or return null, 0 or NaN. No null crashes

@@ -1,4 +1,4 @@
-/* halflight/figure.h - figures: pictures on a page, with scale bars, legends, axes and text over them.
+/* halflight/figure.h - makes figures: pictures on a page, with scale bars, legends, axes and text over them.
  *
  * A figure is written as PDF or SVG (pictures as pixels, all else as vectors) or as PNG or TIFF (pixels). It
  * is drawn after the pictures are rendered, by cairo and pango; a build without these two libraries refuses

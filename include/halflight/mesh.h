@@ -1,4 +1,4 @@
-/* halflight/mesh.h - triangles, spheres and tubes that share a scene with volumes.
+/* halflight/mesh.h - makes meshes: triangles, spheres and tubes that share a scene with volumes.
  *
  * Meshes never change, and are reference-counted: hl_mesh_retain() and hl_mesh_release(). A triangle shows
  * its front where its vertices are counter-clockwise. */

@@ -1,5 +1,5 @@
-/* halflight/scene.h - scenes, which have a camera, volumes, meshes and render settings. light.h describes a
- * scene's lights.
+/* halflight/scene.h - describes scenes, which have a camera, volumes, meshes and render settings. light.h
+ * describes a scene's lights.
  *
  * A description is plain data. hl_scene_create() checks it and keeps a deep copy, which never changes.
  * Lengths are in world units, angles in degrees, and colours in linear RGB. Axes are right-handed. */

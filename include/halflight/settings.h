@@ -1,4 +1,5 @@
-/* halflight/settings.h - the tables of settings: type, range, default and meaning of each key of a scene.
+/* halflight/settings.h - describes the tables of settings: type, range, default and meaning of each key of a
+ * scene.
  *
  * Each key has one row in a table. Scene files are read and written by these rows, and hl_scene_create()
  * takes its checks and defaults from them. Programs can make editors and documents from them, too. */

@@ -1,4 +1,4 @@
-/* halflight/transfer_function.h - transfer functions, which give each value of a volume its opacity and
+/* halflight/transfer_function.h - makes transfer functions, which give each value of a volume its opacity and
  * colour.
  *
  * Opacities are per unit of length. Colours are linear RGB. */

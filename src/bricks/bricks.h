@@ -1,5 +1,5 @@
-/* bricks/bricks.h - a field in bricks: blocks of B-spline coefficients. Each brick has the spacing of
- * coefficients that its place needs.
+/* bricks/bricks.h - describes a field in bricks: blocks of B-spline coefficients. Each brick has the spacing
+ * of coefficients that its place needs.
  *
  * The lattice. Coefficient i of level l stands at x = 2^l i along each axis, in voxels of level 0. The field
  * is f(x) = sum_i c[l][i] beta(x / 2^l - i), where beta is the cubic B-spline. Every second point of level l

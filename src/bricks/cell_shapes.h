@@ -1,6 +1,5 @@
-/* bricks/cell_shapes.h - a mesh of cells with values, and the shapes of its cells in the world and in a
- * lattice.
- */
+/* bricks/cell_shapes.h - describes a mesh of cells with values, and the shapes of its cells in the world and
+ * in a lattice. */
 #ifndef HL_BRICKS_CELL_SHAPES_H
 #define HL_BRICKS_CELL_SHAPES_H
 

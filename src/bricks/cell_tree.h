@@ -1,4 +1,5 @@
-/* bricks/cell_tree.h - a tree of bounding boxes that finds the cells of a mesh which may meet a box. */
+/* bricks/cell_tree.h - describes a tree of bounding boxes that finds the cells of a mesh which may meet a
+ * box. */
 #ifndef HL_BRICKS_CELL_TREE_H
 #define HL_BRICKS_CELL_TREE_H
 

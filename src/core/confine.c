@@ -1,4 +1,4 @@
-/* core/confine.c - contexts that open only files below a folder. core/file.c enforces this limit. */
+/* core/confine.c - makes contexts that open only files below a folder. core/file.c enforces this limit. */
 #include <string.h>
 #include <unistd.h>
 

@@ -1,4 +1,4 @@
-/* core/context.c - creation of contexts, and their callbacks. */
+/* core/context.c - creates contexts, and implements their callbacks. */
 #include "core/context.h"
 
 #include <stdarg.h>

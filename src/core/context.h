@@ -1,4 +1,4 @@
-/* core/context.h - the inside of hl_context. */
+/* core/context.h - defines the members of hl_context. */
 #ifndef HL_CORE_CONTEXT_H
 #define HL_CORE_CONTEXT_H
 

@@ -1,5 +1,6 @@
-/* core/door.h - the floating-point environment of public functions: they compute in C's default environment,
- * and restore the host's environment when they return. The entry to such a function is called a door.
+/* core/door.h - sets the floating-point environment of public functions: they compute in C's default
+ * environment, and restore the host's environment when they return. The entry to such a function is called a
+ * door.
  *
  * A host may round upwards, flush small numbers to zero for speed, or let a division by zero send a signal.
  * None of this may change a picture or end a call. A public function that computes begins with HL_DOOR, and

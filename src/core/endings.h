@@ -1,4 +1,4 @@
-/* core/endings.h - the lists of endings in hl_file_format. */
+/* core/endings.h - makes the lists of endings in hl_file_format. */
 #ifndef HL_CORE_ENDINGS_H
 #define HL_CORE_ENDINGS_H
 

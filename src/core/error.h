@@ -1,4 +1,4 @@
-/* core/error.h - how a function reports a failure: by a status, and by a line for a person. */
+/* core/error.h - reports failures of functions: by a status, and by a line for a person. */
 #ifndef HL_CORE_ERROR_H
 #define HL_CORE_ERROR_H
 

@@ -1,4 +1,4 @@
-/* core/file.c - reading whole files, and outputs that appear complete or not at all. */
+/* core/file.c - reads whole files, and writes outputs that appear complete or not at all. */
 #define _GNU_SOURCE
 #include "core/file.h"
 

@@ -1,5 +1,5 @@
-/* core/memory.c - checked allocation, which counts the context's bytes and enforces its memory limit; and
- * reserves, which keep blocks of memory from frame to frame. */
+/* core/memory.c - implements checked allocation, which counts the context's bytes and enforces its memory
+ * limit; and reserves, which keep blocks of memory from frame to frame. */
 #include "core/memory.h"
 
 #include <string.h>

@@ -1,5 +1,5 @@
-/* core/memory.h - checked allocation through the context, and blocks that are kept from frame to frame. All
- * blocks are 64-byte aligned. */
+/* core/memory.h - declares checked allocation through the context, and blocks that are kept from frame to
+ * frame. All blocks are 64-byte aligned. */
 #ifndef HL_CORE_MEMORY_H
 #define HL_CORE_MEMORY_H
 

@@ -1,4 +1,4 @@
-/* core/pool.c - a team of threads that run jobs together. Jobs follow each other quickly (two for each
+/* core/pool.c - runs a team of threads that run jobs together. Jobs follow each other quickly (two for each
  * sheet). So a worker without work spins for a while before it sleeps; with more threads than processors it
  * sleeps at once.
  *

@@ -1,4 +1,4 @@
-/* core/pool.h - a team of threads, which runs a function for every index.
+/* core/pool.h - runs a team of threads, which runs a function for every index.
  *
  * The caller is worker 0 and works too. Any worker may get any index, so the function's results must not
  * depend on the worker, and no two indices may write to the same output.

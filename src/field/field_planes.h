@@ -1,5 +1,5 @@
-/* field/field_planes.h - planes: arrays with one number for each cell of a slice, and a border around the
- * cells. */
+/* field/field_planes.h - describes planes: arrays with one number for each cell of a slice, and a border
+ * around the cells. */
 #ifndef HL_FIELD_FIELD_PLANES_H
 #define HL_FIELD_FIELD_PLANES_H
 

@@ -1,5 +1,5 @@
-/* field/field_share.h - how the processes that share a picture find a field together: each process finds some
- * of its slabs, and gets the other slabs from the processes that have found them.
+/* field/field_share.h - lets the processes that share a picture find a field together: each process finds
+ * some of its slabs, and gets the other slabs from the processes that have found them.
  *
  * A slab is all cells of one z. */
 #ifndef HL_FIELD_FIELD_SHARE_H

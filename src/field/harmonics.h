@@ -1,4 +1,4 @@
-/* field/harmonics.h - real spherical harmonics up to the second degree. */
+/* field/harmonics.h - computes real spherical harmonics up to the second degree. */
 #ifndef HL_FIELD_HARMONICS_H
 #define HL_FIELD_HARMONICS_H
 

@@ -1,4 +1,4 @@
-/* fill/fill.h - filling a tile of a sheet with densities, by splatting or gathering.
+/* fill/fill.h - fills a tile of a sheet with densities, by splatting or gathering.
  *
  * Splatting is the paper's way: it adds every voxel's footprint to the tile. Gathering sums the 4x4x4 voxels
  * around the point of every pixel that is needed. Both give the same densities up to rounding. */
@@ -14,7 +14,7 @@ typedef struct fill_source {
   const grid *grid;
   const kernel *kernel;
   const classifier *classifier; /* tells which blocks show nothing; if null, all blocks may show something */
-  sheet_rays rays;              /* map pixels of the view to the grid's index space */
+  sheet_rays rays;              /* the maps from pixels of the view to the grid's index space */
   const voxel_lists *lists;     /* the sorted voxels; only splatting reads them */
   int sheet;
 } fill_source;

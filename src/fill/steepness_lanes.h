@@ -1,6 +1,6 @@
-/* fill/steepness_lanes.h - the factor by which a volume's extinction is multiplied. The factor follows from
- * the length of the volume's gradient, from the volume's mask, and from the second number of its transfer
- * function. */
+/* fill/steepness_lanes.h - computes the factor by which a volume's extinction is multiplied. The factor
+ * follows from the length of the volume's gradient, from the volume's mask, and from the second number of its
+ * transfer function. */
 #ifndef HL_FILL_STEEPNESS_LANES_H
 #define HL_FILL_STEEPNESS_LANES_H
 

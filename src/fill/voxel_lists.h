@@ -1,4 +1,5 @@
-/* fill/voxel_lists.h - the relevant voxels, sorted by tile and sheet for splatting (step 2 of the paper). */
+/* fill/voxel_lists.h - lists the relevant voxels, sorted by tile and sheet for splatting (step 2 of the
+ * paper). */
 #ifndef HL_FILL_VOXEL_LISTS_H
 #define HL_FILL_VOXEL_LISTS_H
 

@@ -1,5 +1,5 @@
-/* gpu/device_sweep.h - one sweep of a frame as plain data. Together with voxels and tables, these data are
- * all that a device needs.
+/* gpu/device_sweep.h - describes one sweep of a frame as plain data. Together with voxels and tables, these
+ * data are all that a device needs.
  *
  * The structs have only members of 32 bits, and no pointers. The host fills them (render/device_plan.c), and
  * the kernels include this same header: its text is valid C17, OpenCL C 1.2 and CUDA C++. Unless a comment

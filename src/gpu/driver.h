@@ -1,5 +1,5 @@
-/* gpu/driver.h - the interface by which a back end uses a system's GPUs. A driver is CUDA (cuda_driver.c) or
- * OpenCL (opencl_driver.c). Its library is loaded when a device is asked for.
+/* gpu/driver.h - declares the interface by which a back end uses a system's GPUs. A driver is CUDA
+ * (cuda_driver.c) or OpenCL (opencl_driver.c). Its library is loaded when a device is asked for.
  *
  * A function that fails returns false, and leaves a line of text in the device's `problem`. */
 #ifndef HL_GPU_DRIVER_H

@@ -1,5 +1,5 @@
-/* gpu/gpu.h - the back end for GPUs: a device that keeps a volume, runs the sweeps of a frame and gives their
- * pixels.
+/* gpu/gpu.h - declares the back end for GPUs: a device that keeps a volume, runs the sweeps of a frame and
+ * gives their pixels.
  *
  * The steps of a frame are: hl_gpu_prepare() copies the volume and its tables to the device, unless the
  * device has them already; hl_gpu_run() starts one sweep; hl_gpu_read() waits for the sweep's pixels. A

@@ -1,4 +1,4 @@
-/* gpu/gpu_state.h - the data of an open device. */
+/* gpu/gpu_state.h - defines the data of an open device. */
 #ifndef HL_GPU_GPU_STATE_H
 #define HL_GPU_GPU_STATE_H
 

@@ -1,5 +1,5 @@
-/* grid/bounds.h - the least and the greatest value that samples in each brick, and in each group of 2x2x2
- * cells, can have. The bounds are found once for each volume.
+/* grid/bounds.h - finds the least and the greatest value that samples in each brick, and in each group of
+ * 2x2x2 cells, can have. The bounds are found once for each volume.
  *
  * The bounds of a brick are the least and the greatest of the voxels on which its cells and the cells around
  * it depend. Cells are bounded more tightly: in a cell, a cubic B-spline lies between the least and the

@@ -1,4 +1,4 @@
-/* grid/classifier.h - a transfer function as tables: it classifies densities after interpolation.
+/* grid/classifier.h - describes a transfer function as tables: it classifies densities after interpolation.
  *
  * The tables map density on a sheet (stored units, relative to the grid's empty value) to extinction and
  * colour, linear between CLASSIFIER_ENTRIES equal steps over all values that the volume can take. Along a ray

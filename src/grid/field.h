@@ -1,4 +1,5 @@
-/* grid/field.h - the field that the kernel makes of a grid's voxels: its value and gradient at any point.
+/* grid/field.h - describes the field that the kernel makes of a grid's voxels: its value and gradient at any
+ * point.
  *
  * Points are in index space, values in stored units. Beyond the grid's faces the values of the border's
  * voxels continue. */

@@ -1,5 +1,5 @@
-/* grid/grid.h - a volume ready for sampling: its voxels, their position in the frame, and bricks and cells
- * that tell where the transfer function shows something.
+/* grid/grid.h - describes a volume ready for sampling: its voxels, their position in the frame, and bricks
+ * and cells that tell where the transfer function shows something.
  *
  * Densities on sheets are differences from the grid's empty value, in stored units (the units of the voxels).
  * Where no voxel is splatted the density is 0, the empty value. Where only some of the voxels around a point

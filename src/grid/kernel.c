@@ -1,4 +1,4 @@
-/* grid/kernel.c - the kernels' polynomials. */
+/* grid/kernel.c - defines the kernels' polynomials. */
 #include "grid/kernel.h"
 
 #include <math.h>

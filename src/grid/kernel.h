@@ -1,4 +1,4 @@
-/* grid/kernel.h - reconstruction kernels, described by polynomials.
+/* grid/kernel.h - describes reconstruction kernels by polynomials.
  *
  * A kernel is a symmetric one-dimensional function of the distance d in voxels. It is a polynomial in |d| on
  * [0,1] (inner), and another polynomial on [1,2] (outer). A voxel's weight is the product of this function

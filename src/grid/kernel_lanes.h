@@ -1,4 +1,4 @@
-/* grid/kernel_lanes.h - a kernel's weights and their derivatives at sixteen points. */
+/* grid/kernel_lanes.h - computes a kernel's weights and their derivatives at sixteen points. */
 #ifndef HL_GRID_KERNEL_LANES_H
 #define HL_GRID_KERNEL_LANES_H
 

@@ -1,5 +1,5 @@
-/* grid/mask_lattice.h - a volume's mask, prepared for frames: factors of extinction, and colours, at the
- * points of a lattice. Between the points they are interpolated linearly. */
+/* grid/mask_lattice.h - describes a volume's mask, prepared for frames: factors of extinction, and colours,
+ * at the points of a lattice. Between the points they are interpolated linearly. */
 #ifndef HL_GRID_MASK_LATTICE_H
 #define HL_GRID_MASK_LATTICE_H
 

@@ -1,4 +1,5 @@
-/* grid/matter_key.h - the key (core/key.h) of results that depend on the extinction of a volume's matter. */
+/* grid/matter_key.h - makes the key (core/key.h) of results that depend on the extinction of a volume's
+ * matter. */
 #ifndef HL_GRID_MATTER_KEY_H
 #define HL_GRID_MATTER_KEY_H
 

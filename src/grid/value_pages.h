@@ -1,4 +1,4 @@
-/* grid/value_pages.h - the values that a grid samples for a volume larger than memory: voxels whose
+/* grid/value_pages.h - keeps the values that a grid samples for a volume larger than memory: voxels whose
  * non-finite values are replaced, or the coefficients of the interpolating kernel.
  *
  * For a volume in memory these values are a copy (make_grid.c). For a volume larger than memory they are

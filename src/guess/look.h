@@ -1,4 +1,4 @@
-/* guess/look.h - a look: a transfer function, and the light and shading that go with it. */
+/* guess/look.h - describes a look: a transfer function, and the light and shading that go with it. */
 #ifndef HL_GUESS_LOOK_H
 #define HL_GUESS_LOOK_H
 

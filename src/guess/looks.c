@@ -1,5 +1,5 @@
-/* guess/looks.c - the table of looks, the choice of a look by a volume's analysis, and presets of transfer
- * functions.
+/* guess/looks.c - defines the table of looks, chooses a look by a volume's analysis, and defines presets of
+ * transfer functions.
  *
  * Scans that may be of a body are coloured like skin, all other scans like ivory. */
 #include "guess/looks.h"

@@ -1,4 +1,4 @@
-/* guess/looks.h - the looks by which volumes of each kind are shown by default. */
+/* guess/looks.h - chooses the looks by which volumes of each kind are shown by default. */
 #ifndef HL_GUESS_LOOKS_H
 #define HL_GUESS_LOOKS_H
 

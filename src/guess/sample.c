@@ -1,4 +1,5 @@
-/* guess/sample.c - a sorted sample of a volume's voxels, and the thresholds and modes of the sample. */
+/* guess/sample.c - takes a sorted sample of a volume's voxels, and finds the thresholds and modes of the
+ * sample. */
 #include "guess/sample.h"
 
 #include <math.h>

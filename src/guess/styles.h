@@ -1,5 +1,5 @@
-/* guess/styles.h - styles: looks that a user asks for by name, independently of the kind of data in the
- * volume. */
+/* guess/styles.h - describes styles: looks that a user asks for by name, independently of the kind of data in
+ * the volume. */
 #ifndef HL_GUESS_STYLES_H
 #define HL_GUESS_STYLES_H
 

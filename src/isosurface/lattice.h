@@ -1,4 +1,5 @@
-/* isosurface/lattice.h - a lattice of points that tells for each point whether it lies inside the surface.
+/* isosurface/lattice.h - describes a lattice of points that tells for each point whether it lies inside the
+ * surface.
  *
  * The points stand at the voxels, and on the faces of the grid: along an axis of n voxels, point 0 lies at
  * -0.5, point i at i - 1, point n + 1 at n - 0.5. A cell lies between 2x2x2 points, and has the number of its

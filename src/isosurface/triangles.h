@@ -1,5 +1,5 @@
-/* isosurface/triangles.h - the triangles of an isosurface while they are made, in index space. Their normals
- * are the directions of the field's gradient, and point away from the inside. */
+/* isosurface/triangles.h - describes the triangles of an isosurface while they are made, in index space.
+ * Their normals are the directions of the field's gradient, and point away from the inside. */
 #ifndef HL_ISOSURFACE_TRIANGLES_H
 #define HL_ISOSURFACE_TRIANGLES_H
 

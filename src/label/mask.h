@@ -1,5 +1,5 @@
-/* label/mask.h - the lattice of a mask: the factors and colours that a label map gives to another volume's
- * matter. */
+/* label/mask.h - makes the lattice of a mask: the factors and colours that a label map gives to another
+ * volume's matter. */
 #ifndef HL_LABEL_MASK_H
 #define HL_LABEL_MASK_H
 

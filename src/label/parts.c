@@ -1,4 +1,4 @@
-/* label/parts.c - the parts of a label map's grid that hold labels; see occupancy.h. */
+/* label/parts.c - finds the parts of a label map's grid that hold labels (occupancy.h). */
 #include "core/context.h"
 #include "core/memory.h"
 #include "label/occupancy.h"

@@ -1,5 +1,5 @@
-/* label/shelf.h - the shelf of a label map: its occupancies and its last mask, which are kept from scene to
- * scene. */
+/* label/shelf.h - describes the shelf of a label map: its occupancies and its last mask, which are kept from
+ * scene to scene. */
 #ifndef HL_LABEL_SHELF_H
 #define HL_LABEL_SHELF_H
 

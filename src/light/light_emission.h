@@ -1,4 +1,4 @@
-/* light/light_emission.h - the emission image on a light's surface, as the kernel of its penumbrae.
+/* light/light_emission.h - describes the emission image on a light's surface, as the kernel of its penumbrae.
  *
  * The light is cut into cells of equal area. Each cell has the image's mean colour in it. A penumbra is a sum
  * of sharp shadows, one for each cell. The shadow of a cell is shifted in proportion to the cell's offset

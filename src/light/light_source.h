@@ -1,4 +1,4 @@
-/* light/light_source.h - a scene's light in frame space: the whole light or one of its sectors, the
+/* light/light_source.h - describes a scene's light in frame space: the whole light or one of its sectors, the
  * brightness of a spot light by direction, and the region that a light lights.
  *
  * All rays of a pass over the sheets must cross the sheets in the same direction and not too flatly. A light

@@ -1,4 +1,5 @@
-/* light/light_texture.h - the image that a light projects (section 4, fig. 9), ready for look-ups at samples.
+/* light/light_texture.h - describes the image that a light projects (section 4, fig. 9), ready for look-ups
+ * at samples.
  *
  * Every sample is projected onto the screen along its light ray. So the pattern is as sharp as the image,
  * whatever the resolution of the shadow buffer. An image that is finer than the picture is averaged once a

@@ -1,4 +1,4 @@
-/* light/sublight_points.c - the points that stand for a light as sub-lights. */
+/* light/sublight_points.c - finds the points that stand for a light as sub-lights. */
 #include "light/light_extent.h"
 
 #include "scene/light/light_kind.h"

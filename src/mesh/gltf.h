@@ -1,5 +1,5 @@
-/* mesh/gltf.h - the structs and functions that the files of the glTF reader share: buffers, and accessors,
- * which find numbers in buffers. */
+/* mesh/gltf.h - declares the structs and functions that the files of the glTF reader share: buffers, and
+ * accessors, which find numbers in buffers. */
 #ifndef HL_MESH_GLTF_H
 #define HL_MESH_GLTF_H
 

@@ -1,4 +1,4 @@
-/* mesh/mesh.h - the inside of hl_mesh, and functions that its readers share. */
+/* mesh/mesh.h - defines the members of hl_mesh, and functions that its readers share. */
 #ifndef HL_MESH_MESH_H
 #define HL_MESH_MESH_H
 

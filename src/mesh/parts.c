@@ -1,4 +1,4 @@
-/* mesh/parts.c - the arrays of a mesh while its file is read; they grow as needed. */
+/* mesh/parts.c - keeps the arrays of a mesh while its file is read; they grow as needed. */
 #include "core/memory.h"
 #include "mesh/mesh.h"
 

@@ -1,4 +1,4 @@
-/* mesh/polydata.h - the content of VTK's PolyData files, and its conversion to a mesh. */
+/* mesh/polydata.h - reads the content of VTK's PolyData files, and converts it to a mesh. */
 #ifndef HL_MESH_POLYDATA_H
 #define HL_MESH_POLYDATA_H
 

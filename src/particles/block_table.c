@@ -1,5 +1,5 @@
-/* particles/block_table.c - a hash table of blocks (block_table.h). The table uses open addressing: a block
- * whose entry is taken by another block goes to the next free entry. */
+/* particles/block_table.c - implements a hash table of blocks (block_table.h). The table uses open
+ * addressing: a block whose entry is taken by another block goes to the next free entry. */
 #include "particles/block_table.h"
 
 #include <string.h>

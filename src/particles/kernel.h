@@ -1,8 +1,8 @@
-/* particles/kernel.h - the cubic spline kernel of smoothed particle hydrodynamics.
+/* particles/kernel.h - computes the cubic spline kernel of smoothed particle hydrodynamics.
  *
- * W(q) with q = distance / h is 1 - 3/2 q^2 + 3/4 q^3 up to 1, (2 - q)^3 / 4 up to 2, and 0 beyond
- * (J. J. Monaghan, J. C. Lattanzio, 1985), times 1 / (pi h^3). Its variance along an axis is 3/10 h^2
- * (derived: 4/3 times the integral of q^4 W(q), which is 9/40). */
+ * W(q) with q = distance / h is 1 - 3/2 q^2 + 3/4 q^3 up to 1, (2 - q)^3 / 4 up to 2, and 0 beyond (J. J.
+ * Monaghan, J. C. Lattanzio, 1985), times 1 / (pi h^3). Its variance along an axis is 3/10 h^2 (derived: 4/3
+ * times the integral of q^4 W(q), which is 9/40). */
 #ifndef HL_PARTICLES_KERNEL_H
 #define HL_PARTICLES_KERNEL_H
 

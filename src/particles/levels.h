@@ -1,5 +1,6 @@
-/* particles/levels.h - one level of a lattice: where particles stand in it, which points their kernels reach,
- * and the pieces of boxes of points that lie in one block each. Only the files of particles/ include it. */
+/* particles/levels.h - describes one level of a lattice: where particles stand in it, which points their
+ * kernels reach, and the pieces of boxes of points that lie in one block each. Only the files of particles/
+ * include it. */
 #ifndef HL_PARTICLES_LEVELS_H
 #define HL_PARTICLES_LEVELS_H
 

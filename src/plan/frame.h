@@ -1,5 +1,5 @@
-/* plan/frame.h - the geometry of one frame in frame space (framed_scene.h): the positions of the eye, the
- * lights and the content. */
+/* plan/frame.h - describes the geometry of one frame in frame space (framed_scene.h): the positions of the
+ * eye, the lights and the content. */
 #ifndef HL_PLAN_FRAME_H
 #define HL_PLAN_FRAME_H
 

@@ -1,4 +1,4 @@
-/* plan/frame_objects.h - the volumes, lights and meshes of a frame, as plain data in frame space.
+/* plan/frame_objects.h - describes the volumes, lights and meshes of a frame, as plain data in frame space.
  *
  * In: the scene that is brought to frame space (framed_scene.h). Out: the properties of the scene's volumes,
  * lights and meshes that back ends read. Back ends do not read descriptions of a scene. */

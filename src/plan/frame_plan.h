@@ -1,5 +1,5 @@
-/* plan/frame_plan.h - the plan of a frame: everything that is decided before its first sheet, as plain data
- * in frame space.
+/* plan/frame_plan.h - describes the plan of a frame: everything that is decided before its first sheet, as
+ * plain data in frame space.
  *
  * A plan is made once (render/plan_frame.c) and never changes afterwards. A back end (render/backend.h) makes
  * the picture of a plan; the processors and a device read the same plan. A part of a shared picture is the

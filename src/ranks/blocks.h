@@ -1,5 +1,5 @@
-/* ranks/blocks.h - an array of three dimensions shared by all ranks: every rank holds one block, and any rank
- * can fetch any part.
+/* ranks/blocks.h - describes an array of three dimensions shared by all ranks: every rank holds one block,
+ * and any rank can fetch any part.
  *
  * A rank that needs a part sends requests to the ranks whose blocks overlap the part. In each of these ranks
  * a thread answers with packed copies. The messages are two-sided, because blocks may have any layout in

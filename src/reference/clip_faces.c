@@ -1,5 +1,5 @@
-/* reference/clip_faces.c - the faces of a volume's box at which the volume's matter is cut off. The box ends
- * at the grid's border or at the clip box. */
+/* reference/clip_faces.c - finds the faces of a volume's box at which the volume's matter is cut off. The box
+ * ends at the grid's border or at the clip box. */
 #include <math.h>
 
 #include "reference/reference.h"

@@ -1,6 +1,6 @@
-/* reference/cuts.c - whether a point of a volume or a mesh remains after the cuts. A cut is given in the
- * world of the volume's file, or in the scene's world. The point is converted to the same world before it is
- * tested.
+/* reference/cuts.c - finds whether a point of a volume or a mesh remains after the cuts. A cut is given in
+ * the world of the volume's file, or in the scene's world. The point is converted to the same world before it
+ * is tested.
  *
  * The height of a point over a cut's face is positive outside the cut's shape, and negative inside. Heights
  * have the length unit of the cut's world. */

@@ -1,6 +1,6 @@
-/* reference/isosurfaces.c - where rays meet isosurfaces. A ray meets an isosurface where the field along the
- * ray has the surface's value. It also meets the surface at faces of the volume's box and cuts, where such a
- * face cuts through the inside of the surface. */
+/* reference/isosurfaces.c - finds the points at which rays meet isosurfaces. A ray meets an isosurface where
+ * the field along the ray has the surface's value. It also meets the surface at faces of the volume's box and
+ * cuts, where such a face cuts through the inside of the surface. */
 #include "reference/reference.h"
 
 /* A stretch of a ray. At one end the field is above an isosurface's value, at the other end below it. */

@@ -1,5 +1,5 @@
-/* reference/passing.c - the fraction of light that passes volumes and surfaces on a ray. The light goes to a
- * point, or to the outside of the volume's surface in which the point lies.
+/* reference/passing.c - computes the fraction of light that passes volumes and surfaces on a ray. The light
+ * goes to a point, or to the outside of the volume's surface in which the point lies.
  *
  * A volume's surface is lit by the light that arrives at the surface's outside. So the matter of a surface
  * does not shade the deeper parts of the same surface. A ray is followed from the point to the light. T is

@@ -1,4 +1,4 @@
-/* reference/reference.h - the inside of the oracle: a ray marcher in double precision.
+/* reference/reference.h - declares the parts of the oracle, which is a ray marcher in double precision.
  *
  * The oracle, also called the reference, computes a scene's picture slowly and accurately. The pictures of
  * the sheet renderer are compared with this picture. The reference and the renderer share the scene and its

@@ -1,4 +1,4 @@
-/* reference/shade.c - the colour that a lit sample sends to the eye; eqs. (3) and (4).
+/* reference/shade.c - computes the colour that a lit sample sends to the eye; eqs. (3) and (4).
  *
  *     surface   C = c ka Ia + c kd I max(N.L, 0) + ks I max(E.R, 0)^n     (specular only where N.L > 0)
  *     medium    C = c (ka Ia + p I)

@@ -1,4 +1,4 @@
-/* render/cut.h - a cut of a volume, in the form that is tested at samples. */
+/* render/cut.h - describes a cut of a volume, in the form that is tested at samples. */
 #ifndef HL_RENDER_CUT_H
 #define HL_RENDER_CUT_H
 

@@ -1,4 +1,4 @@
-/* render/hot.h - the tables of all hot functions, one table for each instruction set.
+/* render/hot.h - declares the tables of all hot functions, one table for each instruction set.
  *
  * Each function is written once, in a file *_lanes.h, and src/hot compiles it for every instruction set; all
  * versions give the same bytes. The code of a folder gets only the table of its own functions. */

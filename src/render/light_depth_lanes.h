@@ -127,7 +127,7 @@ typedef struct light_depths {
   /* near a face: the optical depths of the light's ways from the face to each near pixel on the first
    * sheet */
   lanes near[HL_CHANNELS][NEAR_PIXELS];
-  lanes_int face; /* lanes near a face of a box */
+  lanes_int face; /* the lanes that are near a face of a box */
   lanes beside;   /* near a face, the weight of the correction for the face, from 0 to 1 */
   /* near a face: the depths `enter` and `more` for the light's way before the slab; the other members are for
    * its way within the slab */

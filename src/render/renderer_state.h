@@ -1,5 +1,5 @@
-/* render/renderer_state.h - the struct hl_renderer with the data that a renderer keeps between frames, and a
- * caller's request for a frame. */
+/* render/renderer_state.h - defines the struct hl_renderer with the data that a renderer keeps between
+ * frames, and a caller's request for a frame. */
 #ifndef HL_RENDER_RENDERER_STATE_H
 #define HL_RENDER_RENDERER_STATE_H
 

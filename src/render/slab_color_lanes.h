@@ -1,4 +1,4 @@
-/* render/slab_color_lanes.h - the transfer function's colour of a volume's matter in a slab, at sixteen
+/* render/slab_color_lanes.h - finds the transfer function's colour of a volume's matter in a slab, at sixteen
  * samples (step 13).
  *
  * A slab that spans several colours shows their mean. Derived: a place in a slab with the optical depth e has

@@ -1,5 +1,6 @@
-/* render/slab_lanes.h - the slab between two sheets before it is lit (steps 12 and 13): the volumes' matter
- * on sixteen rays through the slab, the place where this matter is seen, and its gradient at this place.
+/* render/slab_lanes.h - describes the slab between two sheets before it is lit (steps 12 and 13): the
+ * volumes' matter on sixteen rays through the slab, the place where this matter is seen, and its gradient at
+ * this place.
  *
  * The sixteen pixels are a 4x4 block, or pixels of several blocks packed together (pack_lanes.h). */
 #ifndef HL_RENDER_SLAB_LANES_H

@@ -1,5 +1,5 @@
-/* render/sweep.h - one pass over the sheets on the processors: its state, and the stages that the sheet
- * loop calls. The plan says what the pass does (plan/frame_plan.h), and the pass never changes it.
+/* render/sweep.h - describes one pass over the sheets on the processors: its state, and the stages that the
+ * sheet loop calls. The plan says what the pass does (plan/frame_plan.h), and the pass never changes it.
  *
  * Each tile is worked on by one task at a time. A task fills, shades and composites a tile of the picture, or
  * fills and composites a tile of a light's buffer. The order of the work on a tile is always the same, so

@@ -1,5 +1,5 @@
-/* render/sweep_constants.h - the constants that all slabs of a sweep have in common, in the form that the
- * loops over samples read. They are made from the plan, for every back end. */
+/* render/sweep_constants.h - defines the constants that all slabs of a sweep have in common, in the form that
+ * the loops over samples read. They are made from the plan, for every back end. */
 #ifndef HL_RENDER_SWEEP_CONSTANTS_H
 #define HL_RENDER_SWEEP_CONSTANTS_H
 

@@ -1,4 +1,4 @@
-/* render/sweep_layers.h - the layers of a sweep: its tiles are shaded once more for each layer. */
+/* render/sweep_layers.h - makes the layers of a sweep: its tiles are shaded once more for each layer. */
 #ifndef HL_RENDER_SWEEP_LAYERS_H
 #define HL_RENDER_SWEEP_LAYERS_H
 

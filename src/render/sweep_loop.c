@@ -1,5 +1,5 @@
-/* render/sweep_loop.c - the loop over the sheets: it goes through stretches of slabs, whose tiles are divided
- * among the threads.
+/* render/sweep_loop.c - runs the loop over the sheets: it goes through stretches of slabs, whose tiles are
+ * divided among the threads.
  *
  * Light never depends on the picture. So the lights' stretch r + 1 and the picture's stretch r are one set of
  * tasks. At the end of the set all threads wait for each other. With K slabs in a stretch, the picture's

@@ -1,4 +1,4 @@
-/* render/sweep_stages.c - the work on one tile in one slab. It is a tile of the picture, or of a light's
+/* render/sweep_stages.c - does the work on one tile in one slab. It is a tile of the picture, or of a light's
  * buffer. */
 #include "core/context.h"
 #include "render/sweep_layers.h"

@@ -1,5 +1,5 @@
-/* render/target.h - the pixels that the back ends make: pixels of the picture, pixels of its layers, and the
- * values of a maximum projection. */
+/* render/target.h - describes the pixels that the back ends make: pixels of the picture, pixels of its
+ * layers, and the values of a maximum projection. */
 #ifndef HL_RENDER_TARGET_H
 #define HL_RENDER_TARGET_H
 

@@ -1,4 +1,4 @@
-/* scatter/parts.h - the data and functions that the files of the folder scatter share. */
+/* scatter/parts.h - declares the data and functions that the files of the folder scatter share. */
 #ifndef HL_SCATTER_PARTS_H
 #define HL_SCATTER_PARTS_H
 

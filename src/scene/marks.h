@@ -1,4 +1,4 @@
-/* scene/marks.h - the marks of a scene: measures and texts that stand in it. */
+/* scene/marks.h - describes the marks of a scene: measures and texts that stand in it. */
 #ifndef HL_SCENE_MARKS_H
 #define HL_SCENE_MARKS_H
 

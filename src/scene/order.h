@@ -1,4 +1,4 @@
-/* scene/order.h - the order in which frames take a scene's lights, volumes and meshes.
+/* scene/order.h - finds the order in which frames take a scene's lights, volumes and meshes.
  *
  * A picture depends slightly on this order: lights get their sheets one after the other, and sums of floats
  * depend on the order of the terms. So frames use an order that depends on the lights, volumes and meshes

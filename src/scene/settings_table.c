@@ -1,8 +1,7 @@
-/* scene/settings_table.c - the tables of settings: one row for each key of a scene.
+/* scene/settings_table.c - defines the tables of settings: one row for each key of a scene.
  *
  * A new setting is a field of a public struct and a row here; scripts/settings then writes it into the schema
- * and the manual page. Ranges, defaults and names stand nowhere else.
- */
+ * and the manual page. Ranges, defaults and names stand nowhere else. */
 #include <stddef.h>
 
 #include <halflight/settings.h>

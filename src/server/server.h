@@ -1,7 +1,6 @@
-/* server/server.h - the viewer's server, by which pages in browsers show and change scenes.
+/* server/server.h - declares the viewer's server, by which pages in browsers show and change scenes.
  *
  * It answers only on 127.0.0.1, under a path that begins with a random token:
- *
  *
  * - GET TOKEN/: the page, and the files it consists of (page/, embedded in the program)
  * - GET TOKEN/start.json?opened=N: the open scene, its volumes' ranges and histograms, presets, colormaps

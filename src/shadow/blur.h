@@ -1,4 +1,5 @@
-/* shadow/blur.h - centred box blur of a shadow buffer, tile by tile: along rows, then along columns. */
+/* shadow/blur.h - applies a centred box blur to a shadow buffer, tile by tile: along rows, then along
+ * columns. */
 #ifndef HL_SHADOW_BLUR_H
 #define HL_SHADOW_BLUR_H
 

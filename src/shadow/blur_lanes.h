@@ -1,4 +1,4 @@
-/* shadow/blur_lanes.h - box blurs of one tile, a row of sixteen pixels at a time. */
+/* shadow/blur_lanes.h - computes box blurs of one tile, a row of sixteen pixels at a time. */
 #ifndef HL_SHADOW_BLUR_LANES_H
 #define HL_SHADOW_BLUR_LANES_H
 

@@ -1,5 +1,5 @@
-/* shadow/shadow_buffer.h - the shadow buffer, an image that holds the transmittance from a light to each of
- * the last sheets.
+/* shadow/shadow_buffer.h - describes the shadow buffer, an image that holds the transmittance from a light to
+ * each of the last sheets.
  *
  * For hard shadows the buffer is perpendicular to the light's direction, for soft shadows parallel to the
  * sheets (fig. 17). At the volume its pixels are hardly larger than the picture's pixels. Around the buffer

@@ -1,4 +1,4 @@
-/* shadow/shadow_method.h - the interface of a shadow method.
+/* shadow/shadow_method.h - declares the interface of a shadow method.
  *
  * A method advances the shadow buffer of one light in lock-step with the picture. Each method is a table of
  * functions in a folder of its own, src/shadow_NAME/. The file scene/soft_methods.h lists the methods of soft

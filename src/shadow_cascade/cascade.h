@@ -1,5 +1,5 @@
-/* shadow_cascade/cascade.h - soft shadows whose penumbrae have the right width, which the paper's method does
- * not reach.
+/* shadow_cascade/cascade.h - makes soft shadows whose penumbrae have the right width, which the paper's
+ * method does not reach.
  *
  * Penumbrae. Positions and widths are measured on a plane parallel to the sheets, onto which everything is
  * projected from the light's centre. On this plane a slab at height o casts a penumbra of width w = omega(r)

@@ -1,4 +1,5 @@
-/* shadow_cascade/cascade_field.h - tile operations on the fields of a cascade: sums, halving, doubling. */
+/* shadow_cascade/cascade_field.h - declares tile operations on the fields of a cascade: sums, halving,
+ * doubling. */
 #ifndef HL_SHADOW_CASCADE_CASCADE_FIELD_H
 #define HL_SHADOW_CASCADE_CASCADE_FIELD_H
 

@@ -1,4 +1,4 @@
-/* shadow_cascade/cascade_passes.c - sums, blurs and merges of a cascade's fields. */
+/* shadow_cascade/cascade_passes.c - computes sums, blurs and merges of a cascade's fields. */
 #include "shadow_cascade/cascade_passes.h"
 
 #include <string.h>

@@ -1,4 +1,5 @@
-/* shadow_paper/paper.c - the paper's soft shadows (sections 5.1 and 5.2), unchanged, as the baseline.
+/* shadow_paper/paper.c - implements the paper's soft shadows (sections 5.1 and 5.2), unchanged, as the
+ * baseline.
  *
  * One shadow buffer goes from sheet to sheet, and is convolved again and again with a box, or with the
  * light's emission image. Eq. (5) of the paper gives the width of the box or image for the step from the last

@@ -1,4 +1,4 @@
-/* shadow_sublights/sublights.h - soft shadows as the mean of many sharp ones (beyond the paper).
+/* shadow_sublights/sublights.h - makes soft shadows as the mean of many sharp ones (beyond the paper).
  *
  * M x M sub-lights stand for the light. Each sub-light is a point, or a direction, and has a shadow buffer of
  * its own, parallel to the sheets. A slab is classified once, in the view of the light's centre. Seen from a

@@ -1,5 +1,5 @@
-/* simd/narrow.h - sixteen small numbers in 16 or 8 bits each, for AVX2. The packing instructions order lanes
- * as 0-3, 8-11, 4-7, 12-15. */
+/* simd/narrow.h - defines sixteen small numbers in 16 or 8 bits each, for AVX2. The packing instructions
+ * order lanes as 0-3, 8-11, 4-7, 12-15. */
 #ifndef HL_SIMD_NARROW_H
 #define HL_SIMD_NARROW_H
 

@@ -1,4 +1,4 @@
-/* surface/fragment.h - fragments: parts of single pixels that surfaces cover.
+/* surface/fragment.h - describes fragments: parts of single pixels that surfaces cover.
  *
  * A fragment is the part of one pixel that one triangle, or one side of a sphere, covers. Each pixel has
  * sixteen sample positions. A fragment has a set of covered samples, and one height for all of them. Heights

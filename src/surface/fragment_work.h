@@ -1,5 +1,5 @@
-/* surface/fragment_work.h - the data that the tiles of a view share while their fragments are made, and the
- * data of each thread. */
+/* surface/fragment_work.h - describes the data that the tiles of a view share while their fragments are made,
+ * and the data of each thread. */
 #ifndef HL_SURFACE_FRAGMENT_WORK_H
 #define HL_SURFACE_FRAGMENT_WORK_H
 

@@ -1,5 +1,5 @@
-/* surface/primitive.h - the interface of a kind of primitive: triangles or spheres. (Tubes are triangles and
- * spheres: mesh/tubes.c.) primitive_kinds.h lists the kinds.
+/* surface/primitive.h - declares the interface of a kind of primitive: triangles or spheres. (Tubes are
+ * triangles and spheres: mesh/tubes.c.) primitive_kinds.h lists the kinds.
  *
  * Each kind has a table in a file of its own. Other code calls the functions of the table, and does not name
  * kinds. Some functions work on sixteen primitives of one kind at a time (small_triangles.h,

@@ -1,5 +1,5 @@
-/* surface/primitive_kinds.h - the list of the kinds of primitives. The numbers of primitives follow the order
- * of this list.
+/* surface/primitive_kinds.h - gives the list of the kinds of primitives. The numbers of primitives follow the
+ * order of this list.
  *
  * A kind "sphere" has the table hl_primitive_sphere (primitive.h) in sphere.c, and the table hl_raster_sphere
  * (primitive_raster.h) in sphere_raster.c. The kinds that have corners come first. */

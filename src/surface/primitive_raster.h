@@ -1,5 +1,5 @@
-/* surface/primitive_raster.h - the interface by which views see a kind of primitive, and by which its
- * primitives become fragments.
+/* surface/primitive_raster.h - declares the interface by which views see a kind of primitive, and by which
+ * its primitives become fragments.
  *
  * Each kind of primitive (primitive.h) has one such table. Files of the folder surface call the functions of
  * the table: to sort primitives into tiles, to rasterise them and to cut crossing fragments. A kind is

@@ -1,4 +1,4 @@
-/* surface/sample_rows.h - the positions of the sixteen samples of a pixel.
+/* surface/sample_rows.h - defines the positions of the sixteen samples of a pixel.
  *
  * Sample i lies at ((i + 1/2) / 16, (SAMPLE_ROWS[i] + 1/2) / 16) of the pixel. No two samples share a row or
  * a column. */

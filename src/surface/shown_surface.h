@@ -1,5 +1,5 @@
-/* surface/shown_surface.h - the surface that a fragment of the eye's view shows, and the heights of this
- * surface. */
+/* surface/shown_surface.h - describes the surface that a fragment of the eye's view shows, and the heights of
+ * this surface. */
 #ifndef HL_SURFACE_SHOWN_SURFACE_H
 #define HL_SURFACE_SHOWN_SURFACE_H
 

@@ -1,5 +1,5 @@
-/* surface/small_batch.h - a batch: up to sixteen primitives of one kind and one mesh that are rasterised
- * together. */
+/* surface/small_batch.h - describes a batch: up to sixteen primitives of one kind and one mesh that are
+ * rasterised together. */
 #ifndef HL_SURFACE_SMALL_BATCH_H
 #define HL_SURFACE_SMALL_BATCH_H
 

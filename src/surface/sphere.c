@@ -1,4 +1,4 @@
-/* surface/sphere.c - the table of functions for primitives that are spheres (primitive.h). */
+/* surface/sphere.c - defines the table of functions for primitives that are spheres (primitive.h). */
 #include "mesh/mesh.h"
 #include "surface/primitive_lattice.h"
 #include "surface/primitive_raster.h"

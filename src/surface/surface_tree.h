@@ -1,5 +1,5 @@
-/* surface/surface_tree.h - a tree of boxes around triangles and spheres. The tree finds where single rays
- * meet triangles and spheres.
+/* surface/surface_tree.h - makes a tree of boxes around triangles and spheres. The tree finds where single
+ * rays meet triangles and spheres.
  *
  * The rays belong to no view. They are rays between a light and the nodes of a coarse grid, the lines of this
  * grid, and short rays from points of surfaces towards a light. The tree holds primitives that cast

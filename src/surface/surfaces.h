@@ -1,4 +1,4 @@
-/* surface/surfaces.h - the triangles and spheres of all meshes of a scene, in frame space.
+/* surface/surfaces.h - describes the triangles and spheres of all meshes of a scene, in frame space.
  *
  * In: the scene's meshes. Out: the surfaces that fragments.c rasterises and the sweep shades. They are kept
  * between frames as long as the same meshes stand in the same places. */

@@ -1,4 +1,4 @@
-/* surface/triangle.c - the table of functions for primitives that are triangles (primitive.h). */
+/* surface/triangle.c - defines the table of functions for primitives that are triangles (primitive.h). */
 #include "surface/triangle.h"
 #include "surface/primitive_lattice.h"
 #include "surface/primitive_raster.h"

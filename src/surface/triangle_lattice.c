@@ -1,4 +1,4 @@
-/* surface/triangle_lattice.c - the table of functions by which lines through a lattice meet triangles
+/* surface/triangle_lattice.c - defines the table of functions by which lines through a lattice meet triangles
  * (primitive_lattice.h).
  *
  * The points of a triangle are sheared, so that the lines become upright and have whole numbers as columns

@@ -1,4 +1,4 @@
-/* text/stem.h - the names that volumes and meshes have after their files. */
+/* text/stem.h - finds the names that volumes and meshes have after their files. */
 #ifndef HL_TEXT_STEM_H
 #define HL_TEXT_STEM_H
 

@@ -1,5 +1,5 @@
-/* volume/colors.c - the colours of voxels: their codes, their weights, and the densities from which opacity
- * is computed. */
+/* volume/colors.c - computes the colours of voxels: their codes, their weights, and the densities from which
+ * opacity is computed. */
 #include "volume/colors.h"
 
 #include <math.h>

@@ -1,4 +1,4 @@
-/* volume/convert.c - conversion of packed voxels to stored form.
+/* volume/convert.c - converts packed voxels to stored form.
  *
  * In: bytes as a file or a caller gives them. Out: u8, u16 or f32, native byte order. One loop per type, so
  * that compilers vectorise each; loads go through memcpy because bytes from files are not aligned. */

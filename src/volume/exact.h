@@ -1,4 +1,4 @@
-/* volume/exact.h - the file's own numbers, kept beside stored values that round some of them.
+/* volume/exact.h - keeps the file's own numbers beside stored values that round some of them.
  *
  * Stored values of 32-bit and 64-bit integers and of doubles are floats, which hold whole numbers exactly up
  * to 2^24. Where a file has greater numbers that a float rounds (the ids of atlases), the numbers themselves

@@ -1,4 +1,4 @@
-/* volume/statistics.c - range, mean, histogram, non-finite count and percentiles of a volume.
+/* volume/statistics.c - finds range, mean, histogram, non-finite count and percentiles of a volume.
  *
  * Of u8 and u16 voxels, the occurrences of each stored value are counted, from which all statistics follow
  * exactly. f32 voxels take one pass for range, sum and finiteness, and one for the histogram. Percentiles are

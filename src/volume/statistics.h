@@ -1,4 +1,4 @@
-/* volume/statistics.h - range, mean, histogram and number of non-finite voxels of a volume. */
+/* volume/statistics.h - finds range, mean, histogram and number of non-finite voxels of a volume. */
 #ifndef HL_VOLUME_STATISTICS_H
 #define HL_VOLUME_STATISTICS_H
 

@@ -1,4 +1,4 @@
-/* volume/volume.h - the members of hl_volume, and functions for the library's own use.
+/* volume/volume.h - defines the members of hl_volume, and functions for the library's own use.
  *
  * Voxels are kept as u8, u16 or f32 in native byte order. Signed integers of 8 and 16 bits are stored with
  * their sign bit flipped, which an offset undoes. All other types become f32. */

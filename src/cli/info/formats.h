@@ -1,4 +1,4 @@
-/* cli/info/formats.h - `halflight info --formats`. */
+/* cli/info/formats.h - prints the formats for `halflight info --formats`. */
 #ifndef HL_CLI_INFO_FORMATS_H
 #define HL_CLI_INFO_FORMATS_H
 

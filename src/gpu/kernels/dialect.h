@@ -1,5 +1,5 @@
-/* gpu/kernels/dialect.h - the dialect of the kernels: macros that hide the differences between OpenCL C 1.2,
- * CUDA C++ and C17.
+/* gpu/kernels/dialect.h - defines the dialect of the kernels: macros that hide the differences between OpenCL
+ * C 1.2, CUDA C++ and C17.
  *
  * Every float operation is one IEEE operation, rounded to nearest. A product and a sum are fused only by the
  * function fused(). So the kernels give the same bytes as the processor's functions (simd/lanes.h), which do

@@ -1,4 +1,4 @@
-/* gpu/kernels/sweep.c - the kernels' entry points. */
+/* gpu/kernels/sweep.c - defines the kernels' entry points. */
 #include "gpu/kernels/sweep.h"
 #include "gpu/kernels/cascade.h"
 #include "gpu/kernels/trial.h"

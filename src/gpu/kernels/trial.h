@@ -1,5 +1,5 @@
-/* gpu/kernels/trial.h - a function whose arithmetic tests a device. It uses every operation that occurs in
- * the kernels. The host compiles the same text (render/device_trial.c) and compares the bits of the
+/* gpu/kernels/trial.h - defines a function whose arithmetic tests a device. It uses every operation that
+ * occurs in the kernels. The host compiles the same text (render/device_trial.c) and compares the bits of the
  * results. */
 #ifndef HL_GPU_TRIAL_H
 #define HL_GPU_TRIAL_H

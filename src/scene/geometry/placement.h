@@ -1,5 +1,5 @@
-/* scene/geometry/placement.h - the positions of a scene's volumes and lights in the world, and frame space.
- */
+/* scene/geometry/placement.h - finds the maps from volumes and meshes to the world, the boxes around them,
+ * and the frame space of a scene. */
 #ifndef HL_SCENE_GEOMETRY_PLACEMENT_H
 #define HL_SCENE_GEOMETRY_PLACEMENT_H
 

@@ -1,5 +1,5 @@
-/* scene/light/directional.c - a light that is infinitely far away. Its points are directions: a disk around
- * the direction in which the light travels. */
+/* scene/light/directional.c - implements a light that is infinitely far away. Its points are directions: a
+ * disk around the direction in which the light travels. */
 #include "scene/light/light_kind.h"
 
 static hl_status check_falloff(const hl_checker *check, const hl_light *light) {

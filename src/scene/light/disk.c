@@ -1,4 +1,4 @@
-/* scene/light/disk.c - a light that is a flat disk with a normal. */
+/* scene/light/disk.c - implements a light that is a flat disk with a normal. */
 #include "scene/light/light_kind.h"
 
 static light_shape shape_of(const hl_light *light) {

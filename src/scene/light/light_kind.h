@@ -1,4 +1,4 @@
-/* scene/light/light_kind.h - the interface of a type of light.
+/* scene/light/light_kind.h - declares the interface of a type of light.
  *
  * Each type of light is a table, in a file of its own: the rules for its settings, and its shape as geometry.
  * light_kinds.h lists the types. Checks, the reading and writing of scene files, and renderers use this

@@ -1,5 +1,5 @@
-/* scene/light/light_kinds.h - the list of the types of light: the enumerator, the name in scene files, and
- * the settings that only lights of this type have. The file of a type "rect" is light/rect.c, its table
+/* scene/light/light_kinds.h - gives the list of the types of light: the enumerator, the name in scene files,
+ * and the settings that only lights of this type have. The file of a type "rect" is light/rect.c, its table
  * hl_light_kind_rect (light_kind.h). The build reads the names here. */
 #ifndef HL_SCENE_LIGHT_LIGHT_KINDS_H
 #define HL_SCENE_LIGHT_LIGHT_KINDS_H

@@ -1,4 +1,4 @@
-/* scene/light/light_shape.h - the shape of a light as geometry: centre, area, points, spread. */
+/* scene/light/light_shape.h - describes the shape of a light as geometry: centre, area, points, spread. */
 #ifndef HL_SCENE_LIGHT_LIGHT_SHAPE_H
 #define HL_SCENE_LIGHT_LIGHT_SHAPE_H
 

@@ -1,4 +1,5 @@
-/* scene/light/polygon.c - a light that is a flat polygon, given by its vertices in order around it. */
+/* scene/light/polygon.c - implements a light that is a flat polygon, given by its vertices in order around
+ * it. */
 #include <stdio.h>
 
 #include "scene/light/light_kind.h"

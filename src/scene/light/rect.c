@@ -1,5 +1,5 @@
-/* scene/light/rect.c - a light that is a parallelogram, given by its centre and two edges. If one of the
- * edges has no length, the light is a line. */
+/* scene/light/rect.c - implements a light that is a parallelogram, given by its centre and two edges. If one
+ * of the edges has no length, the light is a line. */
 #include "scene/light/light_kind.h"
 
 /* The least area of a parallelogram that can carry an image, as a fraction of the product of its edges. */

@@ -1,5 +1,5 @@
-/* volume/formats/format.h - the interface between hl_volume_load and the readers of file formats, and the
- * functions that readers share.
+/* volume/formats/format.h - declares the interface between hl_volume_load and the readers of file formats,
+ * and the functions that readers share.
  *
  * The reader of a format is one file NAME.c, which defines `const hl_format hl_format_NAME`. formats.h is the
  * registry of these NAMEs. A reader lists the file's arrays in its request, asks for a choice, and reads the

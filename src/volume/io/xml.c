@@ -1,4 +1,4 @@
-/* volume/io/xml.c - a small tokeniser for untrusted XML. */
+/* volume/io/xml.c - implements a small tokeniser for untrusted XML. */
 #include "volume/io/xml.h"
 
 #include <string.h>

@@ -1,5 +1,5 @@
-/* volume/store/glimpse.h - the glimpse of a volume larger than memory: the voxels that automatic choices
- * (guess/) need.
+/* volume/store/glimpse.h - describes the glimpse of a volume larger than memory: the voxels that automatic
+ * choices (guess/) need.
  *
  * The glimpse has few voxels, which lie far apart, on lattices. Reading them from a scratch file would take a
  * pass over the whole file each time. So they are copied to memory when the volume is stored. */

@@ -1,4 +1,4 @@
-/* volume/formats/vdb/nanovdb.c - NanoVDB: reads sparse grids of smoke, fire and level sets. */
+/* volume/formats/vdb/nanovdb.c - reads the sparse grids of NanoVDB files: smoke, fire and level sets. */
 #include "volume/formats/vdb/nanovdb.h"
 
 #include <string.h>
