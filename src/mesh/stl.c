@@ -122,9 +122,12 @@ static hl_status read_ascii(mesh_text text, mesh_parts *parts, corner_table *tab
   const char *at = (const char *)text.bytes, *end = at + text.length, *word;
   size_t length, corners = 0;
   float corner[3][3];
+  bool closed = true; /* whether "endsolid" stands behind the last vertex */
   hl_status status = make_room(parts, table, count_facets(text), error);
   while (status == HL_OK && next_word(&at, end, &word, &length)) {
+    closed = closed || is_word(word, length, "endsolid");
     if (!is_word(word, length, "vertex")) continue;
+    closed = false;
     for (int axis = 0; axis < 3; axis++) {
       double value;
       if (!next_word(&at, end, &word, &length) || !hl_text_number(word, length, &value))
@@ -135,7 +138,9 @@ static hl_status read_ascii(mesh_text text, mesh_parts *parts, corner_table *tab
     }
     if (++corners % 3 == 0) status = add_facet(parts, table, (const float(*)[3])corner, error);
   }
-  return status;
+  if (status != HL_OK || closed) return status;
+  return hl_fail(error, HL_ERROR_INPUT, "%s: the file is cut short: it ends before \"endsolid\"",
+                 parts->path);
 }
 
 /* Returns whether the file is text. A text begins with "solid", in letters of either case, after an optional

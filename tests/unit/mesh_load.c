@@ -120,6 +120,7 @@ static void test_cube_is_closed(void **state) {
       sprintf(stl + strlen(stl), "endloop\nendfacet\n");
     }
   }
+  strcat(stl, "endsolid cube\n");
   hl_mesh *of_obj = load(context, "c.obj", obj, strlen(obj), NULL),
           *of_stl = load(context, "c.stl", stl, strlen(stl), NULL);
   assert_int_equal(hl_mesh_describe(of_stl)->vertex_count, 8);
