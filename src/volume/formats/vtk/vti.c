@@ -438,7 +438,7 @@ static hl_status read_parts(const vti_header *header, hl_volume **volume, hl_err
 /* ---- the whole ---- */
 
 /* Completes the list of pieces. A file without any Piece gets one, which has the whole extent. If there is
- * one piece, the whole extent becomes the piece's extent. */
+ * one piece, the whole extent becomes that of the piece, unless further pieces may have been cut off. */
 static hl_status finish_pieces(vti_header *header, hl_error *error) {
   if (header->piece_count == 0 && header->grid.has_extent) {
     hl_status status = grow(header, (void **)&header->pieces, 0, &header->piece_room, sizeof *header->pieces,
@@ -448,6 +448,9 @@ static hl_status finish_pieces(vti_header *header, hl_error *error) {
     memcpy(header->pieces[0].extent, header->grid.extent, sizeof header->grid.extent);
   }
   if (header->piece_count != 1 || header->kind == KIND_PARALLEL) return HL_OK;
+  const bool is_part = memcmp(header->grid.extent, header->pieces[0].extent, sizeof header->grid.extent) != 0;
+  hl_status status = is_part ? hl_vtk_xml_check_end(&header->xml, error) : HL_OK;
+  if (status != HL_OK) return status;
   memcpy(header->grid.extent, header->pieces[0].extent, sizeof header->grid.extent);
   if (is_empty(&header->pieces[0]))
     return hl_fail(error, HL_ERROR_INPUT, "%s: its Extent is empty", header->xml.stream->path);
