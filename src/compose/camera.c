@@ -4,7 +4,10 @@
 #include <string.h>
 
 #include "compose/composer.h"
+#include "core/context.h"
 #include "core/vector.h"
+#include "guess/looks.h"
+#include "scene/geometry/camera.h"
 
 static const double degree = HL_PI / 180;
 
@@ -38,6 +41,31 @@ static void change_projection(const hl_asked *asked, hl_camera *camera) {
   camera->fovy_deg = asked[HL_ASK_FOVY].number[0];
 }
 
+/* If "view" asks for a side of a body whose file does not tell where the body's front is, logs which side
+ * this is: the file's front may be the body's back. */
+static hl_status tell_of_side(const hl_composer *composer, const hl_scene_description *description) {
+  static const char *const places[] = {[HL_SIDE_FRONT] = "y is least",
+                                       [HL_SIDE_BACK] = "y is greatest",
+                                       [HL_SIDE_LEFT] = "x is least",
+                                       [HL_SIDE_RIGHT] = "x is greatest"};
+  static const char *const others[] = {
+      [HL_SIDE_FRONT] = "back", [HL_SIDE_BACK] = "front", [HL_SIDE_LEFT] = "right", [HL_SIDE_RIGHT] = "left"};
+  const hl_asked *view = &composer->asked[HL_ASK_VIEW];
+  const hl_scene_volume *first = description->volume_count > 0 ? &description->volumes[0] : NULL;
+  if (!composer->bare || !view->given || first == NULL || first->volume == NULL ||
+      view->choice < HL_SIDE_FRONT || view->choice > HL_SIDE_RIGHT || composer->asked[HL_ASK_UP].given ||
+      composer->asked[HL_ASK_AZIMUTH].given || hl_scene_space(description) != HL_SPACE_UNKNOWN)
+    return HL_OK;
+  hl_data_analysis analysis;
+  hl_status status = hl_data_analyse(first->volume, &analysis, composer->error);
+  if (status == HL_OK && hl_is_body(first->volume, first->file, &analysis))
+    hl_log(composer->context, HL_LOG_INFO,
+           "the file does not tell the body's directions: --view %s is the side where %s; if it is the "
+           "wrong one, give --view %s",
+           view->text, places[view->choice], others[view->choice]);
+  return status;
+}
+
 /* Finds the view to change. It is the view that "view" and "up" ask for. Without these options it is the view
  * of the scene's camera; for a bare volume it is the automatic view. */
 static hl_status choose_view(const hl_composer *composer, const hl_scene_description *description,
@@ -56,6 +84,8 @@ static hl_status choose_view(const hl_composer *composer, const hl_scene_descrip
     return hl_fail(composer->error, HL_ERROR_ARGUMENT,
                    "--up: '%.200s' has no direction: give an axis, as +z, or a vector that is not 0",
                    up->text);
+  hl_status status = tell_of_side(composer, description);
+  if (status != HL_OK) return status;
   return hl_blame_options(
       hl_view_choose(description, side, up->given ? vector : NULL, view, composer->error));
 }
