@@ -34,8 +34,10 @@ static const struct {
     {"fovy", "fov field-of-view view-angle focal-length perspective vfov angle-of-view"},
     {"ortho", "orthographic parallel parallel-projection orthogonal ortho-scale"},
     {"tf",
-     "opacity-curve alpha-curve colour-function color-function transfer-function transferfunction opacity "
-     "alpha-map transfer ctf otf presets opacity-function"},
+     "opacity-curve alpha-curve colour-function color-function transfer-function transferfunction alpha-map "
+     "transfer ctf otf presets opacity-function"},
+    {"iso VALUE:COLOR:OPACITY for a surface, --show LABEL:OPACITY for a label, or --tf FILE for values",
+     "opacity transparency translucency"},
     {"colormap",
      "cmap color-map colourmap lut palette colors colours color colour color-table lookup-table colorscale"},
     {"range",
