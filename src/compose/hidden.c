@@ -44,13 +44,16 @@ static hl_status find_cuts(const hl_composer *composer, const hl_scene_descripti
   return status;
 }
 
-/* Returns whether a volume is examined for hiding labels. Only volumes whose opacity depends on the value
- * alone are examined. */
+/* Whether all voxels of a volume are in memory. Voxels here and there of a scratch file, or of other
+ * processes, would take too long. */
+static bool is_at_hand(const hl_volume *volume) { return volume->pages == NULL && volume->bricks == NULL; }
+
+/* Whether a volume can hide labels as far as can be told here: it shows values by their opacity alone. */
 static bool hides(const hl_scene_volume *volume) {
   const hl_transfer_function *function = &volume->transfer_function;
   return volume->visible && volume->label_count == 0 && volume->mask.volume == NULL &&
-         function->plane.second == HL_SECOND_NONE && function->gradient_opacity_count == 0 &&
-         volume->volume->maximum > volume->volume->minimum;
+         is_at_hand(volume->volume) && function->plane.second == HL_SECOND_NONE &&
+         function->gradient_opacity_count == 0 && volume->volume->maximum > volume->volume->minimum;
 }
 
 static bool prepare(const hl_scene_volume *volume, screen *s) {
@@ -175,7 +178,7 @@ hl_status hl_tell_of_hidden_labels(const hl_composer *composer, const hl_scene_d
     const hl_scene_volume *map = &scene->volumes[v];
     screen own = {.volume = map};
     bool any = false;
-    if (!map->visible || map->label_count == 0) continue;
+    if (!map->visible || map->label_count == 0 || !is_at_hand(map->volume)) continue;
     status = find_cuts(composer, scene, map, &own.cuts, &own.cut_count);
     if (status == HL_OK && !is_seen(scene, map, &own, screens, count, &any) && any)
       tell(composer, map, screens[0].volume);
