@@ -76,7 +76,7 @@ static void describe_numbers(const cli_option *option, char *text, size_t size) 
   }
 }
 
-/* Returns whether a text ends like the name of a picture's file. */
+/* Whether a text ends like the name of a picture's file. */
 static bool names_picture(const char *text) {
   static const char *const endings[] = {".png", ".jpg", ".jpeg", ".exr", ".hdr", ".tif", ".tiff"};
   const char *dot = strrchr(text, '.');
