@@ -72,8 +72,8 @@ static hl_status read_color(hl_json_reader *reader, const json_t *object, const 
     return hl_json_fail(reader, HL_ERROR_INPUT, key, "is a string: give linear [r, g, b]");
   char numbers[80];
   hl_plain_print(numbers, sizeof numbers, "%.3g, %.3g, %.3g", meant[0], meant[1], meant[2]);
-  return hl_json_fail(reader, HL_ERROR_INPUT, key,
-                      "is a string: give linear [r, g, b]; \"%.40s\" is [%s]", text, numbers);
+  return hl_json_fail(reader, HL_ERROR_INPUT, key, "is a string: give linear [r, g, b]; \"%.40s\" is [%s]",
+                      text, numbers);
 }
 
 static hl_status read_setting(hl_json_reader *reader, const json_t *object, const hl_setting *setting,

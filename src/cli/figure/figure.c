@@ -110,13 +110,39 @@ static int share(figure_job *job, figure_panel *panel) {
   return exit_code;
 }
 
-/* Gives an inset the camera of its panel, and a picture whose middle is larger by the factor that the inset
- * states. The eye stays where it is, so that the inset shows the panel's perspective. */
+static void cross(const double a[3], const double b[3], double product[3]) {
+  for (int n = 0; n < 3; n++) product[n] = a[(n + 1) % 3] * b[(n + 2) % 3] - a[(n + 2) % 3] * b[(n + 1) % 3];
+}
+
+static double length_of(const double v[3]) { return sqrt(v[0] * v[0] + v[1] * v[1] + v[2] * v[2]); }
+
+/* Aims a camera at the place that it shows at fractions of its picture, from the upper left. A perspective
+ * eye turns, and an orthographic one moves. aspect: the picture's width over its height. */
+static void aim_at(hl_camera *camera, const double at[2], double aspect) {
+  double forward[3], right[3], up[3];
+  for (int n = 0; n < 3; n++) forward[n] = camera->target[n] - camera->position[n];
+  cross(forward, camera->up, right);
+  cross(right, forward, up);
+  const bool flat = camera->type == HL_CAMERA_ORTHOGRAPHIC;
+  const double height = flat ? camera->height
+                             : 2 * length_of(forward) * tan(camera->fovy_deg * acos(-1) / 360);
+  const double x = (at[0] - 0.5) * aspect * height / length_of(right);
+  const double y = (0.5 - at[1]) * height / length_of(up);
+  for (int n = 0; n < 3; n++) {
+    camera->target[n] += x * right[n] + y * up[n];
+    if (flat) camera->position[n] += x * right[n] + y * up[n];
+  }
+}
+
+/* Gives an inset the camera of its panel, and a picture in which the place that the inset states is larger by
+ * the factor that it states. The eye stays where it is, so that the inset shows the panel's perspective. */
 static int magnify(figure_job *job, figure_panel *inset) {
   const figure_panel *outer = inset->inset.of >= 0 ? &job->page.panels[inset->inset.of] : NULL;
   if (outer == NULL || inset->inset.zoom == 0 || outer->scene == NULL) return EXIT_CODE_OK;
   hl_scene_description description = *hl_scene_describe(inset->scene);
-  description.camera = hl_scene_describe(outer->scene)->camera;
+  const hl_scene_description *shown = hl_scene_describe(outer->scene);
+  description.camera = shown->camera;
+  aim_at(&description.camera, inset->inset.at, (double)shown->width / shown->height);
   const double degree = acos(-1) / 180, half = tan(description.camera.fovy_deg * degree / 2);
   description.camera.fovy_deg = 2 / degree * atan(half / inset->inset.zoom);
   description.camera.height /= inset->inset.zoom;

@@ -172,7 +172,7 @@ static int add_inputs(const page_reading *reading, figure_panel *panel, const js
 /* ---- keys of the page and of panels that are no options ---- */
 
 static bool is_own_key(const char *key) {
-  static const char *const own[] = {"input", "letter", "aspect", "inset", "part", "corner"};
+  static const char *const own[] = {"input", "letter", "aspect", "inset", "part", "corner", "at"};
   for (size_t n = 0; n < sizeof own / sizeof *own; n++)
     if (strcmp(key, own[n]) == 0) return true;
   return false;
@@ -216,9 +216,26 @@ static bool has_own_view(const json_t *inset) {
   return false;
 }
 
-/* Reads the factor by which an inset shows things larger than its panel. The inset then has the panel's
- * camera, and its "zoom" is no option of `halflight render`, so that the key is removed from the inset's
- * keys. An inset with a view of its own keeps the option. */
+/* Reads the place of its panel that an inset shows: fractions from the upper left; default the middle. */
+static int read_place(const page_reading *reading, figure_panel *panel, const json_t *inset) {
+  const json_t *at = json_object_get(inset, "at");
+  bool good = at == NULL || (json_array_size(at) == 2 && panel->inset.zoom > 0);
+  for (size_t n = 0; n < 2; n++) {
+    const json_t *number = json_array_get(at, n);
+    panel->inset.at[n] = at == NULL ? 0.5 : json_number_value(number);
+    good = good && (at == NULL || json_is_number(number)) && panel->inset.at[n] >= 0 &&
+           panel->inset.at[n] <= 1;
+  }
+  if (good) return EXIT_CODE_OK;
+  return fail(EXIT_CODE_INPUT,
+              "%s: \"at\": give the place of the panel that the inset shows, [x, y] from 0 to 1 from its "
+              "upper left, without a view of the inset's own",
+              reading->path);
+}
+
+/* Reads how many times as large as its panel an inset shows things. The inset then has the panel's camera,
+ * and its "zoom" is no option of `halflight render`: it is removed from the inset's keys. An inset with a
+ * view of its own keeps the option. */
 static int read_zoom(const page_reading *reading, figure_panel *panel, json_t *inset) {
   if (has_own_view(inset)) return EXIT_CODE_OK;
   const json_t *zoom = json_object_get(inset, "zoom");
@@ -280,6 +297,7 @@ static int add_panel(page_reading *reading, const json_t *given, const json_t *b
   json_t *own = json_copy((json_t *)given);
   int exit_code = inside >= 0 ? read_corner(reading, panel, own) : EXIT_CODE_OK;
   if (exit_code == EXIT_CODE_OK && inside >= 0) exit_code = read_zoom(reading, panel, own);
+  if (exit_code == EXIT_CODE_OK && inside >= 0) exit_code = read_place(reading, panel, own);
   json_t *keys = join(below, own);
   json_decref(own);
   if (keys == NULL) return fail(EXIT_CODE_FAILURE, "out of memory");

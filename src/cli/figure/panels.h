@@ -12,8 +12,9 @@ typedef struct figure_inset {
   int of;            /* the number of the panel in which this inset lies; -1 if the panel is no inset */
   double part;       /* the inset's width divided by the width of the panel in which it lies */
   bool right, lower; /* whether the inset lies at the right and at the lower side of that panel */
-  double zoom;       /* the factor by which the inset enlarges the middle of that panel; 0 if the inset has a
-                      * view of its own */
+  double zoom;  /* the inset shows a place of that panel this many times as large; 0: the inset has a view
+                 * of its own */
+  double at[2]; /* this place, at fractions of that panel from its upper left */
 } figure_inset;
 
 /* A rectangle of the page; millimetres from its top left corner. */
