@@ -300,9 +300,13 @@ static hl_status render_panel(figure_job *job, figure_panel *panel, hl_renderer 
   const hl_scene_description *scene = hl_scene_describe(panel->scene);
   float *pixels = hl_image_pixels(panel->image);
   const size_t stride = 4 * (size_t)scene->width;
+  job->host.stage.hint = NULL;
   if (!panel->values[RENDER_REFERENCE].given)
     return hl_renderer_render(renderer, panel->scene, pixels, stride, NULL, error);
   const hl_reference_options options = render_reference_options(panel->values, scene);
+  job->host.stage.hint =
+      "\"reference\" marches every ray: a smaller \"dpi\", fewer \"light-points\" or a greater "
+      "\"step\" is faster";
   return hl_reference_render(job->host.context, panel->scene, &options, pixels, stride, error);
 }
 
