@@ -105,6 +105,8 @@ def fingers_in_a_slice(browser):
     check(abs(back[0] - before[0]) < 1.5 and abs(back[1] - before[1]) < 1.5, "as does the left button")
     set_control(browser, "Crosshair", "")
     browser.run("halflight.store.setPage({ layout: 'picture' })")
+    browser.wait("""halflight.store.scene.image.width === Math.max(document.getElementById('view').clientWidth, 16) &&
+      halflight.store.scene.image.height === Math.max(document.getElementById('view').clientHeight, 16)""")
     rest(browser)
 
 
