@@ -214,14 +214,24 @@ static void write_number(double value, double step, const double range[2], char 
   else hl_plain_print(text, NUMBER_BYTES, "%.*f", decimals, value);
 }
 
+static double first_number(const double range[2], double step) { return ceil(range[0] / step - 1e-9); }
+
+/* Returns the distance of the numbers beside a strip. The strip has room for `ticks` numbers. It has two
+ * numbers at least, although they may be crowded, because a single number tells no scale. */
+static double choose_step(const double range[2], double ticks) {
+  double step = round_step((range[1] - range[0]) / fmax(ticks, 1));
+  while ((first_number(range, step) + 1) * step > range[1] + 1e-9 * step) step = round_step(0.4 * step);
+  return step;
+}
+
 /* Returns the width of the numbers beside a strip, and draws the numbers if `draws` is set. x: their right
  * edge. */
 static double draw_numbers(const legend *made, const double range[2], double x, double bottom, double top,
                            bool draws) {
-  const double size = made->ink->size, ticks = fmin(TICKS_MOST, (bottom - top) / (1.6 * size));
-  const double step = round_step((range[1] - range[0]) / fmax(ticks, 1));
+  const double size = made->ink->size;
+  const double step = choose_step(range, fmin(TICKS_MOST, (bottom - top) / (1.6 * size)));
   double widest = 0;
-  for (double n = ceil(range[0] / step - 1e-9); n * step <= range[1] + 1e-9 * step; n++) {
+  for (double n = first_number(range, step); n * step <= range[1] + 1e-9 * step; n++) {
     char text[NUMBER_BYTES];
     write_number(n * step, step, range, text);
     widest = fmax(widest, widest_row(made, text));

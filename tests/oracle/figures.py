@@ -201,6 +201,10 @@ def legends():
     check("Flow (m/s)" in words("a.pdf"), words("a.pdf"))
     numbers = [float(line) for line in words("a.pdf").split("\n") if re.fullmatch(r"[\d.]+", line)]
     check(sorted(numbers) == [50, 100, 150, 200, 250], f"{numbers}")
+    Path("short.json").write_text(json.dumps({"opacity": [[110, 0], [120, 1], [230, 1]], "color": [[110, 1, 0, 0], [230, 1, 1, 0]]}))
+    halflight("rods.nii", "--tf", "short.json", "--size", "400x110", "--quiet", "--legend", "auto", "-o", "short.pdf")
+    numbers = [float(line) for line in words("short.pdf").split("\n") if re.fullmatch(r"[\d.]+", line)]
+    check(sorted(numbers) == [150, 200, 250], f"a short strip has two numbers at least: {numbers}")
     table = np.array(points)
 
     def color(value, before):
