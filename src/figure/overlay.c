@@ -87,7 +87,8 @@ static hl_line_of_text lay_letter(const hl_ink *ink, const hl_overlay_place *pla
   return line;
 }
 
-/* Takes the places of the texts that others have chosen: the panel's letter and the annotations. */
+/* Marks the places of the panel's letter and of the annotations as taken, so that no other text is drawn
+ * there. */
 static hl_status take_texts(const hl_ink *ink, hl_overlay_place *place, const hl_line_of_text *letter,
                             hl_error *error) {
   if (letter->text != NULL) hl_overlay_take(place, hl_ink_box(ink, letter));

@@ -93,8 +93,8 @@ typedef struct grid {
                                * cells saves time */
   uint32_t *relevant_list;    /* [relevant_count]; relevant bricks with a visible cell, in rising order */
   uint32_t relevant_count;
-  int32_t relevant_low[3], relevant_high[3]; /* the least and the greatest coordinates of the relevant
-                                              * bricks */
+  int32_t relevant_low[3], relevant_high[3]; /* the box around all relevant bricks
+                                              * (grid/relevant.h), in bricks; both ends are in it */
   int32_t content_low[3],
       content_high[3]; /* the least and greatest coordinates of relevant bricks and of bricks that only a mask
                         * hides. The geometry of a frame follows from these coordinates, so that no mask moves

@@ -174,8 +174,9 @@ static void pass_face(const exposure *e, ray_face *face, double t, vec3 before, 
 }
 
 /* The fraction of light from a direction that reaches a point of the world. The path of the light is sampled
- * in steps of three voxel edges, until it leaves the volume's box. A path from outside of a face of the box
- * meets no matter, because the box is convex. */
+ * in steps of three voxel edges, until it leaves the volume's box. If the point lies on
+ * a face of the box and the light is outside of this face, the path meets no matter, because the box is
+ * convex. */
 static double passing(const exposure *e, vec3 point, vec3 towards) {
   enum { STEPS = 3 };
   const double *low = e->low, *high = e->high;

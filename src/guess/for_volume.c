@@ -38,8 +38,8 @@
 /* The greatest sheet spacing in small grids, as a fraction of a surface's thickness. Even so, small grids do
  * not have more sheets than other grids. */
 #define SMALL_GRIDS_SPACING_PER_THICKNESS 0.1
-/* LEAST_SPACING: the least spacing in all grids. SMALL_GRIDS_SPACING: the least spacing for surfaces in small
- * grids. Both are in smallest voxel edges. */
+/* LEAST_SPACING: the least distance of sheets that is chosen. SMALL_GRIDS_SPACING: the same for surfaces in
+ * small grids, in place of it. Both are in smallest voxel edges. */
 #define LEAST_SPACING       0.25
 #define SMALL_GRIDS_SPACING 0.125
 

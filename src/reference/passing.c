@@ -124,8 +124,9 @@ typedef struct kept_light {
   bool second;
 } kept_light;
 
-/* Raises a kept fraction towards 1 where matter belongs to the skin of a face: returns kept to the power 1 -
- * skin. Because skin is in the exponent, the product over all steps does not depend on the steps' length. */
+/* Raises a kept fraction towards 1 where matter belongs to the skin of a cut face, whose own matter does not
+ * shade it: returns kept to the power 1 - skin. Because skin is in the exponent, the product over all steps
+ * does not depend on the steps' length. */
 static double kept_in_skin(double kept, double skin) { return skin > 0 ? pow(kept, 1 - skin) : kept; }
 
 /* Finds the fractions of the light taken by a surface that still count as taken by this surface after one

@@ -9,7 +9,7 @@
 
 /* A soft light of a sweep. */
 typedef struct device_soft_light {
-  int light;           /* its number among the sweep's lights */
+  int light;           /* the index, among the sweep's lights, of the light that casts these shadows */
   light_shadow shadow; /* a copy of the planned shadow; it owns `state` */
   void *passing;       /* owned; the method's memory that lasts until the sweep ends */
   occupancy occupancy; /* the occupancy of the light's view */

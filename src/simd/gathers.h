@@ -97,7 +97,7 @@ LANES_CALL void lanes_gather_quads(const float *table, lanes_int index, lanes qu
 #if defined(__AVX512F__)
   lanes_offsets offsets;
   lanes_store_offsets(&offsets, index);
-  __m512 of_lanes[4], columns[4]; /* of_lanes[k]: the numbers of lanes k, 4 + k, 8 + k and 12 + k */
+  __m512 of_lanes[4], columns[4]; /* of_lanes[k]: the values of lanes k, 4 + k, ... */
   for (int k = 0; k < 4; k++) {
     __m512 four = _mm512_castps128_ps512(_mm_loadu_ps(table + offsets.at[k]));
     four = _mm512_insertf32x4(four, _mm_loadu_ps(table + offsets.at[4 + k]), 1);
@@ -111,7 +111,7 @@ LANES_CALL void lanes_gather_quads(const float *table, lanes_int index, lanes qu
   lanes_store_offsets(&offsets, index);
   for (int half = 0; half < 2; half++) {
     const int32_t *at = offsets.at + 8 * half;
-    __m256 of_lanes[4]; /* of_lanes[k]: the numbers of lanes k and 4 + k */
+    __m256 of_lanes[4]; /* of_lanes[k]: the values that lanes k and 4 + k hold */
     for (int k = 0; k < 4; k++)
       of_lanes[k] = _mm256_insertf128_ps(_mm256_castps128_ps256(_mm_loadu_ps(table + at[k])),
                                          _mm_loadu_ps(table + at[4 + k]), 1);

@@ -40,7 +40,7 @@ static uint32_t cover_small(const surface_functions *functions, small_batch *bat
   return functions->cover_spheres(&batch->view, &batch->spheres, &batch->cover);
 }
 
-/* ---- one at a time ---- */
+/* ---- one sphere at a time ---- */
 
 /* Returns whether a light does not light a sphere from within: the sphere's surface lets no light pass, and
  * the light is outside. */

@@ -84,7 +84,7 @@ enum { PIXEL_TO_SPARE = 1 };
 
 /* The input of hl_occupancy_build(): the grids and the view. */
 typedef struct occupancy_source {
-  const grid *grids; /* [grid_count]; the grids that the view may see */
+  const grid *grids; /* [grid_count]; all grids of the frame */
   int grid_count;
   const view *view;
   const sheet_stack *sheets;

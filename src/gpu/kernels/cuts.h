@@ -116,8 +116,8 @@ typedef struct way_left {
   float enter, leave;
 } way_left;
 
-/* Shortens a way from a point towards the light to the part that begins at the point and that no cut
- * removes. */
+/* Shortens a way from a point towards the light: it ends where it first enters a part that a cut has
+ * removed. */
 DEVICE void shorten_way(GLOBAL const plan_cut *cuts, int count, vector from, vector towards, way_left *left) {
   for (int i = 0; i < count; i++) {
     const ray_section way = cross_cut(&cuts[i], from, towards);
