@@ -41,7 +41,8 @@ def test_lights_have_images(program, tmp_path, blob):
     np.save(tmp_path / "blob.npy", blob)
     texture = halflight.Texture(slide, center=(10, 10, 60), right=(20, 0, 0), up=(0, 20, 0))
     light = Point(position=(10, 10, 120), texture=texture)
-    scene = Scene(str(tmp_path / "blob.npy"), size=(64, 48), lights=light, ambient=0)
+    white = TransferFunction([(20, 0), (255, 0.9)])  # of the colours that the look of a field has, each sends another part of the light
+    scene = Scene(Volume(tmp_path / "blob.npy", transfer_function=white), size=(64, 48), lights=light, ambient=0)
     picture = np.asarray(Renderer().render(scene))
     assert picture[..., 0].max() > 0.05 and np.allclose(picture[..., 2], picture[..., 0] / 4, atol=0.2 * picture[..., 0].max())
     again = scene.lights[0]
