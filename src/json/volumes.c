@@ -259,20 +259,18 @@ static hl_status smooth_loaded(hl_json_reader *reader, double smooth, hl_volume 
   return status;
 }
 
-/* Finds a mask that was already made from this file. over: the volume that it masks. If a volume has a stated
- * spacing, a map with the same numbers of voxels has this spacing, too (hl_volume_load_beside()). */
+/* Finds a mask that was already made from this file. over: the volume that it masks, whose spacing the mask
+ * may have taken (hl_volume_load_beside()). */
 static const hl_loaded_volume *find_mask(const hl_json_reader *reader, const hl_volume_shelf *shelf,
                                          const char *path, const hl_volume_load_options *options,
                                          const hl_scene_volume *over) {
   const hl_loaded_volume *plain = find_loaded(shelf, path, options, 0);
-  if (!(over->spacing[0] > 0) || options->spacing[0] > 0) return plain;
+  if (options->spacing[0] > 0) return plain;
   hl_volume_load_options spaced = *options;
-  memcpy(spaced.spacing, over->spacing, sizeof spaced.spacing);
+  hl_spacing_beside(over->volume, over->spacing, spaced.spacing);
   const hl_loaded_volume *found = find_loaded(shelf, path, &spaced, 0);
   if (found != NULL || plain == NULL || reader->like != NULL) return found != NULL ? found : plain;
-  return memcmp(plain->volume->dimension, over->volume->dimension, sizeof over->volume->dimension) != 0
-             ? plain
-             : NULL;
+  return hl_takes_spacing_beside(plain->volume, over->volume, over->spacing) ? NULL : plain;
 }
 
 /* Loads a volume's file, or takes the volume from the shelf if it was loaded before. over: the volume that

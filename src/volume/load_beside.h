@@ -3,13 +3,22 @@
 #define HL_VOLUME_LOAD_BESIDE_H
 
 #include <halflight/volume.h>
+#include <stdbool.h>
 
-/* Loads a volume as hl_volume_load_with() does. Files of bare voxels tell no spacing, so that the user states
- * one for the volume. This spacing also holds for a label map over the volume if the map has the same number
- * of voxels along each axis, and no spacing in its own options. volume: may be null. spacing: the stated
- * spacing; 0 if there is none. options->spacing is set to the spacing by which the map was read. */
+/* Finds the spacing of label maps over a volume whose own files tell none. stated: the spacing that the user
+ * has stated for the volume; 0 if there is none. If none was stated, it is the volume's own spacing. */
+void hl_spacing_beside(const hl_volume *volume, const double stated[3], double spacing[3]);
+
+/* Returns whether a label map that was read by its own spacing takes the spacing of hl_spacing_beside(). It
+ * has the same number of voxels along each axis as the volume. And either the user has stated the volume's
+ * spacing, because files of bare voxels tell none, or the map's file tells neither a spacing nor a unit. */
+bool hl_takes_spacing_beside(const hl_volume *map, const hl_volume *volume, const double stated[3]);
+
+/* Loads a label map as hl_volume_load_with() does, with the spacing of hl_spacing_beside() if the map takes
+ * it. volume: may be null. options->spacing is set to the spacing by which the map was read; a spacing that
+ * it has already stays. Warns if none of the map lies in the volume's box. */
 hl_status hl_volume_load_beside(hl_context *context, const char *path, const hl_volume *volume,
-                                const double spacing[3], hl_volume_load_options *options, hl_volume **map,
+                                const double stated[3], hl_volume_load_options *options, hl_volume **map,
                                 hl_error *error);
 
 #endif
