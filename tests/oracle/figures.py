@@ -205,6 +205,11 @@ def legends():
     halflight("rods.nii", "--tf", "short.json", "--size", "400x110", "--quiet", "--legend", "auto", "-o", "short.pdf")
     numbers = [float(line) for line in words("short.pdf").split("\n") if re.fullmatch(r"[\d.]+", line)]
     check(sorted(numbers) == [150, 200, 250], f"a short strip has two numbers at least: {numbers}")
+    for name, greatest in ("part_0.nii", 199.9), ("part_1.nii", 200):
+        nifti(name, np.minimum(rods, greatest), 1.0)
+    halflight("part_*.nii", "--range-of-all", "--size", "400x200", "--quiet", "--legend", "auto", "-o", "%s.png")
+    first, second = (np.asarray(Image.open(f"part_{n}.png").convert("RGB"))[:, 355:] for n in range(2))
+    check(np.array_equal(first, second) and np.ptp(first) > 100, "a series with one range has the same numbers beside its legends")
     table = np.array(points)
 
     def color(value, before):

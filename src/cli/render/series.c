@@ -61,7 +61,8 @@ static int check_options(series_job *job) {
   return exit_code == EXIT_CODE_OK ? render_overlay_read(job->values, &job->overlay) : exit_code;
 }
 
-/* Does the work of --range-of-all: sets --range to the range of all files that can be read. */
+/* Does the work of --range-of-all: sets --range, and the range of legends, to the range of all files that can
+ * be read. */
 static int find_range(series_job *job) {
   cli_value *range = &job->values[RENDER_RANGE];
   if (!job->values[RENDER_RANGE_OF_ALL].given || range->given || job->files.of_meshes) return EXIT_CODE_OK;
@@ -78,6 +79,7 @@ static int find_range(series_job *job) {
     }
     hl_volume_release(volume);
   }
+  if (range->given) memcpy(job->overlay.overlay.legend_range, range->number, sizeof(double[2]));
   return EXIT_CODE_OK;
 }
 
