@@ -109,7 +109,7 @@ def _flash(file: Any, field: str | None, finest: int | None) -> dict[str, Any]:
 
     def patches() -> Iterator[Patch]:
         for block, level in enumerate(levels - coarsest):
-            if kinds[block] == 1 or level in (0, finest):
+            if kinds[block] == 1 or level == 0 or level == finest:
                 first = np.rint((bounds[block, :, 0] - low) / step * 2.0**level).astype(int)
                 yield int(level), tuple(first.tolist()), values[block]
 
