@@ -13,6 +13,7 @@
 #include "figure/overlay.h"
 #include "scene/function/transfer_function.h"
 #include "text/plain.h"
+#include "text/stem.h"
 #include "text/units.h"
 
 enum { STEPS_BETWEEN_POINTS = 8, CURVE_STEPS = 256, TICKS_MOST = 6, NUMBER_BYTES = 40, NAME_BYTES = 64 };
@@ -59,9 +60,9 @@ static const char *title_of(const hl_overlay_place *place, const hl_scene_volume
       return array.name;
   }
   if (place->scene->volume_count < 2 || volume->file == NULL) return NULL;
-  const char *slash = strrchr(volume->file, '/'), *base = slash != NULL ? slash + 1 : volume->file;
-  const size_t length = base[0] == '.' ? strlen(base) : strcspn(base, ".");
-  snprintf(name, NAME_BYTES, "%.*s", (int)length, base);
+  size_t length;
+  const char *stem = hl_stem(volume->file, &length);
+  snprintf(name, NAME_BYTES, "%.*s", (int)length, stem);
   return name;
 }
 

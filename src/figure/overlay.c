@@ -4,7 +4,7 @@
 
 /* ---- what is taken ---- */
 
-static bool meet(hl_rectangle a, hl_rectangle b) {
+bool hl_rectangles_meet(hl_rectangle a, hl_rectangle b) {
   return a.left < b.left + b.width && b.left < a.left + a.width && a.top < b.top + b.height &&
          b.top < a.top + a.height;
 }
@@ -16,7 +16,7 @@ static bool lies_in(hl_rectangle box, hl_rectangle picture) {
 
 bool hl_overlay_is_free(const hl_overlay_place *place, hl_rectangle box) {
   for (size_t n = 0; n < place->taken_count; n++)
-    if (meet(place->taken[n], box)) return false;
+    if (hl_rectangles_meet(place->taken[n], box)) return false;
   return lies_in(box, place->picture);
 }
 
@@ -31,7 +31,7 @@ static double way_to_clear(const hl_overlay_place *place, hl_rectangle box, bool
   const double from = box.left;
   for (size_t turn = 0; turn <= place->taken_count; turn++) {
     size_t n = 0;
-    while (n < place->taken_count && !meet(place->taken[n], box)) n++;
+    while (n < place->taken_count && !hl_rectangles_meet(place->taken[n], box)) n++;
     if (n == place->taken_count) return turn == 0 || lies_in(box, place->picture) ? box.left - from : 0;
     const hl_rectangle taken = place->taken[n];
     box.left = to_left ? taken.left - box.width : taken.left + taken.width;

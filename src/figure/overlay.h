@@ -14,7 +14,7 @@ typedef struct hl_overlay_place {
   const hl_scene_description *scene; /* the scene that the picture shows; null if it is not known */
   hl_rectangle picture;              /* the rectangle of the picture on the page, points */
   double margin;                     /* the distance of the overlay from the picture's edges, points */
-  hl_map map;                        /* where points of `scene` lie on the page */
+  hl_map map;                        /* the map from points of `scene` to places on the page */
   hl_rectangle taken[HL_MOST_TAKEN]; /* [taken_count]; rectangles on the page that texts keep clear of:
                                       * insets, and parts of the overlay whose places are already known */
   size_t taken_count;
@@ -28,6 +28,8 @@ hl_status hl_overlay_draw(const hl_ink *ink, const hl_overlay *overlay, const hl
                           const hl_image *image, hl_rectangle picture, const hl_rectangle *insets,
                           size_t inset_count, hl_error *error);
 
+/* Returns whether two rectangles overlap. */
+bool hl_rectangles_meet(hl_rectangle a, hl_rectangle b);
 /* Returns whether a rectangle lies within the picture and overlaps no taken rectangle. */
 bool hl_overlay_is_free(const hl_overlay_place *place, hl_rectangle box);
 /* Adds a rectangle to the taken rectangles. */

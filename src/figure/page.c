@@ -178,9 +178,7 @@ static hl_status draw_overlay(const hl_figure *figure, size_t index, const hl_in
   size_t count = 0;
   for (size_t p = index + 1; p < figure->panel_count && count < HL_MOST_TAKEN; p++) {
     const hl_rectangle other = rectangle_of(&figure->panels[p]);
-    if (other.left < picture.left + picture.width && picture.left < other.left + other.width &&
-        other.top < picture.top + picture.height && picture.top < other.top + other.height)
-      insets[count++] = other;
+    if (hl_rectangles_meet(picture, other)) insets[count++] = other;
   }
   return hl_overlay_draw(ink, &panel->overlay, panel->scene, panel->image, picture, insets, count, error);
 }
