@@ -107,11 +107,8 @@ static int refuse_value(const cli_option *option, const char *text) {
       return fail(EXIT_CODE_USAGE, "--%s: '%s' is not a whole number above 0 with an optional K, M, G or T",
                   option->name, text);
     case OPTION_COLOR:
-      if (strcmp(option->name, "background") == 0 && names_picture(text))
-        return fail(EXIT_CODE_USAGE,
-                    "--background: '%s' is no colour: to lay the picture over another one, give transparent, "
-                    "or an .exr as the output",
-                    text);
+      if (option->if_picture != NULL && names_picture(text))
+        return fail(EXIT_CODE_USAGE, "--%s: '%s' is no colour: %s", option->name, text, option->if_picture);
       return fail(
           EXIT_CODE_USAGE,
           "--%s: '%s' is no colour: give linear R,G,B each from %.9g to %.9g, #rrggbb, or a CSS name%s",

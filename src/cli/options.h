@@ -51,6 +51,8 @@ typedef struct cli_option {
   const char *setting; /* the key of a scene's setting, whose range and choices replace the members above; or
                         * null */
   hl_setting_kind setting_kind;
+  const char *if_picture; /* OPTION_COLOR: the advice for a user who gives a picture's file; null if there is
+                           * none */
   bool optional;   /* for OPTION_NUMBERS: whether the numbers may be left out; they are then 0, and `count` is
                     * 0 */
   bool repeatable; /* for OPTION_TEXT: whether the option may be given several times; every text is kept */

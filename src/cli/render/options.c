@@ -57,6 +57,9 @@ const cli_option render_options[RENDER_OPTION_COUNT] = {
                            .help = "colour under a .png: linear R,G,B 0..1, #rrggbb or a\nCSS name (both "
                                    "sRGB; default black, for bare volumes\ndark grey, black with --look "
                                    "mip); sky: shows the\nlight that comes from all directions",
+                           .if_picture =
+                               "to lay the picture over another one, give transparent, or an .exr as "
+                               "the output",
                            .setting_kind = HL_SETTINGS_IMAGE,
                            .setting = "background"},
     [RENDER_EXPOSURE] =
