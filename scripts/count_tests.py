@@ -19,6 +19,12 @@ def failed_parts(test):
     return re.findall(r"^not ok\b[ \d-]*([^\n]*)", test.get("stdout") or "", re.M)
 
 
+def last_words(test):
+    """The last line that a test printed which ended without the name of a failing part."""
+    lines = ((test.get("stdout") or "") + "\n" + (test.get("stderr") or "")).split("\n")
+    return next((line.strip()[:300] for line in reversed(lines) if line.strip()), "no output")
+
+
 def count(test):
     """(passed, failed, skipped) of one line of the log."""
     passes = re.findall(r"^ok\b([^\n]*)", test.get("stdout") or "", re.M)
@@ -42,7 +48,7 @@ for folder in sys.argv[1:]:
         good, bad, skips = count(test)
         passed, failed, skipped = passed + good, failed + bad, skipped + skips
         if bad:
-            names.append(f"{folder}: {test['name']}: " + (", ".join(failed_parts(test)) or "ended early"))
+            names.append(f"{folder}: {test['name']}: " + (", ".join(failed_parts(test)) or f"ended early: {last_words(test)}"))
 for name in names:
     print(f"failed: {name}")
 print(f"{passed} passed, {failed} failed, {skipped} skipped")

@@ -28,7 +28,7 @@ def sweeps(browser, url):
       window.fetch = async (path, options) => {
         if (/^frame\?page=\w+&/.test(path) && window.frames++ === 0) await new Promise((done) => setTimeout(done, 600));
         return own(path, options); }; })()""")
-    browser.run("halflight.frames.animate((scene, part) => { parts.push(part); return { ...scene, lights: scene.lights.map((l) => ({ ...l, intensity: part })) }; }, 400)")
+    browser.run("halflight.frames.animate((scene, part) => { parts.push(part); return { ...scene, lights: scene.lights.map((l) => ({ ...l, intensity: part })) }; }, 2000)")
     picture = rest(browser)
     parts = browser.run("parts")
     check(parts[0] == 0 and len(parts) >= 2 and parts == sorted(set(parts)) and parts[-1] < 1, f"frames of an animation: {parts}")

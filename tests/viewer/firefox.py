@@ -1,5 +1,6 @@
 """A headless Firefox with the hands of browser.py, driven by WebDriver BiDi over a WebSocket: no package is needed."""
 import base64
+import io
 import json
 import os
 import re
@@ -9,6 +10,7 @@ import struct
 import subprocess
 import sys
 import tempfile
+import threading
 import time
 
 from browser import HANG, Browser, BrowserError
@@ -98,6 +100,8 @@ class Firefox:
                 break
         else:
             raise BrowserError("Firefox does not start")
+        # Firefox stops where nobody reads what it writes.
+        threading.Thread(target=shutil.copyfileobj, args=(self._process.stderr, io.StringIO()), daemon=True).start()
         self._socket = Socket(int(found[1]))
         self._number = 0
         self.problems = []

@@ -97,10 +97,11 @@ export class Frames {
     this.#animation = { change, began: null, milliseconds };
   }
 
-  // A frame of the animation; the scene itself where there is no animation, or where it has ended.
+  // A frame of the animation; the scene itself where there is no animation, or where it has ended. A frame shows the moment at which it is
+  // seen, which comes BUDGET after the moment at which it is asked for.
   #animated(scene) {
     if (this.#animation === null) return scene;
-    const { change, began, milliseconds } = this.#animation, part = began === null ? 0 : (performance.now() - began) / milliseconds;
+    const { change, began, milliseconds } = this.#animation, part = began === null ? 0 : (performance.now() + BUDGET - began) / milliseconds;
     if (part >= 1) this.#animation = null;
     return part < 1 ? change(scene, part) : scene;
   }
