@@ -176,8 +176,8 @@ const cli_command convert_command = {
     .description =
         "Writes the volume IN, of any format that render reads, to the file OUT: .nrrd, .nii, .nii.gz, "
         ".mha,\n"
-        ".vti, .mrc, .mrc.gz, or .raw and .raw.gz, whose names state size and type "
-        "(x_256x256x128_uint8.raw).\n"
+        ".vti, .mrc, .mrc.gz, NumPy's .npy, or .raw and .raw.gz, whose names state size and\n"
+        "type (x_256x256x128_uint8.raw).\n"
         "Values and placement are kept. A warning names everything that OUT's format cannot store.",
     .options = convert_options,
     .option_count = CONVERT_OPTION_COUNT,

@@ -16,8 +16,8 @@
 
 const char *const picture_extensions[] = {".png", ".exr", ".npy", ".tif", ".tiff", NULL};
 const char *const figure_extensions[] = {".png", ".exr", ".npy", ".tif", ".tiff", ".pdf", ".svg", NULL};
-const char *const volume_extensions[] = {".nrrd", ".nii",    ".nii.gz", ".mha",    ".vti",
-                                         ".mrc",  ".mrc.gz", ".raw",    ".raw.gz", NULL};
+const char *const volume_extensions[] = {".nrrd",   ".nii", ".nii.gz", ".mha",    ".vti", ".mrc",
+                                         ".mrc.gz", ".npy", ".raw",    ".raw.gz", NULL};
 
 const char *base_name(const char *path) {
   const char *slash = strrchr(path, '/');

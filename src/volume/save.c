@@ -428,8 +428,9 @@ static void tell_losses(const saving *s, const char *path) {
   hl_context *context = s->context;
   const char *loses = s->writer->loses, *type = hl_voxel_type_name(s->grid.type);
   if (loses != NULL && strcmp(loses, "place") == 0 && has_place(&s->grid))
-    hl_log(context, HL_LOG_WARNING, "%s: bare voxels have no spacing, origin and directions: they are lost",
-           path);
+    hl_log(context, HL_LOG_WARNING,
+           "%s: %s files hold no spacing, origin and directions: give them where the file is read", path,
+           s->writer->ending);
   else if (loses != NULL && s->grid.space != HL_SPACE_UNKNOWN)
     hl_log(context, HL_LOG_WARNING, "%s: %s files do not tell that their world is %s: remember it", path,
            s->writer->ending, hl_space_name(s->grid.space));
@@ -470,7 +471,7 @@ hl_status hl_volume_save_with(hl_context *context, const hl_volume *volume, cons
   if (s.writer == NULL)
     return hl_fail(
         error, HL_ERROR_ARGUMENT,
-        "%s: volumes are written as .nrrd, .nii, .nii.gz, .mha, .vti, .mrc, .mrc.gz, .raw or .raw.gz: "
+        "%s: volumes are written as .nrrd, .nii, .nii.gz, .mha, .vti, .mrc, .mrc.gz, .npy, .raw or .raw.gz: "
         "end the name in one of these",
         path);
   hl_volume_description_defaults(&s.grid);

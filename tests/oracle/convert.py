@@ -228,6 +228,12 @@ def test_types():
         check(f"rounded to {kind}", np.allclose(found, wanted, rtol=2e-7, atol=0), (found, wanted))
         check(f"warnings of {kind}", "2 values are not finite" in told.stderr and
               ("beyond the range" in told.stderr) == (kind != "int64"), told)
+        convert(root / "source.nrrd", root / "t.npy", "--type", kind)
+        array = np.load(root / "t.npy")
+        check(f"NumPy's array of {kind}", array.dtype == kind and array.shape == values.shape and np.allclose(array.astype(float), wanted, rtol=2e-7, atol=0), array)
+    convert(root / "source.nrrd", root / "t.npy")
+    check("NumPy's array of floats", np.array_equal(np.load(root / "t.npy"), values, equal_nan=True))
+    check("the voxels of the array are aligned", (root / "t.npy").stat().st_size - values.nbytes == 128)
     name = root / "x_9x2x1_float16.raw"
     check("half floats are written", convert(root / "source.nrrd", name, "--type", "float16").returncode == 0)
     with np.errstate(over="ignore"):

@@ -298,6 +298,34 @@ static hl_status make_mrc(const char *path, const hl_volume_description *grid, h
   return HL_OK;
 }
 
+/* ---- NumPy's format 1.0 (NEP 1): the axes are [k][j][i] ---- */
+
+static hl_status make_npy(const char *path, const hl_volume_description *grid, hl_written_header *header,
+                          hl_error *error) {
+  enum { PREAMBLE_BYTES = 10, ALIGNMENT = 64 };
+  static const char kinds[] = {
+      [HL_VOXEL_U8] = 'u',  [HL_VOXEL_I8] = 'i',  [HL_VOXEL_U16] = 'u', [HL_VOXEL_I16] = 'i',
+      [HL_VOXEL_U32] = 'u', [HL_VOXEL_I32] = 'i', [HL_VOXEL_U64] = 'u', [HL_VOXEL_I64] = 'i',
+      [HL_VOXEL_F32] = 'f', [HL_VOXEL_F64] = 'f', [HL_VOXEL_F16] = 'f'};
+  const size_t bytes = hl_voxel_type_bytes(grid->type), *n = grid->dimensions;
+  (void)path, (void)error;
+  memcpy(header->bytes, "\x93NUMPY\x01\x00", 8);
+  header->length = PREAMBLE_BYTES;
+  add(header, "{'descr': '%c%c%zu', 'fortran_order': False, 'shape': (%zu, %zu, %zu), }",
+      bytes == 1    ? '|'
+      : is_little() ? '<'
+                    : '>',
+      kinds[grid->type], bytes, n[2], n[1], n[0]);
+  /* The text ends with a line feed, before which spaces fill it up, so that the voxels are aligned. */
+  size_t end = (header->length + ALIGNMENT) / ALIGNMENT * ALIGNMENT;
+  memset(header->bytes + header->length, ' ', end - header->length);
+  header->bytes[end - 1] = '\n';
+  header->length = end;
+  header->bytes[8] = (unsigned char)((end - PREAMBLE_BYTES) & 0xff);
+  header->bytes[9] = (unsigned char)((end - PREAMBLE_BYTES) >> 8);
+  return HL_OK;
+}
+
 static hl_status make_raw(const char *path, const hl_volume_description *grid, hl_written_header *header,
                           hl_error *error) {
   (void)path, (void)grid, (void)header, (void)error;
@@ -313,6 +341,7 @@ static const hl_writer writers[] = {
     {"VTK .vti", ".vti", HL_PACKING_NONE, PLAIN_TYPES, make_vti, "space", NULL},
     {"MRC", ".mrc", HL_PACKING_NONE, MRC_TYPES, make_mrc, "space", "angstrom"},
     {"MRC", ".mrc.gz", HL_PACKING_GZIP_ALL, MRC_TYPES, make_mrc, "space", "angstrom"},
+    {"NumPy .npy", ".npy", HL_PACKING_NONE, ALL_TYPES, make_npy, "place", NULL},
     {"bare voxels", ".raw", HL_PACKING_NONE, ALL_TYPES, make_raw, "place", NULL},
     {"bare voxels", ".raw.gz", HL_PACKING_GZIP_ALL, ALL_TYPES, make_raw, "place", NULL},
 };
