@@ -119,9 +119,15 @@ static double border_noise(const float *border, size_t count) {
 static void measure_objects(const distances *d, hl_data_analysis *a) {
   a->dense = hl_threshold_otsu(d->values, d->count, a->solid);
   size_t sure = 0, dense = 0;
-  for (size_t n = d->count; n > 0 && (double)d->values[n - 1] > a->solid; n--, sure++)
-    dense += (double)d->values[n - 1] > a->dense;
+  double sums[2] = {0, 0}; /* of the solid matter up to dense, and beyond it */
+  for (size_t n = d->count; n > 0 && (double)d->values[n - 1] > a->solid; n--, sure++) {
+    const bool beyond_dense = (double)d->values[n - 1] > a->dense;
+    dense += beyond_dense;
+    sums[beyond_dense] += (double)d->values[n - 1];
+  }
   a->dense_share = sure > 0 ? (double)dense / (double)sure : 1;
+  a->dense_ratio = dense > 0 && dense < sure ? sums[1] * (double)(sure - dense) / (sums[0] * (double)dense)
+                                             : 1;
   double sum = 0;
   size_t beyond = 0;
   for (size_t n = d->count; n > 0 && (double)d->values[n - 1] > a->faint; n--, beyond++)

@@ -34,6 +34,8 @@ typedef struct hl_data_analysis {
   double solid;       /* distance beyond which voxels surely belong to objects */
   double dense;       /* distance that divides the objects into two materials */
   double dense_share; /* fraction of the voxels beyond solid that lie beyond dense */
+  double dense_ratio; /* the mean distance of these voxels, divided by the mean distance of the other voxels
+                       * beyond solid; 1 if there are no voxels of either kind */
   double top;         /* distance that almost no voxel exceeds */
   double mean;        /* mean distance of the voxels beyond faint */
   double vessels;     /* distance beyond which matter is vessels within other matter; 0 if there are none */
