@@ -414,6 +414,37 @@ static void materials_have_colors_of_their_own(void **state) {
   hl_context_destroy(context);
 }
 
+/* A block of one material, whose faces lie along the axes and are blurred over two voxels: their values make
+ * two peaks of the histogram. */
+static double block(int i, int j, int k) {
+  const int at[3] = {i, j, k};
+  double part = 1;
+  for (int a = 0; a < 3; a++) {
+    const int depth = at[a] - 6 < 41 - at[a] ? at[a] - 6 : 41 - at[a];
+    part *= depth < 0 ? 0 : depth == 0 ? 0.25 : depth == 1 ? 0.7 : 1;
+  }
+  return 10 + 200 * part + 2 * noise(i, j, k);
+}
+
+static void boundaries_are_no_materials(void **state) {
+  (void)state;
+  hl_context *context = make_context();
+  fill(block);
+  hl_volume *volume = make_volume(context, N, values);
+  hl_data_analysis analysis;
+  assert_int_equal(hl_data_analyse(volume, &analysis, NULL), HL_OK);
+  assert_int_equal(analysis.kind, HL_DATA_SURFACES);
+  assert_int_equal(analysis.material_count, 1);
+  fill(three);
+  hl_volume *others = make_volume(context, N, values);
+  assert_int_equal(hl_data_analyse(others, &analysis, NULL), HL_OK);
+  assert_int_equal(analysis.material_count, 3);
+  hl_volume_release(volume);
+  hl_volume_release(others);
+  assert_int_equal(hl_context_memory_held(context), 0);
+  hl_context_destroy(context);
+}
+
 /* Every look makes a scene of every kind of volume, with a function and a shading of its own; others are
  * refused with the nearest name. */
 static void looks_by_name(void **state) {
@@ -470,6 +501,7 @@ int main(void) {
       cmocka_unit_test(labels_have_colors_of_their_own),
       cmocka_unit_test(flows_show_their_extremes),
       cmocka_unit_test(materials_have_colors_of_their_own),
+      cmocka_unit_test(boundaries_are_no_materials),
       cmocka_unit_test(looks_by_name),
   };
   return cmocka_run_group_tests(tests, NULL, NULL);
