@@ -238,6 +238,8 @@ typedef struct hl_render_settings {
   hl_compositing compositing;
   int slabs_at_once; /* the number of slabs after which the threads wait for each other. The picture does not
                       * depend on it; if 0, the renderer chooses the number */
+  int pixel_samples; /* the number N; a pixel is the mean of N x N samples at least, which smooths the edges
+                      * of cut faces. If 0, it has one sample, and more if voxels are smaller than pixels */
 } hl_render_settings;
 
 /* The kinds of marks: the length between two points (ruler), the angle of three points at the second of them,

@@ -222,6 +222,9 @@ class RenderSettings(TypedDict, total=False):
     slabs_at_once : int
         Slabs between two waits of the threads for each other; changes no picture. 0: automatic. 0 to 64.
         Default: 0.
+    pixel_samples : int
+        N: a pixel is the mean of N x N samples at least. 0: one, and more of voxels smaller than pixels. 0 to
+        8. Default: 0.
     """
 
     shadows: Literal["off", "hard", "soft"]
@@ -236,6 +239,7 @@ class RenderSettings(TypedDict, total=False):
     threads: int
     compositing: Literal["light", "maximum"]
     slabs_at_once: int
+    pixel_samples: int
 
 
 class FurtherSettings(TypedDict, total=False):
@@ -268,3 +272,4 @@ class FurtherSettings(TypedDict, total=False):
     shadow_resolution: int | Literal["auto"]
     compositing: Literal["light", "maximum"]
     slabs_at_once: int
+    pixel_samples: int

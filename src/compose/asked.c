@@ -89,6 +89,7 @@ const hl_option_row hl_option_rows[HL_ASK_COUNT] = {
     RENDER_NUMBER(HL_ASK_SHADOW_RESOLUTION, "shadow-resolution", "shadow_resolution"),
     RENDER_CHOICE(HL_ASK_SHADOW_LOOKUP, "shadow-lookup", "shadow_lookup"),
     RENDER_NUMBER(HL_ASK_SHEET_SPACING, "sheet-spacing", "sheet_spacing"),
+    RENDER_NUMBER(HL_ASK_PIXEL_SAMPLES, "pixel-samples", "pixel_samples"),
     RENDER_CHOICE(HL_ASK_KERNEL, "kernel", "kernel"),
     RENDER_CHOICE(HL_ASK_RECONSTRUCTION, "reconstruction", "reconstruction"),
     RENDER_CHOICE(HL_ASK_SLICING, "slicing", "slicing"),

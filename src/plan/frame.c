@@ -189,12 +189,15 @@ static void look(frame *frame) {
  * GREATEST_OVERSAMPLED_SIDE: the greatest number of the frame's pixels along a side of the frame. */
 enum { GREATEST_OVERSAMPLING = 8, GREATEST_OVERSAMPLED_SIDE = 4096 };
 
+/* The number that the voxels need, or the greater one that the scene asks for. */
+
 static int oversampling(const frame *frame, const hl_scene_description *scene) {
   int longer = scene->width > scene->height ? scene->width : scene->height,
       most = GREATEST_OVERSAMPLED_SIDE / longer;
   if (most > GREATEST_OVERSAMPLING) most = GREATEST_OVERSAMPLING;
   double wanted = floor(frame->middle_pixel / frame->content.voxel + 0.5);
-  return wanted > most ? (most < 1 ? 1 : most) : wanted < 1 ? 1 : (int)wanted;
+  int needed = wanted > most ? most : (int)fmax(wanted, 1);
+  return needed > scene->render.pixel_samples ? (needed < 1 ? 1 : needed) : scene->render.pixel_samples;
 }
 
 hl_status hl_frame_set_up_eye(frame *frame, const hl_scene_description *scene, hl_error *error) {

@@ -341,7 +341,11 @@ static const hl_setting render_rows[] = {
     {.key = "slabs_at_once", FIELD(hl_render_settings, slabs_at_once), .type = HL_SETTING_WHOLE, .unit = "",
      .high = HL_LIMIT_SLABS_AT_ONCE, .optional = 1,
      .sentence = "Slabs between two waits of the threads for each other; changes no picture. 0: automatic.",
-     .mend = "give a number of slabs up to {high}, 0 for automatic"}};
+     .mend = "give a number of slabs up to {high}, 0 for automatic"},
+    {.key = "pixel_samples", FIELD(hl_render_settings, pixel_samples), .type = HL_SETTING_WHOLE, .unit = "",
+     .high = HL_LIMIT_PIXEL_SAMPLES, .optional = 1, .option = "pixel-samples",
+     .sentence = "N: a pixel is the mean of N x N samples at least. 0: one, and more of voxels smaller than pixels.",
+     .mend = "give N up to {high}, for N x N samples in a pixel, 0 for automatic"}};
 
 #define A_RADIANCE                                                                          \
   .type = HL_SETTING_COLOR, .unit = "linear RGB", .high = HL_LIMIT_RADIANCE,                \

@@ -195,6 +195,7 @@ CASES = {
     "shadows": ["--shadows off", "--shadows hard"],
     "soft-method": ["--soft-method paper"],
     "light-samples": ["--soft-method sublights --light-samples 2"],
+    "pixel-samples": ["--pixel-samples 2"],
     "shadow-resolution": ["--shadow-resolution 20"],
     "shadow-lookup": ["--shadow-lookup nearest"],
     "sheet-spacing": ["--sheet-spacing 1"],

@@ -36,8 +36,8 @@ CASES = [
     ({"size": (64, 64), "camera": "left"}, ["--size", "64x64", "--view", "left"]),
     ({"size": (64, 64), "shade": False}, ["--size", "64x64", "--shading", "flat"]),
     ({"size": (64, 64), "spacing": (3, 2, 1)}, ["--size", "64x64", "--spacing", "1,2,3"]),
-    ({"size": (64, 64), "soft_method": "sublights", "light_samples": 3, "sheet_spacing": 1, "kernel": "linear"},
-     ["--size", "64x64", "--soft-method", "sublights", "--light-samples", "3", "--sheet-spacing", "1", "--kernel", "linear"]),
+    ({"size": (64, 64), "soft_method": "sublights", "light_samples": 3, "sheet_spacing": 1, "pixel_samples": 2, "kernel": "linear"},
+     ["--size", "64x64", "--soft-method", "sublights", "--light-samples", "3", "--sheet-spacing", "1", "--pixel-samples", "2", "--kernel", "linear"]),
     ({"size": (64, 64), "threads": 1, "background": "red"}, ["--size", "64x64", "--threads", "1"]),
     ({"size": 64, "lights": "rim", "background": "sky"}, ["--size", "64x64", "--light-rig", "rim", "--background", "sky"]),
 ]

@@ -458,6 +458,17 @@ const cli_option render_options[RENDER_OPTION_COUNT] = {
          .count = 1,
          .setting_kind = HL_SETTINGS_RENDER,
          .setting = "sheet_spacing"},
+    [RENDER_PIXEL_SAMPLES] = {.name = "pixel-samples",
+                              .kind = OPTION_NUMBERS,
+                              .argument = "N",
+                              .help =
+                                  "at least N x N samples in a pixel: smooth edges of\ncut faces, in about "
+                                  "N x N times the time (default:\n1, more where voxels are smaller than "
+                                  "pixels)",
+                              .count = 1,
+                              .whole = true,
+                              .setting_kind = HL_SETTINGS_RENDER,
+                              .setting = "pixel_samples"},
     [RENDER_KERNEL] = {.name = "kernel",
                        .kind = OPTION_CHOICE,
                        .help = "how values between voxels are found (default bspline;\nlinear for bare label "

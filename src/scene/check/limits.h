@@ -33,6 +33,7 @@
 /* The greatest value of a voxel. Differences and sums of such values still fit floats. */
 #define HL_LIMIT_VOXEL_VALUE   1e36
 #define HL_LIMIT_LIGHT_SAMPLES 64
+#define HL_LIMIT_PIXEL_SAMPLES 8
 #define HL_LIMIT_THREADS       1024
 #define HL_LIMIT_SLABS_AT_ONCE 64
 #define HL_LIMIT_SHININESS     10000

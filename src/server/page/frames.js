@@ -119,7 +119,7 @@ export class Frames {
     const height = factor === 1 ? full.height : rounded(full.height * factor);
     const sheets = Math.max(spacing, scene.render.sheet_spacing);
     return {
-      ...scene, image: { ...scene.image, width, height }, render: { ...scene.render, sheet_spacing: sheets },
+      ...scene, image: { ...scene.image, width, height }, render: { ...scene.render, sheet_spacing: sheets, pixel_samples: 0 },
     };
   }
 

@@ -46,7 +46,7 @@ export function gallery({ label, names, viewer: { store, smallPicture, failed, f
   async function draw(name) {
     const scene = await made(name), image = { ...scene.image, ...SIDES };
     scenes.set(name, scene);
-    const small = { ...scene, image, camera: reshaped(store.scene.camera, store.scene.image, image), render: { ...scene.render, sheet_spacing: Math.max(STEP, scene.render.sheet_spacing) } };
+    const small = { ...scene, image, camera: reshaped(store.scene.camera, store.scene.image, image), render: { ...scene.render, sheet_spacing: Math.max(STEP, scene.render.sheet_spacing), pixel_samples: 0 } };
     const frame = await smallPicture(small);
     if (frame === null) return false;
     const bitmap = await createImageBitmap(frame.blob), canvas = canvases.get(name);

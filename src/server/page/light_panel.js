@@ -116,9 +116,13 @@ export function shadowPanel(viewer) {
     label: "Step", low: 0.25, high: 4, exponential: true, unit: "voxels", title: "How far apart the final picture takes samples (its sheets): closer is finer and slower",
     get: () => render().sheet_spacing, set: (value) => store.changeRender("sheet_spacing", +value.toPrecision(3)),
   });
-  body.append(kind.element, ...viewer.comparison.elements, method.element, samples.element, spacing.element);
+  const edges = slider({
+    label: "Smooth edges", low: 1, high: 4, step: 1, title: "The final picture takes this many samples along each side of a pixel, in as many times the time, squared: edges of cut faces become smooth",
+    get: () => Math.max(render().pixel_samples ?? 0, 1), set: (count) => store.changeRender("pixel_samples", count > 1 ? Math.round(count) : 0),
+  });
+  body.append(kind.element, ...viewer.comparison.elements, method.element, samples.element, spacing.element, edges.element);
   function update() {
-    for (const part of [kind, method, samples, spacing, viewer.comparison]) part.update();
+    for (const part of [kind, method, samples, spacing, edges, viewer.comparison]) part.update();
     method.element.hidden = render().shadows !== "soft";
     samples.element.hidden = method.element.hidden || render().soft_method !== "sublights";
   }

@@ -21,7 +21,7 @@ function small(scene) {
   const { exposure: _, tone: __, ...image } = scene.image;
   return {
     ...scene, image: { ...image, width: Math.max(1, Math.round(width * factor)), height: Math.max(1, Math.round(height * factor)) },
-    render: { ...scene.render, sheet_spacing: Math.max(scene.render.sheet_spacing, 1) },
+    render: { ...scene.render, sheet_spacing: Math.max(scene.render.sheet_spacing, 1), pixel_samples: 0 },
   };
 }
 
