@@ -9,6 +9,7 @@
 #include "core/context.h"
 #include "core/door.h"
 #include "core/memory.h"
+#include "scene/label/label_table.h"
 #include "text/stem.h"
 #include "volume/load_beside.h"
 
@@ -174,6 +175,29 @@ static size_t keep_shown(hl_label *labels, size_t count) {
   return kept;
 }
 
+/* Returns whether a label's colour comes from a file, and not from the label's number. */
+static bool has_own_color(const hl_label *label) {
+  double distinct[3];
+  hl_label_distinct_color(label->value, distinct);
+  return memcmp(distinct, label->color, sizeof distinct) != 0;
+}
+
+/* Logs how matter gets the colours that a file gives the mask's labels. Nothing is logged if the list gives
+ * any label a colour, or if no visible label has a colour from a file. */
+static void tell_of_own_colors(const hl_composer *composer, const hl_shown_list *show, const hl_mask *mask) {
+  const char *item = "all";
+  bool own = false;
+  for (size_t n = 0; n < mask->label_count; n++) {
+    if (mask->labels[n].tint > 0) return;
+    own = own || has_own_color(&mask->labels[n]);
+  }
+  for (size_t s = show->count; s-- > 0;)
+    if (!show->labels[s].rest) item = show->labels[s].name;
+  if (own)
+    hl_log(composer->context, HL_LOG_INFO,
+           "the matter within the mask keeps its colours: --show %s=own gives it the label's own", item);
+}
+
 /* Applies "mask": puts the file's label map over the scene's volumes as a mask. */
 static hl_status add_mask(const hl_composer *composer, hl_shown_list *show, hl_label_layers *layers,
                           hl_scene **scene) {
@@ -199,6 +223,7 @@ static hl_status add_mask(const hl_composer *composer, hl_shown_list *show, hl_l
                         .labels = map->labels,
                         .label_count = keep_shown((hl_label *)map->labels, map->label_count),
                         .rest = rest};
+  tell_of_own_colors(composer, show, &mask);
   return put_on_mask(composer, &mask, scene);
 }
 

@@ -36,9 +36,10 @@ static hl_status read_item(const char *item, size_t length, hl_shown_label *made
   char *equals = strrchr(made->name, '=');
   if (equals != NULL) {
     *equals = 0;
-    made->colored = true;
-    if (!hl_parse_color(equals + 1, 0, 1, made->color))
-      made->wrong = "give #rrggbb or a CSS name after \"=\"";
+    made->own = hl_plain_equal(equals + 1, "own");
+    made->colored = !made->own;
+    if (made->colored && !hl_parse_color(equals + 1, 0, 1, made->color))
+      made->wrong = "give #rrggbb, a CSS name or own after \"=\"";
   }
   made->all = strcmp(made->name, "all") == 0;
   made->rest = strcmp(made->name, "rest") == 0;
@@ -86,8 +87,8 @@ static void show_label(hl_shown_label *shown, double opacity, bool exactly, hl_l
   shown->found = true;
   label->visible = 1;
   label->opacity = whole ? 1 : opacity;
-  if (!shown->colored || whole) return;
-  memcpy(label->color, shown->color, sizeof label->color);
+  if ((!shown->colored && !shown->own) || whole) return;
+  if (shown->colored) memcpy(label->color, shown->color, sizeof label->color);
   label->tint = 1; /* in a mask, matter takes the label's colour */
 }
 

@@ -5,7 +5,7 @@
 
 #include "compose/asked.h"
 
-/* An item of the list in the option "show": NAME|NUMBER|all|rest[=COLOR][:OPACITY]. */
+/* An item of the list in the option "show": NAME|NUMBER|all|rest[=COLOR|=own][:OPACITY]. */
 typedef struct hl_shown_label {
   char name[128], whole[128]; /* name: the item's name alone; whole: the item's whole text, which may itself
                                * be the name of a label, with ":" or "=" in it */
@@ -14,6 +14,7 @@ typedef struct hl_shown_label {
               * without a mask */
   bool rest; /* whether the item is "rest"; with a mask, "rest" stands for the matter outside of the labels */
   bool colored, found;
+  bool own; /* whether the item asks for the label's own colour, by "=own" */
   double color[3], opacity;
 } hl_shown_label;
 

@@ -362,21 +362,22 @@ const cli_option render_options[RENDER_OPTION_COUNT] = {
                      .kind = OPTION_TEXT,
                      .argument = "FILE",
                      .help = "a label map that reveals, colours and fades the\nvolumes within its labels: "
-                             "the labels of --show, or all"},
+                             "the labels of --show, or all;\n--show all=own colours them as the labels are"},
     [RENDER_LABEL_TABLE] = {.name = "label-table",
                             .kind = OPTION_TEXT,
                             .argument = "FILE",
                             .help =
                                 "names and colours of labels: FreeSurfer's, Slicer's\nor ITK-SNAP's table, "
                                 "or CSV"},
-    [RENDER_SHOW] =
-        {.name = "show",
-         .kind = OPTION_TEXT,
-         .argument = "LABEL[=COLOR][:OPACITY],...",
-         .help = "labels to show, by name or number:\nliver,tumour=red:0.5,rest:0.1; rest: all others "
-                 "together,\nwith --mask what lies beside it (a label of the name\nrest or all: its number); "
-                 "without either INPUT is\nthe label map",
-         .repeatable = true},
+    [RENDER_SHOW] = {.name = "show",
+                     .kind = OPTION_TEXT,
+                     .argument = "LABEL[=COLOR][:OPACITY],...",
+                     .help = "labels to show, by name or number:\nliver,tumour=red:0.5,rest:0.1; =own: the "
+                             "label's own\ncolour, "
+                             "for --mask; rest: all others together,\nwith --mask what lies beside it (a "
+                             "label of the name\nrest or all: its number); "
+                             "without either INPUT is\nthe label map",
+                     .repeatable = true},
 
     [RENDER_AMBIENT] = {.name = "ambient",
                         .kind = OPTION_COLOR,
