@@ -1,5 +1,7 @@
-/* compose/hidden.c - logs that label maps are not seen, because matter of other volumes hides them. */
+/* compose/hidden.c - logs which labels are not seen, because matter of other volumes hides them. */
+#include <inttypes.h>
 #include <math.h>
+#include <stdio.h>
 #include <string.h>
 
 #include "compose/composer.h"
@@ -13,10 +15,11 @@
 #include "text/stem.h"
 #include "volume/volume.h"
 
-/* SEEN: a place counts as seen if this fraction of its light reaches the eye. */
+/* SEEN: a place counts as seen if this fraction of its light reaches the eye, and a label if this fraction of
+ * its places is seen. */
 #define SEEN 0.05
 
-enum { TABLE = 1024, EXAMINED = 400000, PLACES = 256 };
+enum { TABLE = 1024, EXAMINED = 400000, PLACES = 256, FEWEST_PLACES = 16, ALL_PLACES = 32768 };
 
 /* A volume whose matter may hide labels. */
 typedef struct screen {
@@ -94,15 +97,18 @@ static double passing(const screen *s, vec3 point, vec3 towards) {
   return left;
 }
 
-static bool is_shown(const hl_scene_volume *map, double value) {
+/* Finds the label of a map that a value is, if the label is visible. Returns the label's index; the number of
+ * labels if there is no such label. */
+static size_t shown_label(const hl_scene_volume *map, double value) {
   size_t low = 0, high = map->label_count;
   while (low < high) {
     const size_t middle = low + (high - low) / 2;
     if ((double)map->labels[middle].value < value) low = middle + 1;
     else high = middle;
   }
-  return low < map->label_count && (double)map->labels[low].value == value && map->labels[low].visible &&
-         map->labels[low].opacity > 0;
+  const bool found = low < map->label_count && (double)map->labels[low].value == value &&
+                     map->labels[low].visible && map->labels[low].opacity > 0;
+  return found ? low : map->label_count;
 }
 
 /* The number of an examined voxel among `all` voxels. Steps of about the golden section reach evenly
@@ -111,40 +117,137 @@ static uint64_t examined(uint64_t n, uint64_t all) {
   return all <= EXAMINED ? n : (uint64_t)(fmod((double)n * 0.6180339887498949, 1) * (double)all);
 }
 
-/* Returns whether any of a label map's visible labels is seen through the screens. *any: set to whether these
- * labels have any voxels. */
-static bool is_seen(const hl_scene_description *scene, const hl_scene_volume *map, const screen *own,
-                    const screen *screens, size_t count, bool *any) {
+/* What is found about one label, seen from one side. */
+typedef struct label_sight {
+  uint64_t voxels, facing; /* examined voxels of the label; those of them at whose near side no label lies */
+  uint64_t met, tried, seen; /* the chosen voxels: how many were met, were tried, and are seen */
+  bool present, hidden; /* whether the label has voxels; whether hardly any of them are seen from the sides so
+                         * far */
+} label_sight;
+
+/* The sides from which labels are looked at: the eye's side, and the sides along the camera's axes. A label
+ * that is hidden from all sides is enclosed in other matter. */
+enum { FROM_EYE, FROM_BEHIND, FROM_LEFT, FROM_RIGHT, FROM_ABOVE, FROM_BELOW, SIDES };
+
+/* A label map whose labels are looked for. */
+typedef struct sought_map {
+  const hl_scene_description *scene;
+  const screen *own; /* the map with its cuts */
+  const screen *screens;
+  size_t screen_count;
+  affine3 to_world, to_index;
+  double step;         /* world units */
+  uint64_t places;     /* the number of voxels of a label that are tried */
+  vec3 ways[SIDES];    /* unit vectors to the sides */
+  int side;            /* the side from which the labels are looked at now */
+  label_sight *sights; /* owned; [label_count] */
+} sought_map;
+
+/* A voxel of a visible label. */
+typedef struct sought_voxel {
+  size_t label;
+  bool facing;
+  vec3 point, towards; /* the voxel's place in the world, and the unit vector to the side */
+} sought_voxel;
+
+/* Finds a voxel, if it belongs to a label that is looked for. */
+static bool find_voxel(const sought_map *sought, uint64_t voxel, sought_voxel *found) {
+  const hl_scene_volume *map = sought->own->volume;
+  const hl_camera *camera = &sought->scene->camera;
   const size_t *size = map->volume->dimension;
-  const uint64_t all = (uint64_t)size[0] * size[1] * size[2], looks = all < EXAMINED ? all : EXAMINED;
-  const affine3 to_world = hl_scene_volume_index_to_world(map);
-  vec3 right, up, forward;
-  if (!hl_camera_basis(&scene->camera, &right, &up, &forward)) return true;
-  uint64_t shown = 0;
-  for (uint64_t pass = 0, every = 1, met = 0; pass < 2; pass++, every = shown / PLACES + 1) {
-    for (uint64_t n = 0; n < looks; n++) {
-      const uint64_t voxel = examined(n, all);
-      const size_t i = (size_t)(voxel % size[0]), j = (size_t)(voxel / size[0] % size[1]),
-                   k = (size_t)(voxel / size[0] / size[1]);
-      if (!is_shown(map, hl_volume_value_within(map->volume, i, j, k))) continue;
-      const vec3 at = {(double)i, (double)j, (double)k};
-      if (!hl_cuts_leave(own->cuts, own->cut_count, at)) continue;
-      if (pass == 0) shown++;
-      if (pass == 0 || met++ % every != 0) continue;
-      const vec3 point = affine3_apply(to_world, at);
-      const vec3 towards = scene->camera.type == HL_CAMERA_PERSPECTIVE
-                               ? vec3_normalise(vec3_subtract(vec3_of(scene->camera.position), point))
-                               : vec3_scale(forward, -1);
-      double left = 1;
-      for (size_t s = 0; s < count && left >= SEEN; s++) left *= passing(&screens[s], point, towards);
-      if (left >= SEEN) return true;
-    }
-  }
-  *any = shown > 0;
-  return false;
+  const size_t at[3] = {(size_t)(voxel % size[0]), (size_t)(voxel / size[0] % size[1]),
+                        (size_t)(voxel / size[0] / size[1])};
+  const vec3 place = {(double)at[0], (double)at[1], (double)at[2]};
+  found->label = shown_label(map, hl_volume_value_within(map->volume, at[0], at[1], at[2]));
+  if (found->label == map->label_count || (sought->side > FROM_EYE && !sought->sights[found->label].hidden) ||
+      !hl_cuts_leave(sought->own->cuts, sought->own->cut_count, place))
+    return false;
+  found->point = affine3_apply(sought->to_world, place);
+  found->towards = sought->side == FROM_EYE && camera->type == HL_CAMERA_PERSPECTIVE
+                       ? vec3_normalise(vec3_subtract(vec3_of(camera->position), found->point))
+                       : sought->ways[sought->side];
+  const vec3 before = vec3_add(place,
+                               mat3_apply(sought->to_index.linear, vec3_scale(found->towards, sought->step)));
+  const long next[3] = {lround(before.x), lround(before.y), lround(before.z)};
+  bool within = true;
+  for (int a = 0; a < 3; a++) within &= next[a] >= 0 && next[a] < (long)size[a];
+  found->facing = !within || !hl_cuts_leave(sought->own->cuts, sought->own->cut_count, before) ||
+                  shown_label(map, hl_volume_value_within(map->volume, (size_t)next[0], (size_t)next[1],
+                                                          (size_t)next[2])) == map->label_count;
+  return true;
 }
 
-static void tell(const hl_composer *composer, const hl_scene_volume *map, const hl_scene_volume *screen) {
+/* Looks from one voxel of a label to the side. A label is judged by its voxels that face the side; a label
+ * that lies within other labels, by all of its voxels. At most about `places` voxels of a label are tried. */
+static void try_voxel(const sought_map *sought, const sought_voxel *voxel) {
+  label_sight *sight = &sought->sights[voxel->label];
+  const uint64_t all = sight->facing > 0 ? sight->facing : sight->voxels, every = all / sought->places + 1;
+  if ((sight->facing > 0 && !voxel->facing) || sight->met++ % every != 0) return;
+  double left = 1;
+  for (size_t s = 0; s < sought->screen_count && left >= SEEN; s++)
+    left *= passing(&sought->screens[s], voxel->point, voxel->towards);
+  sight->tried++;
+  sight->seen += left >= SEEN;
+}
+
+/* Looks for labels from one side. Afterwards `hidden` is set for those of them that are hardly seen. */
+static void look_from(sought_map *sought, int side) {
+  const hl_scene_volume *map = sought->own->volume;
+  const size_t *size = map->volume->dimension;
+  const uint64_t all = (uint64_t)size[0] * size[1] * size[2], looks = all < EXAMINED ? all : EXAMINED;
+  sought->side = side;
+  for (size_t l = 0; l < map->label_count; l++) {
+    label_sight *sight = &sought->sights[l];
+    *sight = (label_sight){.present = sight->present, .hidden = sight->hidden};
+  }
+  for (int pass = 0; pass < 2; pass++)
+    for (uint64_t n = 0; n < looks; n++) {
+      sought_voxel voxel;
+      if (!find_voxel(sought, examined(n, all), &voxel)) continue;
+      if (pass == 1) try_voxel(sought, &voxel);
+      else sought->sights[voxel.label].voxels++, sought->sights[voxel.label].facing += voxel.facing;
+    }
+  for (size_t l = 0; l < map->label_count; l++) {
+    label_sight *sight = &sought->sights[l];
+    if (side == FROM_EYE) sight->present = sight->hidden = sight->voxels > 0;
+    sight->hidden = sight->hidden && (double)sight->seen < SEEN * (double)sight->tried;
+  }
+}
+
+static size_t count_hidden(const sought_map *sought, size_t *present) {
+  size_t hidden = 0;
+  *present = 0;
+  for (size_t l = 0; l < sought->own->volume->label_count; l++) {
+    hidden += sought->sights[l].hidden;
+    *present += sought->sights[l].present;
+  }
+  return hidden;
+}
+
+/* Writes the names of the hidden labels: "liver, 7 and 3 more". The most opaque labels come first. */
+static void name_hidden(const hl_scene_volume *map, const label_sight *sights, size_t hidden, char *text,
+                        size_t size) {
+  enum { NAMED = 4 };
+  size_t used = 0, named = 0;
+  double most = 0;
+  text[0] = '\0';
+  for (size_t l = 0; l < map->label_count; l++)
+    if (sights[l].hidden) most = fmax(most, map->labels[l].opacity);
+  for (size_t n = 0; n < 2 * map->label_count && named < NAMED; n++) {
+    const size_t l = n % map->label_count;
+    const hl_label *label = &map->labels[l];
+    if (!sights[l].hidden || (label->opacity < most) == (n < map->label_count)) continue;
+    const char *separator = named++ > 0 ? ", " : "";
+    used += (size_t)(label->name != NULL && label->name[0] != '\0'
+                         ? snprintf(text + used, size - used, "%s%.40s", separator, label->name)
+                         : snprintf(text + used, size - used, "%s%" PRId64, separator, label->value));
+  }
+  if (hidden > named) snprintf(text + used, size - used, " and %zu more", hidden - named);
+}
+
+/* Logs that labels of a map are not seen. some: the names of these labels; null: all labels of the map. */
+static void tell(const hl_composer *composer, const hl_scene_volume *map, const char *some, size_t count,
+                 const hl_scene_volume *screen) {
   size_t lengths[2] = {0};
   const hl_scene_volume *parts[2] = {map, screen};
   const char *names[2];
@@ -152,11 +255,53 @@ static void tell(const hl_composer *composer, const hl_scene_volume *map, const 
     names[n] = parts[n]->name != NULL ? parts[n]->name : parts[n]->file != NULL ? parts[n]->file : "volume";
     names[n] = hl_stem(names[n], &lengths[n]);
   }
+  const bool one = some != NULL && count == 1;
   hl_log(composer->context, HL_LOG_INFO,
-         "the labels of %.*s are hidden in %.*s: --iso %.*s=VALUE:COLOR:0.2 shows it as glass, --cut-box "
+         "the label%s%s%s of %.*s %s hidden in %.*s: --iso %.*s=VALUE:COLOR:0.2 shows it as glass, --cut-box "
          "%.*s=... opens it",
-         (int)lengths[0], names[0], (int)lengths[1], names[1], (int)lengths[1], names[1], (int)lengths[1],
-         names[1]);
+         one ? "" : "s", some != NULL ? " " : "", some != NULL ? some : "", (int)lengths[0], names[0],
+         one ? "is" : "are", (int)lengths[1], names[1], (int)lengths[1], names[1], (int)lengths[1], names[1]);
+}
+
+/* Tells that a map is hidden from the eye, or else which of its labels are enclosed in the screens. A label
+ * at the far side of matter is no surprise while other labels are seen. */
+static void tell_of_map(const hl_composer *composer, sought_map *sought) {
+  const hl_scene_volume *map = sought->own->volume, *screen = sought->screens[0].volume;
+  char names[300];
+  size_t present = 0;
+  look_from(sought, FROM_EYE);
+  size_t hidden = count_hidden(sought, &present);
+  if (hidden > 0 && hidden == present) {
+    tell(composer, map, NULL, hidden, screen);
+    return;
+  }
+  for (int side = FROM_EYE + 1; side < SIDES && hidden > 0; side++) {
+    look_from(sought, side);
+    hidden = count_hidden(sought, &present);
+  }
+  if (hidden == 0) return;
+  name_hidden(map, sought->sights, hidden, names, sizeof names);
+  tell(composer, map, names, hidden, screen);
+}
+
+static hl_status look_at_map(const hl_composer *composer, sought_map *sought) {
+  const hl_scene_volume *map = sought->own->volume;
+  vec3 *ways = sought->ways, right, up, forward;
+  if (!hl_camera_basis(&sought->scene->camera, &right, &up, &forward)) return HL_OK;
+  ways[FROM_EYE] = vec3_scale(forward, -1), ways[FROM_BEHIND] = forward;
+  ways[FROM_LEFT] = vec3_scale(right, -1), ways[FROM_RIGHT] = right;
+  ways[FROM_ABOVE] = up, ways[FROM_BELOW] = vec3_scale(up, -1);
+  sought->to_world = hl_scene_volume_index_to_world(map);
+  sought->step = mat3_shortest_column(sought->to_world.linear);
+  if (!affine3_invert(sought->to_world, &sought->to_index)) return HL_OK;
+  sought->places = ALL_PLACES / (map->label_count + 1) + FEWEST_PLACES;
+  if (sought->places > PLACES) sought->places = PLACES;
+  sought->sights = hl_allocate_zeroed(composer->context, map->label_count, sizeof *sought->sights);
+  if (sought->sights == NULL)
+    return hl_fail_memory(composer->error, map->label_count * sizeof *sought->sights, "labels that are seen");
+  tell_of_map(composer, sought);
+  hl_release(composer->context, sought->sights);
+  return HL_OK;
 }
 
 hl_status hl_tell_of_hidden_labels(const hl_composer *composer, const hl_scene_description *scene) {
@@ -177,11 +322,10 @@ hl_status hl_tell_of_hidden_labels(const hl_composer *composer, const hl_scene_d
   for (size_t v = 0; v < scene->volume_count && status == HL_OK && count > 0; v++) {
     const hl_scene_volume *map = &scene->volumes[v];
     screen own = {.volume = map};
-    bool any = false;
     if (!map->visible || map->label_count == 0 || !is_at_hand(map->volume)) continue;
     status = find_cuts(composer, scene, map, &own.cuts, &own.cut_count);
-    if (status == HL_OK && !is_seen(scene, map, &own, screens, count, &any) && any)
-      tell(composer, map, screens[0].volume);
+    sought_map sought = {.scene = scene, .own = &own, .screens = screens, .screen_count = count};
+    if (status == HL_OK) status = look_at_map(composer, &sought);
     hl_release(context, own.cuts);
   }
   for (size_t s = 0; s < count; s++) hl_release(context, screens[s].cuts);
