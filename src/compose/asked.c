@@ -42,7 +42,7 @@ static const hl_setting_choice range_scales[] = {
 #define RENDER_NUMBER(row, n, k) [row] = {.name = (n), .kind = HL_OPTION_NUMBERS, .count = 1, OF_RENDER(k)}
 
 const hl_option_row hl_option_rows[HL_ASK_COUNT] = {
-    [HL_ASK_SIZE] = {.name = "size", .kind = HL_OPTION_NUMBERS, .count = 2, .separator = 'x'},
+    [HL_ASK_SIZE] = {.name = "size", .kind = HL_OPTION_NUMBERS, .count = 2, .separator = 'x', .even = true},
     [HL_ASK_BACKGROUND] = {.name = "background", .kind = HL_OPTION_COLOR, .choices = backgrounds,
                            .setting_kind = HL_SETTINGS_IMAGE, .setting = "background"},
     NUMBER(HL_ASK_EXPOSURE, "exposure"),
@@ -144,6 +144,10 @@ static bool read_numbers(const hl_option_row *row, const char *text, hl_asked *a
     asked->percent[n] = row->percent && *end == '%';
     if (asked->percent[n] && !(asked->number[n] >= 0 && asked->number[n] <= 100)) return false;
     end += asked->percent[n];
+    if (row->even && n == 0 && *end == '\0') {
+      for (int other = 1; other < row->count; other++) asked->number[other] = asked->number[0];
+      return true;
+    }
     if (*end != (n + 1 < row->count ? row->separator : '\0')) return false;
     text = end + 1;
   }

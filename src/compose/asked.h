@@ -95,6 +95,7 @@ typedef struct hl_option_row {
   int count;      /* number of numbers, 1 to 3 */
   char separator; /* character between numbers */
   bool percent;   /* whether each number may be a percentile */
+  bool even;      /* whether a single number stands for all numbers */
   bool repeats;
   const hl_setting_choice *choices; /* the choices of the option; if null, the option has the choices of the
                                      * setting, if there are any */

@@ -1,1 +1,1 @@
-halflight render --size 512 x.nrrd
+halflight render --size 512x x.nrrd
