@@ -243,7 +243,8 @@ static hl_status read_keys(film *f, const film_options *options, hl_error *error
   f->keys = calloc(options->key_count + 1, sizeof *f->keys);
   if (f->keys == NULL) return no_memory(error);
   for (; status == HL_OK && f->key_count < options->key_count; f->key_count++) {
-    status = film_key_read(options->keys[f->key_count], &f->keys[f->key_count], error);
+    status = film_key_read(options->keys[f->key_count], options->frames_per_second, &f->keys[f->key_count],
+                           error);
     f->keys[f->key_count].smooth = options->smooth;
     if (status == HL_OK && is_turn(f->keys[f->key_count].path) && f->keys[f->key_count].components != 1) {
       snprintf(error->message, sizeof error->message, "%s: a turn is a number, not a colour",

@@ -19,8 +19,9 @@ enum { FILM_WHOLE_TURN = -1 };
 typedef struct film_options {
   hl_context *context;
   const hl_scene *scene;
-  const char *const *keys; /* [key_count]; the texts of the keys: "PATH=FRAME:VALUE,..." */
+  const char *const *keys; /* [key_count]; the texts of the keys: "PATH=FRAME|SECONDSs:VALUE,..." */
   size_t key_count;
+  double frames_per_second; /* for the keys' times in seconds */
   /* whether numbers change slowly near the two given frames between which they change; if not, they change at
    * an even pace */
   bool smooth;

@@ -30,16 +30,32 @@ static int read_value(const char *text, int length, double value[3]) {
   return hl_parse_color(color, 0, 1, value) ? 3 : 0;
 }
 
-/* Reads "FRAME:VALUE" at *at, and moves *at behind it. The first point of a key sets its components. */
-static hl_status read_point(const char **at, film_key *key, int *frame, double *values, hl_error *error) {
+/* Reads a number of a frame, or a time such as "1.5s", up to the colon behind it. Returns false if the text
+ * is neither. */
+static bool read_frame(const char *text, double frames_per_second, int *frame, const char **colon) {
   char *end;
+  double number = *text >= '0' && *text <= '9' ? (double)strtol(text, &end, 10) : -1;
+  if (number >= 0 && *end != ':') {
+    number = round(hl_plain_number(text, &end) * frames_per_second);
+    if (*end++ != 's') return false;
+  }
+  if (!(number >= 0 && number <= FILM_MOST_FRAMES) || *end != ':') return false;
+  *frame = (int)number;
+  *colon = end;
+  return true;
+}
+
+/* Reads "FRAME:VALUE" at *at, and moves *at behind it. The first point of a key sets its components. */
+static hl_status read_point(const char **at, double frames_per_second, film_key *key, int *frame,
+                            double *values, hl_error *error) {
+  const char *end;
   int length = (int)strcspn(*at, ",");
-  long number = strtol(*at, &end, 10);
-  if (**at < '0' || **at > '9' || *end != ':' || number > FILM_MOST_FRAMES)
-    return refuse(error, "%s: '%.*s' is no FRAME:VALUE: frames are counted from 0, as in 0:10,48:35",
+  if (!read_frame(*at, frames_per_second, frame, &end))
+    return refuse(error,
+                  "%s: '%.*s' is no FRAME:VALUE: frames are counted from 0, as in 0:10,48:35, and seconds "
+                  "have an s, as in 0s:10,2s:35",
                   key->path, length, *at);
   const char *text = end + 1;
-  *frame = (int)number;
   end += 1 + strcspn(text, ",");
   double value[3];
   int components = read_value(text, (int)(end - text), value);
@@ -58,7 +74,7 @@ static hl_status read_point(const char **at, film_key *key, int *frame, double *
   return *end == ',' && **at == '\0' ? refuse(error, "%s: nothing follows the last comma", key->path) : HL_OK;
 }
 
-hl_status film_key_read(const char *text, film_key *key, hl_error *error) {
+hl_status film_key_read(const char *text, double frames_per_second, film_key *key, hl_error *error) {
   *key = (film_key){0};
   const char *equals = strchr(text, '=');
   if (equals == NULL || equals == text || equals[1] == '\0')
@@ -76,7 +92,7 @@ hl_status film_key_read(const char *text, film_key *key, hl_error *error) {
   const char *at = equals + 1;
   hl_status status = HL_OK;
   while (status == HL_OK && *at != '\0') {
-    status = read_point(&at, key, &key->frames[key->count], key->values, error);
+    status = read_point(&at, frames_per_second, key, &key->frames[key->count], key->values, error);
     if (status == HL_OK) key->count++;
   }
   return status;

@@ -20,9 +20,10 @@ typedef struct film_key {
   bool smooth;
 } film_key;
 
-/* Reads "PATH=FRAME:VALUE,FRAME:VALUE,...". Returns HL_ERROR_ARGUMENT if the text is no key; the error names
+/* Reads "PATH=FRAME:VALUE,FRAME:VALUE,...". A FRAME is the number of a frame, or a time as "1.5s", for which
+ * the nearest frame is taken. Returns HL_ERROR_ARGUMENT if the text is no key; the error names
  * the place in the text. Call film_key_release() even after a failure. */
-hl_status film_key_read(const char *text, film_key *key, hl_error *error);
+hl_status film_key_read(const char *text, double frames_per_second, film_key *key, hl_error *error);
 void film_key_release(film_key *key);
 
 /* The value of a key at a frame. component: 0 for a number; 0, 1 or 2 for a colour. */

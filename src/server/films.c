@@ -123,6 +123,7 @@ static hl_status begin_film(const server *s, const hl_scene *scene, const film_r
                           .scene = scene,
                           .keys = request->keys,
                           .key_count = request->key_count,
+                          .frames_per_second = request->frames_per_second,
                           .turntable = request->turntable,
                           .frames = request->frames};
   return film_create(&options, f, error);

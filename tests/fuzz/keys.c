@@ -39,8 +39,11 @@ int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size) {
   if (size < 2 || size > MOST_TEXT) return 0;
   memcpy(text, data + 2, size - 2);
   text[size - 2] = 0;
-  film_options options = {
-      .context = fuzz_context(), .keys = keys, .turntable = data[0] % 4, .frames = data[1]};
+  film_options options = {.context = fuzz_context(),
+                          .keys = keys,
+                          .frames_per_second = 24,
+                          .turntable = data[0] % 4,
+                          .frames = data[1]};
   options.key_count = lines_of(text, keys);
   hl_status status = hl_scene_from_json(fuzz_context(), scene_text, sizeof scene_text - 1, NULL, "scene",
                                         &scene, &error);

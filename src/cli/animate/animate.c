@@ -68,8 +68,9 @@ static const cli_option animate_options[ANIMATE_OPTION_COUNT] = {
                      .argument = "PATH=FRAME:VALUE,...",
                      .help = "change a number of the scene from frame to frame:\n"
                              "lights.0.intensity=0:1,48:3 goes from 1 in frame 0 to\n"
-                             "3 in frame 48. camera.azimuth, .elevation, .roll\n"
-                             "(degrees) and .zoom (factor) turn the camera;\n"
+                             "3 in frame 48, 0s:1,2s:3 in two seconds.\n"
+                             "camera.azimuth, .elevation, .roll (degrees) and\n"
+                             ".zoom (factor) turn the camera;\n"
                              "lights.0.azimuth and .elevation turn a light, as --light\n"
                              "does. Settings that are colours go from colour to colour:\n"
                              "lights.0.color=0:orange,48:#2060ff. With several files\n"
@@ -196,6 +197,7 @@ static void find_motion(const animate_job *job, bool series, motion *found) {
       .scene = job->scene,
       .keys = found->keys,
       .key_count = count,
+      .frames_per_second = frames_per_second(job),
       .smooth = values[ANIMATE_EASE].given ? values[ANIMATE_EASE].choice == 1 : sweeps(job),
       .turntable = turn};
 }

@@ -8,3 +8,9 @@ for frame in 0 1 2 3 4; do
   tool json frame.json '[d["lights"][0]["intensity"], d["lights"][0]["angular_diameter_deg"], d["image"].get("exposure", 0),
     d["render"]["light_samples"], d["volumes"][0]["material"]["diffuse"]]'
 done
+# A time in seconds is the frame that is nearest to it; fractions of seconds and frames may stand in one key.
+halflight animate scene.json --key lights.0.intensity=0s:1,0.5s:2,6:4 --fps 4 --quiet -o seconds
+ls seconds
+tool png-scene seconds/0001.png >frame.json
+tool json frame.json 'd["lights"][0]["intensity"]'
+for key in 1m:2 1.5:2 2s 2es:1 1e9s:1; do halflight animate scene.json --key lights.0.intensity=$key 2>&1 || true; done
