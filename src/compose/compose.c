@@ -20,7 +20,8 @@
 typedef struct scene_change {
   hl_scene_description description;
   hl_changed_volumes volumes;
-  hl_light *lights;       /* owned; [description.light_count] */
+  hl_scene_volume *channels; /* owned; the volumes, of which some may be translucent; null if none is */
+  hl_light *lights;          /* owned; [description.light_count] */
   hl_scene_mesh *colored; /* owned; the scene's meshes if "colormap" gives some of them colours; else null */
   hl_scene_mesh *meshes;  /* owned; the meshes, of which the last one is the floor; null if no floor is
                            * added */
@@ -134,6 +135,7 @@ static hl_status change_all(const hl_composer *composer, scene_change *change) {
   bool seen = change->volumes.seen || (composer->flags & HL_COMPOSE_CHANGED) != 0;
   if (status == HL_OK) smooth_labels(composer, description);
   if (status == HL_OK) status = hl_compose_camera(composer, seen, description);
+  if (status == HL_OK) status = hl_see_through_channels(composer, description, &change->channels);
   if (status == HL_OK) status = color_meshes(composer, change);
   if (status == HL_OK) status = add_floor(composer, change);
   if (status == HL_OK) status = hl_compose_lights(composer, description, &change->lights);
@@ -151,6 +153,7 @@ static hl_status change_all(const hl_composer *composer, scene_change *change) {
 
 static void change_release(hl_context *context, scene_change *change) {
   hl_changed_volumes_release(context, &change->volumes);
+  hl_release(context, change->channels);
   hl_release(context, change->sky);
   if (change->meshes != NULL) hl_mesh_release(change->meshes[change->description.mesh_count - 1].mesh);
   hl_release(context, change->meshes);

@@ -5,10 +5,10 @@
 #include <string.h>
 
 #include "compose/composer.h"
+#include "compose/screens.h"
 #include "core/context.h"
 #include "core/memory.h"
 #include "core/vector.h"
-#include "scene/function/transfer_function.h"
 #include "scene/geometry/cut.h"
 #include "scene/geometry/placement.h"
 #include "scene/scene.h"
@@ -19,83 +19,7 @@
  * its places is seen. */
 #define SEEN 0.05
 
-enum { TABLE = 1024, EXAMINED = 400000, PLACES = 256, FEWEST_PLACES = 16, ALL_PLACES = 32768 };
-
-/* A volume whose matter may hide labels. */
-typedef struct screen {
-  const hl_scene_volume *volume;
-  cut_shape *cuts; /* owned */
-  size_t cut_count;
-  double low[3], high[3]; /* the volume's box in index space */
-  affine3 to_index;
-  double step;           /* world units */
-  double opacity[TABLE]; /* of a step; entries over the volume's range */
-} screen;
-
-/* Makes the shapes of a volume's own cuts and of its scene's cuts. *shapes is owned by the caller. */
-static hl_status find_cuts(const hl_composer *composer, const hl_scene_description *scene,
-                           const hl_scene_volume *volume, cut_shape **shapes, size_t *count) {
-  hl_scene_volume both = *volume;
-  *shapes = NULL;
-  *count = volume->cut_count + scene->cut_count;
-  if (*count == 0) return HL_OK;
-  hl_cut *cuts = hl_allocate(composer->context, *count, sizeof *cuts);
-  if (cuts == NULL) return hl_fail_memory(composer->error, *count * sizeof *cuts, "cuts");
-  hl_add_scene_cuts(scene, &both, cuts);
-  hl_status status = hl_cut_shapes(composer->context, &both, shapes, composer->error);
-  hl_release(composer->context, cuts);
-  return status;
-}
-
-/* Whether all voxels of a volume are in memory. Voxels here and there of a scratch file, or of other
- * processes, would take too long. */
-static bool is_at_hand(const hl_volume *volume) { return volume->pages == NULL && volume->bricks == NULL; }
-
-/* Whether a volume can hide labels as far as can be told here: it shows values by their opacity alone. */
-static bool hides(const hl_scene_volume *volume) {
-  const hl_transfer_function *function = &volume->transfer_function;
-  return volume->visible && volume->label_count == 0 && volume->mask.volume == NULL &&
-         is_at_hand(volume->volume) && function->plane.second == HL_SECOND_NONE &&
-         function->gradient_opacity_count == 0 && volume->volume->maximum > volume->volume->minimum;
-}
-
-static bool prepare(const hl_scene_volume *volume, screen *s) {
-  const affine3 to_world = hl_scene_volume_index_to_world(volume);
-  const hl_transfer_function *function = &volume->transfer_function;
-  const double least = volume->volume->minimum, range = volume->volume->maximum - least;
-  *s = (screen){.volume = volume, .step = mat3_shortest_column(to_world.linear)};
-  if (!affine3_invert(to_world, &s->to_index)) return false;
-  hl_scene_volume_box(volume, s->low, s->high);
-  for (int n = 0; n < TABLE; n++) {
-    const double opacity = hl_transfer_function_opacity(function, least + range * n / (TABLE - 1));
-    s->opacity[n] = 1 - pow(1 - opacity, s->step / function->unit_distance);
-  }
-  return true;
-}
-
-/* The fraction of the light that passes a volume on its way from a point of the world. towards: a unit
- * vector. */
-static double passing(const screen *s, vec3 point, vec3 towards) {
-  const hl_volume *volume = s->volume->volume;
-  const double scale = (TABLE - 1) / (volume->maximum - volume->minimum);
-  const vec3 step = mat3_apply(s->to_index.linear, vec3_scale(towards, s->step));
-  vec3 at = affine3_apply(s->to_index, point);
-  double left = 1;
-  const long most = 4L * (long)(volume->dimension[0] + volume->dimension[1] + volume->dimension[2]);
-  for (long n = 0; n < most && left >= SEEN; n++) {
-    at = vec3_add(at, step);
-    const double place[3] = {at.x, at.y, at.z};
-    bool within = true;
-    for (int a = 0; a < 3; a++) within &= place[a] > s->low[a] && place[a] < s->high[a];
-    if (!within) continue;
-    const double value = hl_volume_value_within(volume, (size_t)lround(at.x), (size_t)lround(at.y),
-                                                (size_t)lround(at.z));
-    const double entry = (value - volume->minimum) * scale + 0.5;
-    if (!(entry >= 0 && entry < TABLE) || !hl_cuts_leave(s->cuts, s->cut_count, at)) continue;
-    left *= 1 - s->opacity[(int)entry];
-  }
-  return left;
-}
+enum { PLACES = 256, FEWEST_PLACES = 16, ALL_PLACES = 32768 };
 
 /* Finds the label of a map that a value is, if the label is visible. Returns the label's index; the number of
  * labels if there is no such label. */
@@ -109,12 +33,6 @@ static size_t shown_label(const hl_scene_volume *map, double value) {
   const bool found = low < map->label_count && (double)map->labels[low].value == value &&
                      map->labels[low].visible && map->labels[low].opacity > 0;
   return found ? low : map->label_count;
-}
-
-/* The number of an examined voxel among `all` voxels. Steps of about the golden section reach evenly
- * distributed voxels. */
-static uint64_t examined(uint64_t n, uint64_t all) {
-  return all <= EXAMINED ? n : (uint64_t)(fmod((double)n * 0.6180339887498949, 1) * (double)all);
 }
 
 /* What is found about one label, seen from one side. */
@@ -132,8 +50,8 @@ enum { FROM_EYE, FROM_BEHIND, FROM_LEFT, FROM_RIGHT, FROM_ABOVE, FROM_BELOW, SID
 /* A label map whose labels are looked for. */
 typedef struct sought_map {
   const hl_scene_description *scene;
-  const screen *own; /* the map with its cuts */
-  const screen *screens;
+  const hl_screen *own; /* the map with its cuts */
+  const hl_screen *screens;
   size_t screen_count;
   affine3 to_world, to_index;
   double step;         /* world units */
@@ -185,7 +103,7 @@ static void try_voxel(const sought_map *sought, const sought_voxel *voxel) {
   if ((sight->facing > 0 && !voxel->facing) || sight->met++ % every != 0) return;
   double left = 1;
   for (size_t s = 0; s < sought->screen_count && left >= SEEN; s++)
-    left *= passing(&sought->screens[s], voxel->point, voxel->towards);
+    left *= hl_screen_passing(&sought->screens[s], voxel->point, voxel->towards, SEEN);
   sight->tried++;
   sight->seen += left >= SEEN;
 }
@@ -194,7 +112,7 @@ static void try_voxel(const sought_map *sought, const sought_voxel *voxel) {
 static void look_from(sought_map *sought, int side) {
   const hl_scene_volume *map = sought->own->volume;
   const size_t *size = map->volume->dimension;
-  const uint64_t all = (uint64_t)size[0] * size[1] * size[2], looks = all < EXAMINED ? all : EXAMINED;
+  const uint64_t all = (uint64_t)size[0] * size[1] * size[2], looks = hl_examined_voxels(all);
   sought->side = side;
   for (size_t l = 0; l < map->label_count; l++) {
     label_sight *sight = &sought->sights[l];
@@ -203,7 +121,7 @@ static void look_from(sought_map *sought, int side) {
   for (int pass = 0; pass < 2; pass++)
     for (uint64_t n = 0; n < looks; n++) {
       sought_voxel voxel;
-      if (!find_voxel(sought, examined(n, all), &voxel)) continue;
+      if (!find_voxel(sought, hl_examined_voxel(n, all), &voxel)) continue;
       if (pass == 1) try_voxel(sought, &voxel);
       else sought->sights[voxel.label].voxels++, sought->sights[voxel.label].facing += voxel.facing;
     }
@@ -310,25 +228,23 @@ hl_status hl_tell_of_hidden_labels(const hl_composer *composer, const hl_scene_d
   hl_status status = HL_OK;
   if (!composer->asked[HL_ASK_LABELS].given || scene->render.compositing == HL_COMPOSITING_MAXIMUM)
     return HL_OK;
-  screen *screens = hl_allocate_zeroed(context, scene->volume_count + 1, sizeof *screens);
+  hl_screen *screens = hl_allocate_zeroed(context, scene->volume_count + 1, sizeof *screens);
   if (screens == NULL) return hl_fail_memory(composer->error, sizeof *screens, "labels that are seen");
   for (size_t v = 0; v < scene->volume_count && status == HL_OK; v++) {
     const hl_scene_volume *volume = &scene->volumes[v];
-    screen *s = &screens[count];
-    if (!hides(volume) || !prepare(volume, s)) continue;
-    status = find_cuts(composer, scene, volume, &s->cuts, &s->cut_count);
-    count++;
+    if (!hl_screen_can_hide(volume)) continue;
+    status = hl_screen_begin(context, scene, volume, &screens[count++], composer->error);
   }
   for (size_t v = 0; v < scene->volume_count && status == HL_OK && count > 0; v++) {
     const hl_scene_volume *map = &scene->volumes[v];
-    screen own = {.volume = map};
-    if (!map->visible || map->label_count == 0 || !is_at_hand(map->volume)) continue;
-    status = find_cuts(composer, scene, map, &own.cuts, &own.cut_count);
+    if (!map->visible || map->label_count == 0 || !hl_is_at_hand(map->volume)) continue;
+    hl_screen own;
+    status = hl_screen_begin(context, scene, map, &own, composer->error);
     sought_map sought = {.scene = scene, .own = &own, .screens = screens, .screen_count = count};
     if (status == HL_OK) status = look_at_map(composer, &sought);
-    hl_release(context, own.cuts);
+    hl_screen_release(context, &own);
   }
-  for (size_t s = 0; s < count; s++) hl_release(context, screens[s].cuts);
+  for (size_t s = 0; s < count; s++) hl_screen_release(context, &screens[s]);
   hl_release(context, screens);
   return status;
 }

@@ -1,0 +1,213 @@
+/* compose/see_through.c - makes channels of a file translucent that hide other channels of the file.
+ *
+ * A volume is judged at places of its matter that the camera would see if the volume were alone. If other
+ * matter leaves almost no light of most of these places, the volume is hidden. The matter that hides it is
+ * made so thin that most of the light passes: its transfer function gets a longer unit distance. */
+#include <math.h>
+#include <string.h>
+
+#include "compose/composer.h"
+#include "compose/looks.h"
+#include "compose/screens.h"
+#include "core/context.h"
+#include "core/memory.h"
+#include "guess/sample.h"
+
+/* SEEN: a place counts as seen if this fraction of its light reaches the eye. */
+#define SEEN 0.05
+/* A volume is hidden if a smaller fraction of its places is seen. */
+#define ENOUGH 0.25
+/* A place is at the front of a volume if the volume itself lets this fraction of the light pass. */
+#define FRONT 0.3
+/* A volume hides another one if it lets a smaller fraction of the light pass from the middle place. */
+#define HIDES 0.3
+/* The fraction of the light that matter lets pass after it has become translucent. */
+#define THROUGH 0.65
+/* The least fraction that is told from nothing. */
+#define LEAST 1e-30
+
+enum { PLACES = 256, TRIED = 16384 };
+
+/* The volumes of a scene, of which some hide others. */
+typedef struct channel_views {
+  const hl_scene_description *scene;
+  hl_screen *screens; /* owned; [count] */
+  size_t count;
+  vec3 forward;        /* the camera's direction */
+  double *thin;        /* owned; [count]; the factor for each volume's extinction */
+  size_t *hidden;      /* owned; [count]; a volume that is hidden by this one */
+  vec3 places[PLACES]; /* [place_count]; the places of one volume, in the world */
+  size_t place_count;
+} channel_views;
+
+static vec3 towards_eye(const channel_views *views, vec3 point) {
+  const hl_camera *camera = &views->scene->camera;
+  return camera->type == HL_CAMERA_PERSPECTIVE
+             ? vec3_normalise(vec3_subtract(vec3_of(camera->position), point))
+             : vec3_scale(views->forward, -1);
+}
+
+/* Finds the point of an examined voxel in the world. Returns false if the voxel has no matter that is at
+ * least half as opaque as the volume's most opaque matter. */
+static bool find_matter(const hl_screen *screen, uint64_t voxel, double most, vec3 *point) {
+  const hl_volume *volume = screen->volume->volume;
+  const size_t *size = volume->dimension;
+  const size_t i = (size_t)(voxel % size[0]), j = (size_t)(voxel / size[0] % size[1]),
+               k = (size_t)(voxel / size[0] / size[1]);
+  const vec3 at = {(double)i, (double)j, (double)k};
+  if (!(2 * hl_screen_opacity(screen, hl_volume_value_within(volume, i, j, k)) > most) ||
+      !hl_cuts_leave(screen->cuts, screen->cut_count, at))
+    return false;
+  *point = affine3_apply(hl_scene_volume_index_to_world(screen->volume), at);
+  return true;
+}
+
+/* Places that are found one after the other, of which evenly distributed ones are kept. */
+typedef struct kept_places {
+  uint64_t met, every; /* places so far; of so many, one is kept */
+} kept_places;
+
+static void keep_place(channel_views *views, kept_places *kept, vec3 point) {
+  if (kept->met++ % kept->every != 0) return;
+  if (views->place_count == PLACES) {
+    for (size_t p = 0; p < PLACES / 2; p++) views->places[p] = views->places[2 * p];
+    views->place_count = PLACES / 2;
+    kept->every *= 2;
+  }
+  views->places[views->place_count++] = point;
+}
+
+/* Finds places at the front of a volume. */
+static void find_places(channel_views *views, const hl_screen *screen) {
+  const size_t *size = screen->volume->volume->dimension;
+  const uint64_t all = (uint64_t)size[0] * size[1] * size[2], looks = hl_examined_voxels(all);
+  double most = 0;
+  uint64_t matter = 0, met = 0;
+  kept_places kept = {.every = 1};
+  vec3 point;
+  for (int n = 0; n < HL_SCREEN_TABLE; n++) most = fmax(most, screen->opacity[n]);
+  views->place_count = 0;
+  for (uint64_t n = 0; n < looks; n++) matter += find_matter(screen, hl_examined_voxel(n, all), most, &point);
+  for (uint64_t n = 0; n < looks; n++) {
+    if (!find_matter(screen, hl_examined_voxel(n, all), most, &point) || met++ % (matter / TRIED + 1) != 0)
+      continue;
+    if (hl_screen_passing(screen, point, towards_eye(views, point), FRONT) >= FRONT)
+      keep_place(views, &kept, point);
+  }
+}
+
+/* The middle one of the fractions of light that a volume lets pass from all places. */
+static hl_status find_middle(hl_context *context, const channel_views *views, const hl_screen *screen,
+                             double *middle, hl_error *error) {
+  float passing[PLACES];
+  for (size_t p = 0; p < views->place_count; p++)
+    passing[p] = (float)hl_screen_passing(screen, views->places[p], towards_eye(views, views->places[p]),
+                                          LEAST);
+  if (!hl_sort(context, passing, views->place_count))
+    return hl_fail_memory(error, sizeof passing, "channels that are seen");
+  *middle = fmax(hl_quantile(passing, views->place_count, 0.5), LEAST);
+  return HL_OK;
+}
+
+/* The fraction of the places from which all other volumes together let light pass. */
+static double seen_part(const channel_views *views, size_t of) {
+  size_t seen = 0;
+  for (size_t p = 0; p < views->place_count; p++) {
+    double left = 1;
+    for (size_t v = 0; v < views->count && left >= SEEN; v++)
+      if (v != of)
+        left *= hl_screen_passing(&views->screens[v], views->places[p], towards_eye(views, views->places[p]),
+                                  SEEN);
+    seen += left >= SEEN;
+  }
+  return views->place_count > 0 ? (double)seen / (double)views->place_count : 1;
+}
+
+/* If a volume is hidden, makes the volumes thin that hide it. Derived: the transmittances of all of them are
+ * multiplied, and the factor f makes the transmittance t^f. */
+static hl_status thin_before(hl_context *context, channel_views *views, size_t of, hl_error *error) {
+  double middle[HL_CHANNELS_MOST];
+  size_t hiding = 0;
+  hl_status status = HL_OK;
+  find_places(views, &views->screens[of]);
+  if (seen_part(views, of) >= ENOUGH) return HL_OK;
+  for (size_t v = 0; v < views->count && status == HL_OK; v++) {
+    middle[v] = 1;
+    if (v != of) status = find_middle(context, views, &views->screens[v], &middle[v], error);
+    hiding += middle[v] < HIDES;
+  }
+  for (size_t v = 0; v < views->count && status == HL_OK; v++) {
+    const double factor = log(THROUGH) / ((double)hiding * log(middle[v]));
+    if (!(middle[v] < HIDES) || factor >= views->thin[v]) continue;
+    views->thin[v] = factor;
+    views->hidden[v] = of;
+  }
+  return status;
+}
+
+static const char *name_of(const hl_scene_volume *volume) {
+  return volume->name != NULL ? volume->name : "a volume";
+}
+
+static hl_status thin_all(hl_context *context, channel_views *views, hl_scene_volume *volumes,
+                          hl_error *error) {
+  hl_status status = HL_OK;
+  for (size_t v = 0; v < views->count && status == HL_OK; v++) {
+    status = hl_screen_begin(context, views->scene, &volumes[v], &views->screens[v], error);
+    views->thin[v] = 1;
+  }
+  for (size_t v = 0; v < views->count && status == HL_OK; v++) status = thin_before(context, views, v, error);
+  for (size_t v = 0; v < views->count && status == HL_OK; v++) {
+    if (!(views->thin[v] < 1)) continue;
+    volumes[v].transfer_function.unit_distance /= views->thin[v];
+    hl_log(context, HL_LOG_INFO,
+           "%.60s would hide %.60s, and is shown translucent: --look surface keeps it opaque",
+           name_of(&volumes[v]), name_of(&volumes[views->hidden[v]]));
+  }
+  for (size_t v = 0; v < views->count; v++) hl_screen_release(context, &views->screens[v]);
+  return status;
+}
+
+/* Returns whether the scene consists of channels of one file, all of them with opacities that were chosen
+ * automatically. */
+static bool has_chosen_channels(const hl_composer *composer, const hl_scene_description *scene) {
+  const hl_asked *asked = composer->asked;
+  const hl_scene_volume *first = scene->volumes;
+  if (!composer->bare || scene->volume_count < 2 || scene->volume_count > HL_CHANNELS_MOST ||
+      hl_asked_look(composer) != NULL || hl_is_maximum(composer, scene) || asked[HL_ASK_TF].given ||
+      asked[HL_ASK_RANGE].given || asked[HL_ASK_THRESHOLD].given || asked[HL_ASK_ISO].given)
+    return false;
+  for (size_t v = 0; v < scene->volume_count; v++)
+    if (!hl_screen_can_hide(&scene->volumes[v]) || first->file == NULL || scene->volumes[v].file == NULL ||
+        strcmp(scene->volumes[v].file, first->file) != 0 ||
+        (v > 0 && scene->volumes[v].channel == first->channel))
+      return false;
+  return true;
+}
+
+hl_status hl_see_through_channels(const hl_composer *composer, hl_scene_description *scene,
+                                  hl_scene_volume **changed) {
+  hl_context *context = composer->context;
+  const size_t count = scene->volume_count;
+  vec3 right, up;
+  channel_views views = {.scene = scene, .count = count};
+  if (!has_chosen_channels(composer, scene) || !hl_camera_basis(&scene->camera, &right, &up, &views.forward))
+    return HL_OK;
+  *changed = hl_allocate(context, count, sizeof **changed);
+  views.screens = hl_allocate_zeroed(context, count, sizeof *views.screens);
+  views.thin = hl_allocate_zeroed(context, count, sizeof *views.thin);
+  views.hidden = hl_allocate_zeroed(context, count, sizeof *views.hidden);
+  hl_status status = *changed != NULL && views.screens != NULL && views.thin != NULL && views.hidden != NULL
+                         ? HL_OK
+                         : hl_fail_memory(composer->error, count * sizeof *views.screens,
+                                          "channels that are seen");
+  if (status == HL_OK) {
+    memcpy(*changed, scene->volumes, count * sizeof **changed);
+    status = thin_all(context, &views, *changed, composer->error);
+    scene->volumes = *changed;
+  }
+  hl_release(context, views.screens);
+  hl_release(context, views.thin);
+  hl_release(context, views.hidden);
+  return status;
+}

@@ -1,0 +1,37 @@
+# A channel that would hide another one is translucent, whatever the order of the channels, and a line says so. Channels beside each other, and
+# channels whose opacities are asked for or that are cut open, stay as they are.
+"$PYTHON" - <<'END'
+import json, math, os
+def write(name, *channels):
+    os.makedirs(name + "/0")
+    json.dump({"zarr_format": 2}, open(name + "/.zgroup", "w"))
+    json.dump({"multiscales": [{"version": "0.4", "axes": [{"name": n, "type": "channel" if n == "c" else "space"} for n in "czyx"],
+        "datasets": [{"path": "0"}]}], "omero": {"channels": [{"label": label} for label, _ in channels]}}, open(name + "/.zattrs", "w"))
+    json.dump({"zarr_format": 2, "shape": [2, 32, 32, 32], "chunks": [1, 32, 32, 32], "dtype": "|u1", "compressor": None, "fill_value": 0,
+        "order": "C", "filters": None}, open(name + "/0/.zarray", "w"))
+    for number, (_, value) in enumerate(channels):
+        with open(f"{name}/0/{number}.0.0.0", "wb") as file:
+            file.write(bytes(max(0, min(255, round(value(x, y, z)))) for z in range(32) for y in range(32) for x in range(32)))
+def ball(x, y, z, at, radius): return 128 + 64 * (radius - math.dist((x, y, z), (at, 15.5, 15.5)))
+core = "core", lambda x, y, z: ball(x, y, z, 15.5, 5)
+skin = "skin", lambda x, y, z: min(ball(x, y, z, 15.5, 13), 255 - ball(x, y, z, 15.5, 10))
+left, right = [(name, lambda x, y, z, at=at: ball(x, y, z, at, 6)) for name, at in (("left", 8), ("right", 23))]
+write("within.zarr", core, skin)
+write("around.zarr", skin, core)
+write("beside.zarr", left, right)
+END
+told() {
+  echo "$*: $(halflight render "$@" --channel all --print-scene 2>&1 >scene.json)"
+  tool json scene.json '[(v["name"], "translucent" if v["transfer_function"].get("unit_distance", 1) > 5 else "opaque") for v in d["volumes"]]'
+}
+told within.zarr
+told around.zarr
+told beside.zarr
+told within.zarr --look surface
+told within.zarr --look mip
+told within.zarr --threshold 100
+told within.zarr --colormap cyan,magenta
+told within.zarr --cut-box z=0.5: --view top
+# The core is seen in the picture: pixels in its colour, magenta, over the skin's green.
+halflight render around.zarr --channel all --size 64 --quiet -o around.png 2>/dev/null
+tool png-pixel around.png 32 32 | "$PYTHON" -c 'red, green, blue = map(int, input().split()); print("magenta:", red > 1.1 * green and blue > 1.1 * green)'
