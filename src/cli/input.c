@@ -168,6 +168,31 @@ void input_load_options(const cli_value *reading, const cli_value *spacing, hl_v
   if (spacing != NULL && spacing->given) memcpy(options->spacing, spacing->number, sizeof options->spacing);
 }
 
+int input_channels(const cli_value *said, int channels[HL_CHANNELS_MOST], size_t *count) {
+  *count = 0;
+  if (!said->given || hl_plain_equal(said->text, "all")) return EXIT_CODE_OK;
+  for (const char *text = said->text;; text++) {
+    char *end;
+    long number = strtol(text, &end, 10);
+    if (text[0] < '0' || text[0] > '9' || number > INT_MAX || (*end != ',' && *end != '\0'))
+      return fail(EXIT_CODE_USAGE, "--channel: '%s': give a number from 0 on, several as 0,2, or all",
+                  said->text);
+    if (*count == HL_CHANNELS_MOST)
+      return fail(EXIT_CODE_USAGE, "--channel: '%s': a picture shows %d channels at most", said->text,
+                  HL_CHANNELS_MOST);
+    for (size_t n = 0; n < *count; n++)
+      if (channels[n] == (int)number)
+        return fail(EXIT_CODE_USAGE, "--channel: '%s': channel %ld is there twice", said->text, number);
+    channels[(*count)++] = (int)number;
+    if (*end == '\0') return EXIT_CODE_OK;
+    text = end;
+  }
+}
+
+bool input_has_channels(const cli_value *said) {
+  return said->given && (hl_plain_equal(said->text, "all") || strchr(said->text, ',') != NULL);
+}
+
 int input_picture_side(void) {
   hl_scene_description description;
   hl_scene_description_defaults(&description);

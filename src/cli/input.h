@@ -59,6 +59,12 @@ typedef struct cli_input {
   }
 #define INPUT_OPTION_TIME    INPUT_OPTION_INDEX("time", "the time step to read, from 0 (default: 0)")
 #define INPUT_OPTION_CHANNEL INPUT_OPTION_INDEX("channel", "the channel to read, from 0 (default: 0)")
+#define INPUT_OPTION_CHANNELS                                                                         \
+  {                                                                                                   \
+    .name = "channel", .also = "channels", .kind = OPTION_TEXT, .argument = "N|N,N|all",              \
+    .help = "number of the channel to show, from 0 (default: 0);\nseveral channels, or all, share a " \
+            "picture, each in its\ncolour from the file, or in green, magenta, ..."                   \
+  }
 #define INPUT_OPTION_LEVEL                                                                                \
   INPUT_OPTION_INDEX("level", "the resolution to read; 0 is the finest (default: the\nfinest up to 2^30 " \
                               "voxels that fits into memory)")
@@ -90,6 +96,14 @@ void input_close(cli_input *input);
  * enum input_reading. spacing: null if the command does not have --spacing. `render` reads its channels by
  * render_load_options(), because its --channel is a text. */
 void input_load_options(const cli_value *reading, const cli_value *spacing, hl_volume_load_options *options);
+
+/* Reads the channels that --channel names. *count becomes their number; it becomes 0 for "all", and if the
+ * option was not given. Other values are refused. */
+int input_channels(const cli_value *said, int channels[HL_CHANNELS_MOST], size_t *count);
+
+/* Returns whether --channel may ask for more than one channel; "all" counts as several, although a file may
+ * have only one. */
+bool input_has_channels(const cli_value *said);
 
 /* The longer side of a picture whose size nobody has chosen, in pixels: the value of
  * hl_volume_load_options.pixels if no picture's size is known. */

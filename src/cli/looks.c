@@ -53,7 +53,7 @@ static const cli_option looks_options[LOOKS_OPTION_COUNT] = {
                     .argument = "NAME,...",
                     .help = "only these looks, side by side: surface,translucent\n(default: all)"},
     INPUT_OPTIONS(LOOKS_ARRAY, "What of VOLUME"),
-    [LOOKS_CHANNEL] = INPUT_OPTION_CHANNEL,
+    [LOOKS_CHANNEL] = INPUT_OPTION_CHANNELS,
     [LOOKS_SPACING] = INPUT_OPTION_SPACING,
     [LOOKS_THREADS] = HOST_OPTION_THREADS("How it runs"),
     [LOOKS_MAX_MEMORY] = HOST_OPTION_MAX_MEMORY(NULL),
@@ -70,7 +70,11 @@ typedef struct looks_job {
   const cli_value *values;
   const char *input; /* as given */
   char *output;      /* owned */
-  hl_volume *volume;
+  cli_input opened;
+  hl_volume_load_options load;
+  hl_volume *volume;              /* null if several channels share each picture */
+  int channels[HL_CHANNELS_MOST]; /* [channel_count]; the channels of --channel; none stands for all */
+  size_t channel_count;
   hl_renderer *renderer;
   hl_image *sheet;
   int side;                 /* pixels of a picture */
@@ -142,15 +146,15 @@ static size_t columns_of(const looks_job *job) {
   return job->shown_count < COLUMNS ? job->shown_count : COLUMNS;
 }
 
-/* Makes *scene a maximum projection, as --look mip does. */
-static hl_status project(hl_context *context, hl_scene **scene, hl_error *error) {
-  const hl_option maximum = {"look", "mip"};
-  hl_scene *projected = NULL;
-  hl_status status = hl_scene_compose(context, hl_scene_describe(*scene), HL_COMPOSE_BARE, &maximum, 1,
-                                      &projected, error);
+/* Makes *scene the scene that `render` would make of it with the option --look. */
+static hl_status compose(hl_context *context, const char *look, hl_scene **scene, hl_error *error) {
+  const hl_option option = {"look", look};
+  hl_scene *composed = NULL;
+  hl_status status = hl_scene_compose(context, hl_scene_describe(*scene), HL_COMPOSE_BARE, &option, 1,
+                                      &composed, error);
   if (status != HL_OK) return status;
   hl_scene_release(*scene);
-  *scene = projected;
+  *scene = composed;
   return HL_OK;
 }
 
@@ -159,9 +163,12 @@ static hl_status scene_of(const looks_job *job, size_t index, hl_scene **scene, 
   const char *name = hl_option_choices("look")[index].name;
   hl_scene *made = NULL;
   bool projected = strcmp(name, "mip") == 0;
-  hl_status status = hl_scene_for_volume_look(context, job->volume, NULL, projected ? "auto" : name, &made,
-                                              error);
-  if (status == HL_OK && projected) status = project(context, &made, error);
+  const char *own = projected ? "auto" : name;
+  hl_status status = job->volume != NULL
+                         ? hl_scene_for_volume_look(context, job->volume, NULL, own, &made, error)
+                         : hl_scene_for_channels(context, job->opened.title, &job->load, job->channels,
+                                                 job->channel_count, own, &made, error);
+  if (status == HL_OK && (projected || job->volume == NULL)) status = compose(context, name, &made, error);
   if (status == HL_OK) {
     hl_scene_description description = *hl_scene_describe(made);
     description.width = description.height = job->side;
@@ -207,20 +214,23 @@ static hl_status make_sheet(looks_job *job, hl_error *error) {
   return status;
 }
 
+/* Loads the volume. Several channels are loaded with each look. */
 static int load_volume(looks_job *job) {
-  cli_input input = {0};
+  cli_input *input = &job->opened;
   hl_error error = {0};
-  hl_volume_load_options load;
-  input_load_options(&job->values[LOOKS_ARRAY], &job->values[LOOKS_SPACING], &load);
-  int exit_code = input_open(job->input, job->values[LOOKS_MAX_MEMORY].bytes, &input);
-  if (exit_code == EXIT_CODE_OK && input.kind != INPUT_VOLUME)
+  const cli_value *said = &job->values[LOOKS_CHANNEL];
+  input_load_options(&job->values[LOOKS_ARRAY], &job->values[LOOKS_SPACING], &job->load);
+  int exit_code = input_channels(said, job->channels, &job->channel_count);
+  job->load.channel = job->channel_count == 1 ? job->channels[0] : HL_INDEX_DEFAULT;
+  if (exit_code == EXIT_CODE_OK)
+    exit_code = input_open(job->input, job->values[LOOKS_MAX_MEMORY].bytes, input);
+  if (exit_code == EXIT_CODE_OK && input->kind != INPUT_VOLUME)
     exit_code = fail(EXIT_CODE_USAGE, "'%s' is a scene, which has its look: give a volume", job->input);
-  if (exit_code == EXIT_CODE_OK) {
-    hl_status status = input_load_volume(job->host.context, &input, &load, &job->volume, &error);
-    if (status != HL_OK) exit_code = host_fail(&job->host, PHASE_READ, status, &error);
-  }
-  input_close(&input);
-  return exit_code;
+  job->load.bytes = input->bytes;
+  job->load.byte_count = input->length;
+  if (exit_code != EXIT_CODE_OK || input_has_channels(said)) return exit_code;
+  hl_status status = input_load_volume(job->host.context, input, &job->load, &job->volume, &error);
+  return status == HL_OK ? EXIT_CODE_OK : host_fail(&job->host, PHASE_READ, status, &error);
 }
 
 static int make_and_write(looks_job *job) {
@@ -263,6 +273,7 @@ static int run_looks(const cli_value *values, char **operands) {
     hl_renderer_destroy(job.renderer);
     hl_image_destroy(job.sheet);
     hl_volume_release(job.volume);
+    input_close(&job.opened);
     host_close(&job.host);
   }
   free(job.output);

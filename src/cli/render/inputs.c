@@ -35,7 +35,7 @@ static int check_kinds(const cli_value *values, const cli_input *inputs, size_t 
                   "'%s' is no volume file: several INPUTs are the volumes of one picture, and a scene is a "
                   "picture of its own",
                   inputs[n].path);
-  if (values[RENDER_SMOOTH].given && render_has_channels(values))
+  if (values[RENDER_SMOOTH].given && input_has_channels(&values[RENDER_CHANNEL]))
     return fail(EXIT_CODE_USAGE, "--smooth is for one channel: leave it out, or name one --channel");
   if (inputs[0].kind == INPUT_VOLUME) return EXIT_CODE_OK;
   for (int which = RENDER_ARRAY; which <= RENDER_SMOOTH; which++)
@@ -70,38 +70,11 @@ static int pixels_of(const cli_value *values) {
 
 /* ---- channels ---- */
 
-int render_channels(const cli_value *values, int channels[HL_CHANNELS_MOST], size_t *count) {
-  const cli_value *said = &values[RENDER_CHANNEL];
-  *count = 0;
-  if (!said->given || hl_plain_equal(said->text, "all")) return EXIT_CODE_OK;
-  for (const char *text = said->text;; text++) {
-    char *end;
-    long number = strtol(text, &end, 10);
-    if (text[0] < '0' || text[0] > '9' || number > INT_MAX || (*end != ',' && *end != '\0'))
-      return fail(EXIT_CODE_USAGE, "--channel: '%s': give a number from 0 on, several as 0,2, or all",
-                  said->text);
-    if (*count == HL_CHANNELS_MOST)
-      return fail(EXIT_CODE_USAGE, "--channel: '%s': a picture shows %d channels at most", said->text,
-                  HL_CHANNELS_MOST);
-    for (size_t n = 0; n < *count; n++)
-      if (channels[n] == (int)number)
-        return fail(EXIT_CODE_USAGE, "--channel: '%s': channel %ld is there twice", said->text, number);
-    channels[(*count)++] = (int)number;
-    if (*end == '\0') return EXIT_CODE_OK;
-    text = end;
-  }
-}
-
-bool render_has_channels(const cli_value *values) {
-  const cli_value *said = &values[RENDER_CHANNEL];
-  return said->given && (hl_plain_equal(said->text, "all") || strchr(said->text, ',') != NULL);
-}
-
 void render_load_options(const cli_value *values, hl_volume_load_options *options) {
   int channels[HL_CHANNELS_MOST];
   size_t count;
   input_load_options(&values[RENDER_ARRAY], &values[RENDER_SPACING], options);
-  bool one = render_channels(values, channels, &count) == EXIT_CODE_OK && count == 1;
+  bool one = input_channels(&values[RENDER_CHANNEL], channels, &count) == EXIT_CODE_OK && count == 1;
   options->channel = one ? channels[0] : HL_INDEX_DEFAULT;
   options->pixels = pixels_of(values);
 }
@@ -112,7 +85,8 @@ static hl_status load_channels(cli_host *host, const cli_value *values, const cl
   int channels[HL_CHANNELS_MOST];
   size_t count;
   const char *look = render_look_name(values);
-  if (render_channels(values, channels, &count) != EXIT_CODE_OK) count = 0; /* checked before */
+  if (input_channels(&values[RENDER_CHANNEL], channels, &count) != EXIT_CODE_OK)
+    count = 0; /* checked before */
   options.bytes = input->bytes;
   options.byte_count = input->length;
   return hl_scene_for_channels(host->context, input->title, &options, channels, count,
@@ -132,7 +106,7 @@ static int load_each(cli_host *host, const cli_value *values, cli_input *inputs,
      * read again, and --smooth is measured in voxels of the resolution that the picture shows. */
     bool is_read_once = inputs[n].bytes != NULL || inputs[n].smooth != NULL;
     options.preview_pixels = is_read_once ? 0 : host->preview_pixels;
-    hl_status status = bare && render_has_channels(values)
+    hl_status status = bare && input_has_channels(&values[RENDER_CHANNEL])
                            ? load_channels(host, values, &inputs[n], options, &scenes[n], &error)
                            : input_load(host->context, &inputs[n], bare ? &options : NULL, &scenes[n],
                                         &error);

@@ -72,7 +72,7 @@ int render_check_options(const cli_value *values) {
                   render_options[over_ranks].name, render_options[alone[n]].name);
   int channels[HL_CHANNELS_MOST];
   size_t channel_count;
-  int exit_code = render_channels(values, channels, &channel_count);
+  int exit_code = input_channels(&values[RENDER_CHANNEL], channels, &channel_count);
   if (exit_code == EXIT_CODE_OK) exit_code = render_check_scene_options(values);
   if (exit_code != EXIT_CODE_OK) return exit_code;
   exit_code = check_linear_output(values, named);

@@ -213,13 +213,7 @@ const cli_option render_options[RENDER_OPTION_COUNT] = {
                      .low = 0,
                      .high = 1e9},
     [RENDER_LEVEL] = INPUT_OPTION_LEVEL,
-    [RENDER_CHANNEL] = {.name = "channel",
-                        .also = "channels",
-                        .kind = OPTION_TEXT,
-                        .argument = "N|N,N|all",
-                        .help =
-                            "number of the channel to show, from 0 (default: 0);\nseveral channels, or all, "
-                            "share a picture, each in its\ncolour from the file, or in green, magenta, ..."},
+    [RENDER_CHANNEL] = INPUT_OPTION_CHANNELS,
     [RENDER_SPACING] = INPUT_OPTION_SPACING,
     [RENDER_SMOOTH] =
         {.name = "smooth",

@@ -155,14 +155,6 @@ hl_status render_load_label_map(cli_host *host, const cli_value *values, const c
 int render_load_volumes(cli_host *host, const cli_value *values, char **operands, bool *bare,
                         hl_scene **scene);
 
-/* Reads the channels that --channel names. *count becomes their number; it becomes 0 for "all", and if the
- * option was not given. Other values are refused. */
-int render_channels(const cli_value *values, int channels[HL_CHANNELS_MOST], size_t *count);
-
-/* Returns whether --channel may ask for more than one channel; "all" counts as several, although a file may
- * have only one. */
-bool render_has_channels(const cli_value *values);
-
 /* Finds the options for loading volumes that the command line asks for. */
 void render_load_options(const cli_value *values, hl_volume_load_options *options);
 

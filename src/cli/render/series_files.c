@@ -210,7 +210,9 @@ int series_find_times(series_job *job) {
     return fail(EXIT_CODE_USAGE, "--time all is for the time steps of one file: give one volume");
   hl_volume *volume = NULL;
   hl_volume_selection selection = {.struct_size = sizeof selection};
-  const int channel = render_has_channels(job->values) ? 0 : HL_INDEX_DEFAULT; /* any tells the times */
+  const int channel = input_has_channels(&job->values[RENDER_CHANNEL])
+                          ? 0
+                          : HL_INDEX_DEFAULT; /* any tells the times */
   int exit_code = series_load_volume(job, 0, channel, &volume);
   if (exit_code == EXIT_CODE_OK && hl_volume_get_selection(volume, &selection) != HL_OK) selection.times = 1;
   hl_volume_release(volume);
@@ -253,8 +255,8 @@ static hl_status make_scene(const series_job *job, hl_scene_volume *volumes, siz
 static size_t volumes_of_file(const series_job *job) {
   const hl_scene_description *description = hl_scene_describe(job->scene);
   size_t count = 1;
-  while (render_has_channels(job->values) && count < description->volume_count && count < HL_CHANNELS_MOST &&
-         description->volumes[count].file != NULL &&
+  while (input_has_channels(&job->values[RENDER_CHANNEL]) && count < description->volume_count &&
+         count < HL_CHANNELS_MOST && description->volumes[count].file != NULL &&
          strcmp(description->volumes[count].file, description->volumes[0].file) == 0)
     count++;
   return count;

@@ -29,9 +29,17 @@ told around.zarr
 told beside.zarr
 told within.zarr --look surface
 told within.zarr --look mip
+told within.zarr --look auto
 told within.zarr --threshold 100
 told within.zarr --colormap cyan,magenta
 told within.zarr --cut-box z=0.5: --view top
 # The core is seen in the picture: pixels in its colour, magenta, over the skin's green.
 halflight render around.zarr --channel all --size 64 --quiet -o around.png 2>/dev/null
 tool png-pixel around.png 32 32 | "$PYTHON" -c 'red, green, blue = map(int, input().split()); print("magenta:", red > 1.1 * green and blue > 1.1 * green)'
+# `looks` shows the channels together, too, each look with the options that `render` has.
+halflight looks around.zarr --channel all --look auto,surface --size 64 --quiet -o looks.png
+tool png-pixel looks.png 32 32 | "$PYTHON" -c 'red, green, blue = map(int, input().split()); print("magenta:", red > 1.1 * green and blue > 1.1 * green)'
+tool png-pixel looks.png 96 32 | "$PYTHON" -c 'red, green, blue = map(int, input().split()); print("green:", green > 3 * red and green > 3 * blue)'
+for channels in 1 0,1 0,7 x; do
+  halflight looks around.zarr --channel $channels --look surface --size 16 --quiet -o looks.png 2>&1 || true
+done
