@@ -15,6 +15,7 @@
 
 enum {
   FIGURE_OUTPUT,
+  FIGURE_DPI,
   FIGURE_DATA,
   FIGURE_THREADS,
   FIGURE_DEVICE,
@@ -31,6 +32,13 @@ static const cli_option figure_options[FIGURE_OPTION_COUNT] = {
                        .group = "Options",
                        .help =
                            ".pdf, .svg, .png or .tif (default: FIGURE's name with\n.pdf, in this folder)"},
+    [FIGURE_DPI] = {.name = "dpi",
+                    .kind = OPTION_NUMBERS,
+                    .argument = "N",
+                    .help = "pixels an inch, in place of the figure's own \"dpi\":\na draft by --dpi 75",
+                    .count = 1,
+                    .low = FIGURE_LEAST_DPI,
+                    .high = FIGURE_MOST_DPI},
     [FIGURE_DATA] = HOST_OPTION_DATA(NULL),
     [FIGURE_THREADS] = HOST_OPTION_THREADS(NULL),
     [FIGURE_DEVICE] = HOST_OPTION_DEVICE,
@@ -383,6 +391,7 @@ static int run_figure(const cli_value *values, char **operands) {
   figure_job job = {.values = values, .input = operands[0]};
   char *data = values[FIGURE_DATA].given ? realpath(values[FIGURE_DATA].text, NULL) : NULL;
   int exit_code = figure_page_read(job.input, &job.page);
+  if (values[FIGURE_DPI].given) job.page.pixels_per_inch = values[FIGURE_DPI].number[0];
   if (exit_code == EXIT_CODE_OK) exit_code = enter_folder(&job);
   cli_host_options options = {.quiet = values[FIGURE_QUIET].given,
                               .progress = true,

@@ -377,8 +377,9 @@ static int read_page_numbers(const page_reading *reading, const json_t *root) {
   if (!good || !(page->width >= 5 && page->width <= 5000 && page->gap >= 0 && page->gap <= 100))
     return fail(EXIT_CODE_INPUT, "%s: \"width\" and \"gap\": give lengths, as \"183mm\" and \"2mm\"",
                 reading->path);
-  if (!(page->pixels_per_inch >= 10 && page->pixels_per_inch <= 10000))
-    return fail(EXIT_CODE_INPUT, "%s: \"dpi\": give a number from 10 to 10000", reading->path);
+  if (!(page->pixels_per_inch >= FIGURE_LEAST_DPI && page->pixels_per_inch <= FIGURE_MOST_DPI))
+    return fail(EXIT_CODE_INPUT, "%s: \"dpi\": give a number from %d to %d", reading->path,
+                (int)FIGURE_LEAST_DPI, (int)FIGURE_MOST_DPI);
   if (!(page->font_points >= 1 && page->font_points <= 200))
     return fail(EXIT_CODE_INPUT, "%s: \"font-size\": give points from 1 to 200", reading->path);
   if (columns != NULL && !(page->columns >= 1 && page->columns <= FIGURE_MOST_PANELS))

@@ -5,7 +5,7 @@
 
 #include "cli/render/render.h"
 
-enum { FIGURE_MOST_PANELS = 64 };
+enum { FIGURE_MOST_PANELS = 64, FIGURE_LEAST_DPI = 10, FIGURE_MOST_DPI = 10000 };
 
 /* The place of an inset in another panel. */
 typedef struct figure_inset {
