@@ -95,6 +95,8 @@ HL_API HL_WARN_UNUSED hl_status hl_image_to_srgb8(const hl_image *image,
 HL_API HL_WARN_UNUSED hl_status hl_image_read(hl_context *context, const char *path, hl_image **image,
                                               hl_error *error);
 
+enum { HL_IMAGE_LAYERS_TEXT = 2000 };
+
 /* Facts that a picture's file states about the picture. */
 typedef struct hl_image_about {
   size_t struct_size;     /* set by the caller */
@@ -104,6 +106,10 @@ typedef struct hl_image_about {
                            * count as values of 8 bits; for OpenEXR, the bits are the bits of the widest
                            * channel */
   int has_scene;          /* non-zero if the file carries a scene, which hl_image_find_scene() finds */
+  char layers[HL_IMAGE_LAYERS_TEXT]; /* the names of an OpenEXR file's layers, with ", " between them:
+                                      * channels such as "depth", and of channels such as "key.R" the part
+                                      * before the last point. R, G, B, A and Y are no layers. Names for which
+                                      * there is no room are left out, and "..." ends the text */
 } hl_image_about;
 
 /* Finds facts about a picture from the bytes of its file, without its pixels. name: the file's name in

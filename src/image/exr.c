@@ -214,6 +214,22 @@ static exr_result_t start_read(exr_reading *reading) {
   return exr_start_read(&reading->file, reading->name, &options);
 }
 
+/* Adds the name of a channel's layer to a list, unless the list ends with it: the channels of a layer follow
+ * each other. OpenEXR sorts channels by their names. */
+static void add_layer(const char *channel, char layers[HL_IMAGE_LAYERS_TEXT]) {
+  const char *point = strrchr(channel, '.');
+  const size_t length = point != NULL ? (size_t)(point - channel) : strlen(channel), used = strlen(layers);
+  const char *last = strrchr(layers, ' ');
+  last = last != NULL ? last + 1 : layers;
+  if (channel_index(channel) >= 0 || length == 0 || strcmp(last, "...") == 0 ||
+      (strlen(last) == length && strncmp(last, channel, length) == 0))
+    return;
+  const char *separator = used > 0 ? ", " : "";
+  if (used + length + sizeof ", , ..." > HL_IMAGE_LAYERS_TEXT)
+    snprintf(layers + used, HL_IMAGE_LAYERS_TEXT - used, "%s...", separator);
+  else snprintf(layers + used, HL_IMAGE_LAYERS_TEXT - used, "%s%.*s", separator, (int)length, channel);
+}
+
 /* The width, height and uncompressed bytes of one part; the bytes are 0 if the part's header does not state
  * them. */
 static hl_image_claim claim_of_part(exr_const_context_t file, int part) {
@@ -230,6 +246,7 @@ static hl_image_claim claim_of_part(exr_const_context_t file, int part) {
   for (int n = 0; n < list->num_channels; n++) {
     const int bits = list->entries[n].pixel_type == EXR_PIXEL_HALF ? 16 : 32;
     claim.bits = claim.bits > bits ? claim.bits : bits;
+    add_layer(list->entries[n].name.str, claim.layers);
   }
   if (claim.width <= HL_IMAGE_SIDE_MAX && claim.height <= HL_IMAGE_SIDE_MAX)
     claim.bytes = claim.width * claim.height * 4 *

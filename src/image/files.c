@@ -227,6 +227,7 @@ hl_status hl_image_get_about(const char *name, const void *bytes, size_t byte_co
                             .channels = claim.channels,
                             .bits = claim.bits,
                             .has_scene = hl_png_has_scene(bytes, byte_count)};
+  memcpy(about->layers, claim.layers, sizeof about->layers);
   return HL_OK;
 }
 

@@ -14,8 +14,9 @@
 typedef struct hl_image_claim {
   bool known; /* whether the size was found; if not, more of the file's bytes are needed */
   uint64_t width, height;
-  uint64_t bytes;     /* number of bytes of the pixels, uncompressed */
-  int channels, bits; /* see hl_image_about */
+  uint64_t bytes;                    /* number of bytes of the pixels, uncompressed */
+  int channels, bits;                /* see hl_image_about */
+  char layers[HL_IMAGE_LAYERS_TEXT]; /* see hl_image_about */
 } hl_image_claim;
 
 typedef struct hl_image_format {

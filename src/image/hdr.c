@@ -198,7 +198,8 @@ static hl_image_claim claim(const unsigned char *bytes, size_t length) {
   hdr_header header = {0};
   hl_image_claim claimed = {0};
   if (read_header(&cursor, &header) != HL_OK) return claimed;
-  claimed = (hl_image_claim){true, header.width, header.height, 0, 3, 8};
+  claimed = (hl_image_claim){
+      .known = true, .width = header.width, .height = header.height, .channels = 3, .bits = 8};
   if (claimed.width <= HL_IMAGE_SIDE_MAX && claimed.height <= HL_IMAGE_SIDE_MAX)
     claimed.bytes = claimed.width * claimed.height * 4;
   return claimed;

@@ -254,8 +254,11 @@ static hl_image_claim claim(const unsigned char *bytes, size_t length) {
   if (find_header(&cursor, length) != HL_OK || parse_header(&cursor, &header) != HL_OK ||
       check_header(&cursor, &header) != HL_OK)
     return claimed;
-  claimed = (hl_image_claim){true, header.shape[1],      header.shape[0],
-                             0,    (int)header.shape[2], header.type[2] == '8' ? 64 : 32};
+  claimed = (hl_image_claim){.known = true,
+                             .width = header.shape[1],
+                             .height = header.shape[0],
+                             .channels = (int)header.shape[2],
+                             .bits = header.type[2] == '8' ? 64 : 32};
   if (claimed.width <= HL_IMAGE_SIDE_MAX && claimed.height <= HL_IMAGE_SIDE_MAX)
     claimed.bytes = claimed.width * claimed.height * header.shape[2] * (header.type[2] == '8' ? 8 : 4);
   return claimed;

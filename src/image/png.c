@@ -180,12 +180,11 @@ static hl_image_claim claim(const unsigned char *bytes, size_t length) {
   if (length <= TYPE || memcmp(bytes + IHDR, "IHDR", 4) != 0 || bytes[TYPE] > 6 || bytes[DEPTH] > 16)
     return claimed;
   const bool palette = bytes[TYPE] == 3;
-  claimed = (hl_image_claim){true,
-                             load_32(bytes + WIDTH),
-                             load_32(bytes + HEIGHT),
-                             0,
-                             palette ? 3 : channels[bytes[TYPE]],
-                             palette ? 8 : bytes[DEPTH]};
+  claimed = (hl_image_claim){.known = true,
+                             .width = load_32(bytes + WIDTH),
+                             .height = load_32(bytes + HEIGHT),
+                             .channels = palette ? 3 : channels[bytes[TYPE]],
+                             .bits = palette ? 8 : bytes[DEPTH]};
   if (claimed.width <= HL_IMAGE_SIDE_MAX && claimed.height <= HL_IMAGE_SIDE_MAX)
     claimed.bytes = (1 + (claimed.width * channels[bytes[TYPE]] * bytes[DEPTH] + 7) / 8) * claimed.height;
   return claimed;

@@ -102,6 +102,7 @@ void info_picture_print(const info_picture *picture) {
   const hl_image_about *about = &picture->about;
   printf("  picture     %" PRIu64 " x %" PRIu64 " pixels, %s, %d channel%s of %d bits\n", about->width,
          about->height, about->format, about->channels, about->channels == 1 ? "" : "s", about->bits);
+  if (about->layers[0] != '\0') printf("  layers      %s\n", about->layers);
   if (picture->scene == NULL) return;
   print_camera(json_object_get(picture->scene, "camera"));
   print_volumes(picture);
@@ -122,6 +123,7 @@ void info_picture_print_json(const info_picture *picture, json_writer *json) {
   json_whole_number(json, "height", about->height);
   json_whole_number(json, "channels", (uint64_t)about->channels);
   json_whole_number(json, "bits", (uint64_t)about->bits);
+  if (about->layers[0] != '\0') json_text(json, "layers", about->layers);
   json_bool(json, "has_scene", picture->scene != NULL);
   if (picture->scene != NULL) {
     print_json_value(json, "camera", json_object_get(picture->scene, "camera"));

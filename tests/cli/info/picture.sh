@@ -18,6 +18,9 @@ for picture in plain.png light.exr; do
   halflight info $picture --json | "$PYTHON" -c 'import json, sys; print(json.load(sys.stdin)["picture"])'
 done
 halflight info - <plain.png
+# The layers of an .exr are named.
+halflight render ball_8x8x8_uint8.raw --size 40x30 --layers --quiet -o layers.exr
+halflight info layers.exr
 : >page.pdf
 halflight info page.pdf
 if halflight info plain.png --time 1 2>refused.txt; then exit 1; fi
