@@ -184,6 +184,8 @@ typedef struct hl_volume_save_options {
   int labels;    /* non-zero if the volume holds labels. A written voxel then has the most frequent value of
                   * its shrink^3 voxels instead of the mean, because a mean of labels would be another label.
                   * Of equally frequent values, the first one counts. Default 0 */
+  const char *unit; /* the unit of lengths that is written if the volume's file does not tell one, by a name
+                     * or symbol such as "mm" or "micrometre"; default null: none */
 } hl_volume_save_options;
 
 HL_API void hl_volume_save_options_defaults(hl_volume_save_options *options);

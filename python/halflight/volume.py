@@ -283,7 +283,7 @@ class Volume:
         info = self.info()
         return arrays.Place(tuple(info.origin.tolist()), tuple(map(tuple, (info.direction * info.spacing).T.tolist())))
 
-    def save(self, path: str | os.PathLike[str], *, type: str | None = None, shrink: int = 1) -> None:
+    def save(self, path: str | os.PathLike[str], *, type: str | None = None, shrink: int = 1, unit: str | None = None) -> None:
         """Write the voxels with their place: .nrrd, .nii, .nii.gz, .mha, .vti, .mrc, .npy, .raw or .raw.gz, by the name's ending.
 
         Parameters
@@ -295,6 +295,8 @@ class Volume:
         shrink : int
             A written voxel is the mean over this number of voxels along each axis. For a label map, it is the most
             common label of these voxels.
+        unit : str, optional
+            The unit of lengths, such as "um", where the volume's file does not tell one.
 
         Examples
         --------
@@ -314,6 +316,9 @@ class Volume:
             labels = ffi.new("int *")
             call(lib.hl_volume_is_label_map, context, self._handle, labels)
             options.labels = labels[0]
+        if unit is not None:
+            text = ffi.new("char[]", str(unit).encode())
+            options.unit = text
         call(lib.hl_volume_save_with, context, self._handle, os.fsencode(path), options)
 
     def _source(self) -> tuple[str, Any]:

@@ -9,11 +9,13 @@
 #include "host.h"
 #include "input.h"
 #include "output.h"
+#include "text/units.h"
 
 enum convert_option {
   CONVERT_CROP,
   CONVERT_SHRINK,
   CONVERT_TYPE,
+  CONVERT_UNIT,
   CONVERT_OUTPUT,
   CONVERT_ARRAY,
   CONVERT_COMPONENT,
@@ -58,6 +60,10 @@ static const cli_option convert_options[CONVERT_OPTION_COUNT] = {
              "rounded to whole\nnumbers (default: the volume's own, or the next larger\none that "
              "holds its values)",
          .choices = types},
+    [CONVERT_UNIT] = {.name = "unit",
+                      .kind = OPTION_TEXT,
+                      .argument = "UNIT",
+                      .help = "unit of lengths, where IN does not tell it: m, cm, mm,\num, nm or angstrom"},
     [CONVERT_OUTPUT] = {.name = "output",
                         .letter = 'o',
                         .kind = OPTION_TEXT,
@@ -97,6 +103,7 @@ static int read_options(const cli_value *values, hl_volume_save_options *options
   hl_volume_save_options_defaults(options);
   if (values[CONVERT_SHRINK].given) options->shrink = (size_t)values[CONVERT_SHRINK].number[0];
   if (values[CONVERT_TYPE].given) options->type = (hl_voxel_type)values[CONVERT_TYPE].choice;
+  if (values[CONVERT_UNIT].given) options->unit = values[CONVERT_UNIT].text;
   return read_crop(&values[CONVERT_CROP], options);
 }
 
@@ -112,6 +119,16 @@ static int check_crop(const cli_value *crop, const hl_volume_save_options *optio
                   crop->texts[n], size, "ijk"[axis], size - 1);
   }
   return EXIT_CODE_OK;
+}
+
+/* Refuses a unit where the volume's file tells another one. */
+static int check_unit(const cli_value *unit, const hl_volume *volume) {
+  const char *told = hl_volume_unit(volume);
+  const hl_unit *known = told != NULL ? hl_unit_find(told) : NULL,
+                *asked = unit->given ? hl_unit_find(unit->text) : NULL;
+  if (!unit->given || known == NULL || (asked != NULL && asked->metres == known->metres)) return EXIT_CODE_OK;
+  return fail(EXIT_CODE_USAGE, "--unit: the volume's file tells its unit, %s: --spacing changes distances",
+              told);
 }
 
 static void report(const char *output, double seconds) { say("%s: written in %.2f s", output, seconds); }
@@ -131,6 +148,7 @@ static int convert(cli_host *host, const cli_value *values, const char *in, cons
   }
   host_clear_bar(host);
   if (exit_code == EXIT_CODE_OK) exit_code = check_crop(&values[CONVERT_CROP], options, volume);
+  if (exit_code == EXIT_CODE_OK) exit_code = check_unit(&values[CONVERT_UNIT], volume);
   if (exit_code == EXIT_CODE_OK) exit_code = read_files_protect(&host->read, out, in);
   if (exit_code == EXIT_CODE_OK) {
     hl_status status = HL_OK;

@@ -13,6 +13,7 @@
 #include "core/door.h"
 #include "core/file.h"
 #include "core/memory.h"
+#include "text/units.h"
 #include "volume/convert.h"
 #include "volume/formats/raw.h"
 #include "volume/io/writer.h"
@@ -35,6 +36,7 @@ typedef struct saving {
                                * mean */
   hl_volume_description grid; /* the grid that is written */
   const char *unit;           /* unit of the grid's lengths, static; null if unknown */
+  bool unit_asked;            /* whether the options say the unit */
   hl_output output;
   bool packs; /* whether bytes are packed now */
   struct {
@@ -131,6 +133,23 @@ static hl_status set_box(saving *s, const hl_volume_save_options *options, const
   return HL_OK;
 }
 
+/* Finds the unit of the volume's lengths: the one that its file tells, or else the one of the options. */
+static hl_status find_unit(saving *s, const char *asked, const char *path, hl_error *error) {
+  static const char *const names[] = {"metre",      "centimetre", "millimetre",
+                                      "micrometre", "nanometre",  "angstrom"};
+  const hl_unit *unit = asked != NULL ? hl_unit_find(asked) : NULL;
+  s->unit = s->volume->unit;
+  s->unit_asked = asked != NULL && s->unit == NULL;
+  if (!s->unit_asked) return HL_OK;
+  for (size_t n = 0; n < sizeof names / sizeof *names && unit != NULL; n++)
+    if (hl_unit_find(names[n])->metres == unit->metres) s->unit = names[n];
+  return s->unit != NULL ? HL_OK
+                         : hl_fail(error, HL_ERROR_ARGUMENT,
+                                   "%s: unit: '%.40s' is none that is written: give m, cm, mm, um, nm or "
+                                   "angstrom",
+                                   path, asked);
+}
+
 /* Sets the place of the grid that is written. A voxel lies in the middle of the voxels that are merged in it.
  * At the box's end some of them may be missing; the voxel lies where it would if all were there. */
 static void place_box(saving *s) {
@@ -144,7 +163,7 @@ static void place_box(saving *s) {
     memcpy(s->grid.axis[axis], (const double[3]){step.x, step.y, step.z}, sizeof s->grid.axis[axis]);
   }
   double factor;
-  s->unit = hl_written_unit(s->writer, volume->unit, &factor);
+  s->unit = hl_written_unit(s->writer, s->unit, &factor);
   for (int axis = 0; axis < 3; axis++)
     for (int row = 0; row < 3; row++) s->grid.axis[axis][row] *= factor;
   origin = vec3_scale(origin, factor);
@@ -434,6 +453,9 @@ static void tell_losses(const saving *s, const char *path) {
   else if (loses != NULL && s->grid.space != HL_SPACE_UNKNOWN)
     hl_log(context, HL_LOG_WARNING, "%s: %s files do not tell that their world is %s: remember it", path,
            s->writer->ending, hl_space_name(s->grid.space));
+  if (s->unit_asked && s->writer->units == NULL)
+    hl_log(context, HL_LOG_WARNING, "%s: %s files do not tell a unit of lengths: .nrrd and .nii do", path,
+           s->writer->ending);
   if (s->volume->colors != NULL)
     hl_log(context, HL_LOG_WARNING,
            "%s: the voxels' colours are lost: the file gets the densities from which opacity comes", path);
@@ -477,6 +499,7 @@ hl_status hl_volume_save_with(hl_context *context, const hl_volume *volume, cons
   hl_volume_description_defaults(&s.grid);
   hl_status status = set_box(&s, options, path, error);
   if (status == HL_OK) status = set_type(&s, options->type, path, error);
+  if (status == HL_OK) status = find_unit(&s, options->unit, path, error);
   if (status == HL_OK) place_box(&s);
   if (status == HL_OK) status = check_raw_name(&s, path, error);
   if (status == HL_OK) tell_evaluation(&s, path);

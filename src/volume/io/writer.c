@@ -362,7 +362,9 @@ const hl_writer *hl_writer_at(size_t index) {
 /* The exponent of ten of a unit in metres. */
 static int power_of(const char *unit) {
   if (hl_text_starts(unit, "metre")) return 0;
+  if (hl_text_starts(unit, "centimetre")) return -2;
   if (hl_text_starts(unit, "millimetre")) return -3;
+  if (hl_text_starts(unit, "nanometre")) return -9;
   return hl_text_starts(unit, "micrometre") ? -6 : -10;
 }
 
