@@ -1,5 +1,5 @@
 /* cli/convert.c - implements `halflight convert IN OUT`, which writes a volume, or a box of it, in another
- * format, type or resolution. */
+ * format, type or resolution, and pictures in another format. */
 #define _GNU_SOURCE
 #include <stdio.h>
 #include <stdlib.h>
@@ -24,6 +24,9 @@ enum convert_option {
   CONVERT_CHANNEL,
   CONVERT_LEVEL,
   CONVERT_SPACING,
+  CONVERT_BACKGROUND,
+  CONVERT_EXPOSURE,
+  CONVERT_TONE,
   CONVERT_MAX_MEMORY,
   CONVERT_QUIET,
   CONVERT_OPTION_COUNT
@@ -33,6 +36,8 @@ static const cli_choice types[] = {
     {"uint8", HL_VOXEL_U8},    {"int8", HL_VOXEL_I8},     {"uint16", HL_VOXEL_U16},  {"int16", HL_VOXEL_I16},
     {"uint32", HL_VOXEL_U32},  {"int32", HL_VOXEL_I32},   {"uint64", HL_VOXEL_U64},  {"int64", HL_VOXEL_I64},
     {"float16", HL_VOXEL_F16}, {"float32", HL_VOXEL_F32}, {"float64", HL_VOXEL_F64}, {NULL, 0}};
+
+static const cli_choice backgrounds[] = {{"transparent", 1}, {NULL, 0}};
 
 static const cli_option convert_options[CONVERT_OPTION_COUNT] = {
     [CONVERT_CROP] = {.name = "crop",
@@ -72,6 +77,26 @@ static const cli_option convert_options[CONVERT_OPTION_COUNT] = {
     INPUT_OPTIONS(CONVERT_ARRAY, "What to read of IN"),
     [CONVERT_CHANNEL] = INPUT_OPTION_CHANNEL,
     [CONVERT_SPACING] = INPUT_OPTION_SPACING,
+    [CONVERT_BACKGROUND] = {.name = "background",
+                            .kind = OPTION_COLOR,
+                            .argument = "COLOR|transparent",
+                            .group = "Pictures: OUT is .png or .tif",
+                            .help = "colour under the picture (default transparent)",
+                            .choices = backgrounds,
+                            .setting_kind = HL_SETTINGS_IMAGE,
+                            .setting = "background"},
+    [CONVERT_EXPOSURE] = {.name = "exposure",
+                          .kind = OPTION_NUMBERS,
+                          .argument = "STOPS",
+                          .help = "brightness: each stop doubles the light (default 0)",
+                          .count = 1,
+                          .setting_kind = HL_SETTINGS_IMAGE,
+                          .setting = "exposure"},
+    [CONVERT_TONE] = {.name = "tone",
+                      .kind = OPTION_CHOICE,
+                      .help = "how light brighter than white is shown (default clip)",
+                      .setting_kind = HL_SETTINGS_IMAGE,
+                      .setting = "tone"},
     [CONVERT_MAX_MEMORY] = HOST_OPTION_MAX_MEMORY("How it runs"),
     [CONVERT_QUIET] = HOST_OPTION_QUIET,
 };
@@ -163,6 +188,67 @@ static int convert(cli_host *host, const cli_value *values, const char *in, cons
   return exit_code;
 }
 
+/* ---- pictures ---- */
+
+static bool is_picture_name(const char *path) {
+  for (int n = 0; picture_extensions[n] != NULL; n++)
+    if (has_extension(path, picture_extensions[n])) return true;
+  return false;
+}
+
+/* Returns whether IN and OUT are pictures. NumPy's arrays may be pictures or volumes, so that IN decides. */
+static bool are_pictures(const char *in, const char *out) {
+  return has_extension(out, ".npy") ? has_extension(in, ".png") || has_extension(in, ".exr")
+                                    : is_picture_name(out);
+}
+
+/* Refuses options that are for volumes if OUT is a picture, and options that are for pictures if it is none,
+ * or if it keeps light as numbers. */
+static int check_kind_of_options(const cli_value *values, bool picture, const char *out) {
+  const bool coded = picture && !has_extension(out, ".exr") && !has_extension(out, ".npy");
+  for (int row = 0; row < CONVERT_OPTION_COUNT; row++) {
+    const bool of_picture = row >= CONVERT_BACKGROUND && row <= CONVERT_TONE,
+               of_volume = row != CONVERT_OUTPUT && row < CONVERT_BACKGROUND;
+    if (values[row].given && of_picture && !coded)
+      return fail(EXIT_CODE_USAGE, "--%s is for a .png or .tif, and OUT is '%s'", convert_options[row].name,
+                  out);
+    if (values[row].given && of_volume && picture)
+      return fail(EXIT_CODE_USAGE, "--%s is for volumes, and OUT is a picture, '%s'",
+                  convert_options[row].name, out);
+  }
+  return EXIT_CODE_OK;
+}
+
+static void read_picture_options(const cli_value *values, hl_image_write_options *options) {
+  const cli_value *background = &values[CONVERT_BACKGROUND];
+  hl_image_write_options_defaults(options);
+  options->background_transparent = !background->given || background->chosen;
+  if (background->given && !background->chosen)
+    memcpy(options->background, background->number, sizeof options->background);
+  if (values[CONVERT_EXPOSURE].given) options->exposure = values[CONVERT_EXPOSURE].number[0];
+  if (values[CONVERT_TONE].given) options->tone = (hl_tone)values[CONVERT_TONE].choice;
+}
+
+/* Writes a picture in another format. */
+static int convert_picture(cli_host *host, const cli_value *values, const char *in, const char *out) {
+  double started = clock_seconds();
+  hl_image *image = NULL;
+  hl_error error = {0};
+  hl_image_write_options options;
+  read_picture_options(values, &options);
+  hl_status status = hl_image_read(host->context, in, &image, &error);
+  if (status == HL_ERROR_UNSUPPORTED && !is_picture_name(in))
+    return fail(EXIT_CODE_INPUT,
+                "'%s' is no picture: halflight render makes a picture of a volume or a scene", in);
+  if (status != HL_OK) return host_fail(host, PHASE_READ, status, &error);
+  status = hl_image_write(host->context, image, out, &options, &error);
+  host_clear_bar(host);
+  hl_image_destroy(image);
+  if (status != HL_OK) return host_fail(host, PHASE_RUN, status, &error);
+  if (!host->quiet) report(out, clock_seconds() - started);
+  return EXIT_CODE_OK;
+}
+
 static int run_convert(const cli_value *values, char **operands) {
   hl_volume_save_options options;
   const char *out = operands[1] != NULL ? operands[1] : values[CONVERT_OUTPUT].text;
@@ -170,8 +256,11 @@ static int run_convert(const cli_value *values, char **operands) {
     return fail(EXIT_CODE_USAGE, "--output: OUT is given twice, as '%s' and as '%s'", operands[1],
                 values[CONVERT_OUTPUT].text);
   if (out == NULL) return fail(EXIT_CODE_USAGE, "convert needs IN and OUT: see 'halflight help convert'");
-  int exit_code = read_options(values, &options);
-  if (exit_code == EXIT_CODE_OK) exit_code = output_check(out, volume_extensions, operands, 1);
+  const bool picture = are_pictures(operands[0], out);
+  int exit_code = check_kind_of_options(values, picture, out);
+  if (exit_code == EXIT_CODE_OK) exit_code = read_options(values, &options);
+  if (exit_code == EXIT_CODE_OK)
+    exit_code = output_check(out, picture ? picture_extensions : volume_extensions, operands, 1);
   if (exit_code != EXIT_CODE_OK) return exit_code;
   cli_host host = {0};
   cli_host_options host_options = {.quiet = values[CONVERT_QUIET].given,
@@ -180,7 +269,9 @@ static int run_convert(const cli_value *values, char **operands) {
                                    .memory_limit = values[CONVERT_MAX_MEMORY].bytes,
                                    .operands = operands};
   exit_code = host_open(&host_options, &host);
-  if (exit_code == EXIT_CODE_OK) exit_code = convert(&host, values, operands[0], out, &options);
+  if (exit_code == EXIT_CODE_OK)
+    exit_code = picture ? convert_picture(&host, values, operands[0], out)
+                        : convert(&host, values, operands[0], out, &options);
   host_close(&host);
   return exit_code;
 }
@@ -190,13 +281,15 @@ const cli_command convert_command = {
     .operands = "IN OUT",
     .operand_count = 1,
     .operand_most = 2,
-    .summary = "write a volume in another format, type, part or resolution",
+    .summary = "write a volume or a picture in another format",
     .description =
         "Writes the volume IN, of any format that render reads, to the file OUT: .nrrd, .nii, .nii.gz, "
         ".mha,\n"
         ".vti, .mrc, .mrc.gz, NumPy's .npy, or .raw and .raw.gz, whose names state size and\n"
         "type (x_256x256x128_uint8.raw).\n"
-        "Values and placement are kept. A warning names everything that OUT's format cannot store.",
+        "Values and placement are kept. A warning names everything that OUT's format cannot store.\n"
+        "Where OUT is a picture, .png, .tif or .exr, IN is a picture, too; the .npy of a .png or an\n"
+        ".exr is a picture.",
     .options = convert_options,
     .option_count = CONVERT_OPTION_COUNT,
     .run = run_convert,

@@ -68,6 +68,7 @@ static const char *known_but_unsupported(const unsigned char *bytes, size_t leng
   } marks[] = {
       {0, "\x89PNG", 4, "a picture, not a volume: give a folder of numbered ones"},
       {0, "\xff\xd8\xff", 3, "a JPEG picture, not a volume: give a folder of numbered ones"},
+      {0, "\x76\x2f\x31\x01", 4, "an OpenEXR picture, not a volume: `halflight convert` makes a .png of it"},
       {0, "\x89HDF", 4, "an HDF5 file (MINC, NeXus, Imaris, ...): " EXPORT "h5py.File(path)[\"name\"])"},
       {0, "CDF\001", 4, "a NetCDF file (MINC, ...): " EXPORT "xarray.open_dataset(path)[\"name\"])"},
       {0, "CDF\002", 4, "a NetCDF file (MINC, ...): " EXPORT "xarray.open_dataset(path)[\"name\"])"},
