@@ -89,9 +89,9 @@ HL_API HL_WARN_UNUSED hl_status hl_image_to_srgb8(const hl_image *image,
                                                   const hl_image_write_options *options, uint8_t *bytes,
                                                   size_t row_stride, hl_error *error);
 
-/* Reads the picture of a .png (decoded from sRGB), .exr (R, G, B, A; a missing A is 1), .npy (float32, height
- * x width x 1, 3 or 4) or .hdr file (Radiance's RGBE; A is 1). *image is owned by the caller, who releases
- * it. */
+/* Reads the picture of a .png or .tif (decoded from sRGB; of a .tif the first page, in 8 or 16 bits), .exr
+ * (R, G, B, A; a missing A is 1), .npy (float32, height x width x 1, 3 or 4) or .hdr file (Radiance's RGBE; A
+ * is 1). *image is owned by the caller, who releases it. */
 HL_API HL_WARN_UNUSED hl_status hl_image_read(hl_context *context, const char *path, hl_image **image,
                                               hl_error *error);
 
@@ -100,7 +100,7 @@ enum { HL_IMAGE_LAYERS_TEXT = 2000 };
 /* Facts that a picture's file states about the picture. */
 typedef struct hl_image_about {
   size_t struct_size;     /* set by the caller */
-  const char *format;     /* "PNG", "OpenEXR", "NPY" or "Radiance HDR"; static */
+  const char *format;     /* "PNG", "TIFF", "OpenEXR", "NPY" or "Radiance HDR"; static */
   uint64_t width, height; /* pixels */
   int channels, bits;     /* the number of values of a pixel, and the bits of each value. A palette's colours
                            * count as values of 8 bits; for OpenEXR, the bits are the bits of the widest

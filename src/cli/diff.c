@@ -213,7 +213,7 @@ const cli_command diff_command = {
     .operand_count = 2,
     .summary = "compare two pictures; with limits, a test",
     .description =
-        "Compares two pictures of the same size (.png, .exr, .npy) as linear premultiplied RGBA\n"
+        "Compares two pictures of the same size (.png, .tif, .exr, .npy) as linear premultiplied RGBA\n"
         "and prints the differences of B against A.",
     .options = diff_options,
     .option_count = DIFF_OPTION_COUNT,

@@ -179,7 +179,7 @@ static hl_status fail_unknown(const char *path, hl_error *error) {
                           named->title);
   return hl_fail_offset(
       error, HL_ERROR_UNSUPPORTED, 0,
-      "%s: byte 0: unknown picture format: expected a PNG, OpenEXR, Radiance HDR or NPY file", path);
+      "%s: byte 0: unknown picture format: expected a PNG, OpenEXR, Radiance HDR, NPY or TIFF file", path);
 }
 
 /* Limits the length of a file by the size in its header. The limit allows for compressed pixels one and a

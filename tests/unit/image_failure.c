@@ -82,7 +82,7 @@ static void reading_goes_by_content(void **state) {
   snprintf(other, sizeof other, "%s/a.txt", folder);
   write_bytes(other, "hello", 5);
   assert_int_equal(hl_image_read(context, other, &back, &error), HL_ERROR_UNSUPPORTED);
-  assert_non_null(strstr(error.message, "PNG, OpenEXR, Radiance HDR or NPY"));
+  assert_non_null(strstr(error.message, "PNG, OpenEXR, Radiance HDR, NPY or TIFF"));
   hl_image_destroy(image);
   remove_folder(folder);
   end_context(context);

@@ -1,5 +1,5 @@
-/* tests/unit/image_hostile.c - damaged PNG, OpenEXR and NPY files: cut at every length and changed at every
- * byte.
+/* tests/unit/image_hostile.c - damaged PNG, OpenEXR, NPY and TIFF files: cut at every length and changed at
+ * every byte.
  *
  * Decoders get each file in a block of its exact size, so that a sanitizer sees any read beyond it. They must
  * say what is wrong or give a picture, hold to the memory limit, and release everything.
@@ -22,6 +22,7 @@ static hl_context *make_limited_context(void) {
 static void check_claim(decoder function, const unsigned char *exact, size_t length, const hl_image *image) {
   hl_image_claim claim = function == hl_png_format.decode   ? hl_png_format.claim(exact, length)
                          : function == hl_exr_format.decode ? hl_exr_format.claim(exact, length)
+                         : function == hl_tif_format.decode ? hl_tif_format.claim(exact, length)
                                                             : hl_npy_format.claim(exact, length);
   if (image == NULL) return;
   assert_true(claim.known);
@@ -124,6 +125,17 @@ static void damaged_npy(void **state) {
   damage("npy", hl_npy_format.decode, 5, 4, NULL);
 }
 
+static void damaged_tiff(void **state) {
+  (void)state;
+  hl_image_write_options options;
+  hl_image_write_options_defaults(&options);
+  if (hl_tif_format.decode == NULL) skip();
+  damage("tif", hl_tif_format.decode, 9, 7, &options);
+  options.png_depth = 16;
+  options.background_transparent = 1;
+  damage("tif", hl_tif_format.decode, 3, 4, &options);
+}
+
 /* PNG's checksums hide what lies behind them from plain damage: mend them after each change. */
 static uint32_t crc_of(const unsigned char *bytes, size_t length) {
   uint32_t crc = 0xffffffffu;
@@ -202,8 +214,10 @@ static void claims_are_held_against_the_bytes(void **state) {
 }
 
 int main(void) {
-  const struct CMUnitTest tests[] = {cmocka_unit_test(damaged_png), cmocka_unit_test(damaged_exr),
+  const struct CMUnitTest tests[] = {cmocka_unit_test(damaged_png),
+                                     cmocka_unit_test(damaged_exr),
                                      cmocka_unit_test(damaged_npy),
+                                     cmocka_unit_test(damaged_tiff),
                                      cmocka_unit_test(damaged_png_with_right_checksums),
                                      cmocka_unit_test(claims_are_held_against_the_bytes)};
   return cmocka_run_group_tests(tests, NULL, NULL);
