@@ -290,7 +290,7 @@ static const malformed files[] = {
      "line 2: Format cannot be \"QUARK\""},
     {"notes.txt", "just some text", HL_ERROR_INPUT, "not a volume file that is known"},
     {"picture.png", "\x89PNG\r\n\x1a\n and so on", HL_ERROR_UNSUPPORTED, "a picture"},
-    {"smoke.vdb", " BDV and so on", HL_ERROR_UNSUPPORTED, "OpenVDB"},
+    {"smoke.vdb", " BDV and so on", HL_ERROR_UNSUPPORTED, "halflight convert"},
     {"packed.nrrd.bz2", "BZh11AY", HL_ERROR_INPUT, "is it cut short?"},
     {"no.nii", "no header here", HL_ERROR_INPUT, "begins with 348 or 540"},
 };

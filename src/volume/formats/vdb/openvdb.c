@@ -16,6 +16,15 @@ static hl_status fail_unconverted(const char *path, hl_error *error) {
                  path);
 }
 
+/* The context has no callback. This is so in programs that use the library without one. */
+static hl_status fail_without_callback(const char *path, hl_error *error) {
+  return hl_fail(
+      error, HL_ERROR_UNSUPPORTED,
+      "%s: an OpenVDB file, which another program converts: run `halflight convert NAME.vdb NAME.nrrd` "
+      "or `nanovdb_convert NAME.vdb NAME.nvdb`, or set hl_context_options.convert",
+      path);
+}
+
 /* Lets the callback convert the file, and reads the result under the original file's name. */
 static hl_status load(hl_stream **stream, hl_load_request *request, hl_volume **volume, hl_error *error) {
   const hl_context_options *options = &request->context->options;
@@ -27,7 +36,8 @@ static hl_status load(hl_stream **stream, hl_load_request *request, hl_volume **
   size_t byte_count = 0;
   hl_stream *converted = NULL;
   hl_error reason = {0};
-  if (options->convert == NULL || !hl_stream_is_plain_file(*stream)) return fail_unconverted(path, error);
+  if (options->convert == NULL) return fail_without_callback(path, error);
+  if (!hl_stream_is_plain_file(*stream)) return fail_unconverted(path, error);
   snprintf(opened, sizeof opened, "/proc/self/fd/%d", hl_stream_descriptor(*stream));
   hl_status status = options->convert(options->user_data, "OpenVDB",
                                       hl_is_confined(request->context) ? opened : path, &bytes, &byte_count,
