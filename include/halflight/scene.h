@@ -397,9 +397,10 @@ HL_API HL_WARN_UNUSED hl_status hl_scene_channel_color(const hl_scene_descriptio
 HL_API void hl_scene_level_sky(hl_scene_description *description);
 
 /* Finds a factor by which the strengths of all lights, `ambient` and the sky's strength should be multiplied.
- * It is meant for a scene of hl_scene_for_volume() whose volume was then cut, or got isosurfaces. The scene's
- * strengths were chosen for the whole volume. With these strengths, a cut face that is turned to the light,
- * or a white surface, would be brighter than white. look: the look that the scene was made with. *factor is 1
+ * It is meant for a scene of hl_scene_for_volume() whose volume was then cut, got isosurfaces, or was made to
+ * scatter light more than once. The scene's strengths were chosen for the whole volume. With these strengths,
+ * a cut face that is turned to the light, a white surface, or a cloud that glows inside, would be brighter
+ * than white. look: the look that the scene was made with. *factor is 1
  * for looks that keep their light, and for orthographic cameras. */
 HL_API HL_WARN_UNUSED hl_status hl_scene_light_factor(const hl_scene_description *description,
                                                       const char *look, double *factor, hl_error *error);

@@ -51,9 +51,9 @@ static void change_shadows(const hl_composer *composer, hl_scene_description *de
     if (lights[i].shadows != HL_SHADOWS_OFF) lights[i].shadows = HL_SHADOWS_DEFAULT;
 }
 
-/* Chooses the strength of a bare volume's light anew if the volume is cut, has isosurfaces, or is lit by a
- * light rig. The first choice was made for the whole volume and its transfer function; the new one is made
- * for the visible part. */
+/* Chooses the strength of a bare volume's light anew if the volume is cut, has isosurfaces, scatters light
+ * more than once, or is lit by a light rig. The first choice was made for the whole volume and its transfer
+ * function; the new one is made for the visible part. */
 static hl_status expose_anew(const hl_composer *composer, hl_scene_description *description,
                              hl_light *lights) {
   double factor = 1;
@@ -62,8 +62,8 @@ static hl_status expose_anew(const hl_composer *composer, hl_scene_description *
     return HL_OK;
   bool cut = hl_count_cuts(composer->asked) > 0 || composer->asked[HL_ASK_CLIP].given ||
              (composer->flags & HL_COMPOSE_CUT) != 0;
-  bool rigged = composer->asked[HL_ASK_LIGHT_RIG].given;
-  if (!cut && !rigged && description->volumes[0].iso_count == 0) return HL_OK;
+  bool rigged = composer->asked[HL_ASK_LIGHT_RIG].given, glows = composer->asked[HL_ASK_SCATTERING].given;
+  if (!cut && !rigged && !glows && description->volumes[0].iso_count == 0) return HL_OK;
   const char *look = hl_asked_look(composer);
   hl_status status = hl_scene_light_factor(description, look != NULL ? look : "auto", &factor,
                                            composer->error);

@@ -7,10 +7,12 @@
 #include "guess/exposure.h"
 
 #include <stdlib.h>
+#include <string.h>
 
 #include "core/context.h"
 #include "core/memory.h"
 #include "guess/cut_face.h"
+#include "guess/glow.h"
 #include "guess/sample.h"
 #include "scene/geometry/cut.h"
 #include "scene/geometry/placement.h"
@@ -20,9 +22,13 @@
 #define TARGET 0.871 /* linear light of 240 of 255, IEC 61966-2-1 */
 /* The exposure brings one pixel to TARGET. This fraction of all pixels are darker than that pixel. */
 #define BRIGHTEST 0.99
-#define OPAQUE    0.98
-#define FAINT     0.02 /* least opacity of a step at which a ray meets a surface */
-#define THINNEST  0.15 /* fraction of the surfaces that are thinner than hl_exposure.thickness */
+/* The least factors of an exposure. A cloud that glows inside may be four times as bright as a white surface.
+ */
+#define LEAST         0.5
+#define LEAST_OF_GLOW 0.15
+#define OPAQUE        0.98
+#define FAINT         0.02 /* least opacity of a step at which a ray meets a surface */
+#define THINNEST      0.15 /* fraction of the surfaces that are thinner than hl_exposure.thickness */
 
 enum { SIDE = 64, TABLE = 1024, MOST_LIGHTS = 4 };
 
@@ -39,7 +45,8 @@ typedef struct exposure {
                               * spite of shadows, as a fraction */
   double step;               /* world units */
   double empty;              /* a value of the invisible surroundings */
-  double flat; /* a sample whose gradient is at most this long is no surface; values per world unit */
+  hl_glow glow; /* the light in a medium that scatters it again and again; empty in other media */
+  double flat;  /* a sample whose gradient is at most this long is no surface; values per world unit */
   double opacity[TABLE], color[TABLE][3]; /* entries over the volume's range */
 } exposure;
 
@@ -94,6 +101,8 @@ typedef struct sample_light {
   bool surface;
   vec3 normal;
   double left[MOST_LIGHTS], sky; /* the fraction of each light, and of the sky, that reaches the sample */
+  double glow;                   /* the light of all lights and of the sky, in place of these fractions, in a
+                                  * medium that scatters light again and again */
 } sample_light;
 
 static sample_light light_by_gradient(const exposure *e, double value, vec3 gradient) {
@@ -111,6 +120,13 @@ static void shade(const exposure *e, const double color[3], const sample_light *
                   const double own[3], double sent[3]) {
   const hl_material *material = &e->volume->material;
   double gloss = 0, matt[3], sky[3];
+  if (!lit->surface && e->glow.light != NULL) {
+    for (int c = 0; c < 3; c++)
+      sent[c] = color[c] * own[c] *
+                (material->emission + material->ambient * e->scene->ambient[c] +
+                 e->volume->albedo[c] * lit->glow);
+    return;
+  }
   sky_light(&e->scene->sky, lit->surface ? &lit->normal : NULL, sky);
   for (int c = 0; c < 3; c++)
     matt[c] = material->emission + material->ambient * e->scene->ambient[c] +
@@ -173,6 +189,10 @@ static void pass_face(const exposure *e, ray_face *face, double t, vec3 before, 
   face->at = t - e->step / 2;
 }
 
+static double brightest(const double color[3]) { return fmax(color[0], fmax(color[1], color[2])); }
+
+static double strength_of(const hl_light *light) { return light->intensity * brightest(light->color); }
+
 /* The fraction of light from a direction that reaches a point of the world. The path of the light is sampled
  * in steps of three voxel edges, until it leaves the volume's box. If the point lies on
  * a face of the box and the light is outside of this face, the path meets no matter, because the box is
@@ -224,6 +244,20 @@ static void light_by_face(const exposure *e, const ray_face *face, double t, vec
   if (e->volume->cut_shading == HL_CUT_SHADING_FACE) lit->surface = true, lit->normal = face->normal;
   if (e->volume->cut_shading == HL_CUT_SHADING_NONE) lit->surface = false;
   light_reaching_face(e, point, face->normal, lit);
+}
+
+/* The light at a place in a medium that scatters light again and again. place, point: the same place in index
+ * space and in the world. */
+static double glow_at(const exposure *e, vec3 place, vec3 point) {
+  const hl_scene_description *scene = e->scene;
+  double light = hl_glow_at(&e->glow, place);
+  for (size_t l = 0; l < scene->light_count; l++) {
+    /* passing() takes the matter in the middle of each of its steps, which are three voxel edges long */
+    const vec3 from = vec3_add(point, vec3_scale(e->towards[l], 1.5 * e->step));
+    light += strength_of(&scene->lights[l]) *
+             (scene->lights[l].shadows == HL_SHADOWS_OFF ? 1 : passing(e, from, e->towards[l]));
+  }
+  return light;
 }
 
 typedef struct pixel {
@@ -292,6 +326,8 @@ static pixel look_along(const exposure *e, vec3 origin, vec3 direction) {
     hl_volume_color(volume, (size_t)at[0], (size_t)at[1], (size_t)at[2], own);
     sample_light lit = light_by_gradient(e, value, gradient);
     light_by_face(e, &face, t, vec3_add(origin, vec3_scale(direction, t)), to_eye, &lit);
+    if (e->glow.light != NULL && !lit.surface)
+      lit.glow = glow_at(e, place, vec3_add(origin, vec3_scale(direction, t)));
     shade(e, e->color[entry], &lit, to_eye, own, sent);
     gather(sent, e->opacity[entry], &all);
   }
@@ -349,17 +385,56 @@ static void look(const exposure *e, pixels *seen) {
     }
 }
 
-static hl_status judge(hl_context *context, pixels *seen, hl_exposure *exposure, hl_error *error) {
+/* least: the least factor that is chosen. */
+static hl_status judge(hl_context *context, pixels *seen, double least, hl_exposure *exposure,
+                       hl_error *error) {
   if (!hl_sort(context, seen->brightness, seen->bright_count) ||
       !hl_sort(context, seen->thickness, seen->surface_count))
     return hl_fail_memory(error, sizeof seen->brightness, "an exposure");
   if (seen->bright_count > 0) {
     double bright = fmax(hl_quantile(seen->brightness, seen->bright_count, BRIGHTEST), 1e-9);
-    exposure->factor = round(100 * fmin(fmax(TARGET / bright, 0.5), 2)) / 100;
+    exposure->factor = round(100 * fmin(fmax(TARGET / bright, least), 2)) / 100;
   }
   if (seen->surface_count > 0)
     exposure->thickness = hl_quantile(seen->thickness, seen->surface_count, THINNEST);
   return HL_OK;
+}
+
+static hl_glow_matter matter_at(const void *data, vec3 place) {
+  const exposure *e = data;
+  const hl_volume *volume = e->volume->volume;
+  size_t at[3];
+  const double index[3] = {place.x, place.y, place.z};
+  for (int a = 0; a < 3; a++)
+    at[a] = (size_t)fmin(fmax(round(index[a]), 0), (double)volume->dimension[a] - 1);
+  const double value = hl_volume_value_within(volume, at[0], at[1], at[2]);
+  if (!isfinite(value) || !hl_cuts_leave(e->cuts, e->volume->cut_count, place)) return (hl_glow_matter){0, 0};
+  const int entry = entry_of(e, value);
+  const double extinction = -log1p(-fmin(e->opacity[entry], 0.9999)) / e->step;
+  double scattered = 0;
+  for (int c = 0; c < 3; c++) scattered = fmax(scattered, e->volume->albedo[c] * e->color[entry][c]);
+  return (hl_glow_matter){extinction, extinction * fmin(scattered, 1)};
+}
+
+/* Estimates the light within a medium that scatters it again and again. */
+static hl_status make_glow(hl_context *context, exposure *e, hl_error *error) {
+  const hl_scene_description *scene = e->scene;
+  double sky[3];
+  hl_glow_request request = {.matter = matter_at,
+                             .data = e,
+                             .anisotropy = e->volume->anisotropy,
+                             .light_count = scene->light_count,
+                             .index_to_world = hl_scene_volume_index_to_world(e->volume)};
+  if (!e->volume->multiple_scattering) return HL_OK;
+  sky_light(&scene->sky, NULL, sky);
+  request.sky = brightest(sky);
+  memcpy(request.low, e->low, sizeof request.low);
+  memcpy(request.high, e->high, sizeof request.high);
+  for (size_t l = 0; l < scene->light_count; l++) {
+    request.towards[l] = e->towards[l];
+    request.strength[l] = strength_of(&scene->lights[l]);
+  }
+  return hl_glow_make(context, &request, &e->glow, error);
 }
 
 hl_status hl_scene_exposure(const hl_scene_description *scene, double empty, double left, hl_exposure *result,
@@ -373,8 +448,11 @@ hl_status hl_scene_exposure(const hl_scene_description *scene, double empty, dou
   else if (begin(scene, empty, left, e)) {
     seen->bright_count = seen->surface_count = 0;
     status = hl_cut_shapes(context, e->volume, &e->cuts, error);
+    if (status == HL_OK) status = make_glow(context, e, error);
     if (status == HL_OK) look(e, seen);
-    if (status == HL_OK) status = judge(context, seen, result, error);
+    if (status == HL_OK)
+      status = judge(context, seen, e->glow.light != NULL ? LEAST_OF_GLOW : LEAST, result, error);
+    hl_glow_release(context, &e->glow);
     hl_release(context, e->cuts);
   }
   hl_release(context, seen);

@@ -136,8 +136,12 @@ static hl_status judge_exposure(const hl_look *look, const hl_data_analysis *ana
                                 const hl_scene_description *description, hl_exposure *exposure,
                                 hl_error *error) {
   double empty = analysis->kind == HL_DATA_FLOW ? analysis->middle : analysis->background;
+  const bool fixed = !(look->left > 0), glows = description->volumes[0].multiple_scattering != 0;
   *exposure = (hl_exposure){1, INFINITY};
-  return look->left > 0 ? hl_scene_exposure(description, empty, look->left, exposure, error) : HL_OK;
+  if (fixed && !glows) return HL_OK;
+  hl_status status = hl_scene_exposure(description, empty, fixed ? 1 : look->left, exposure, error);
+  if (fixed) exposure->factor = fmin(exposure->factor, 1); /* the look's own light is strong enough */
+  return status;
 }
 
 /* Scales all lights by one factor, so that the picture is as bright as it can be without being clipped. Also
