@@ -218,6 +218,14 @@ static void advance_lights(sweep *sweep, slab_stretch stretch) {
   sweep->loop.times.seconds_soften += hl_clock_seconds() - start;
 }
 
+/* Reports the part of the frame that is finished after a number of this sweep's sheets. Each of the frame's
+ * sweeps has an equal share, so that the part rises over all of them. */
+static void report_progress(const sweep *sweep, int sheets) {
+  const plan_sweeps *all = &sweep->frame_plan->sweeps;
+  const double finished = (double)(sweep->plan - all->list) + (double)sheets / sweep->geometry->sheets.count;
+  hl_progress(sweep->content.context, "render", finished / all->count);
+}
+
 /* The paper's loop over the sheets (section 3.1, eighteen steps).
  *
  *    1. transform voxels to the half-way vector's frame      hl_sweep_begin
@@ -255,8 +263,7 @@ hl_status hl_sweep_run(sweep *sweep, hl_error *error) {
     }
     advance_lights(sweep, light);
     finish_picture(sweep);
-    if (sweep->act.purpose == SWEEP_PICTURE)
-      hl_progress(sweep->content.context, "render", (double)(picture.end - 1) / sheets);
+    if (sweep->act.purpose == SWEEP_PICTURE) report_progress(sweep, picture.end - 1);
     if (hl_pool_cancelled(sweep->content.pool))
       return hl_fail(error, HL_ERROR_CANCELLED, "cancelled while rendering");
   }
