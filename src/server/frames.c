@@ -187,22 +187,22 @@ pages_state pages_count(server *s) {
   return state;
 }
 
-int page_progress(server *s, const char *name, frame_stage *stage, int *others) {
-  int part = 0;
-  *others = 0;
-  *stage = STAGE_PICTURE;
+frame_progress page_progress(server *s, const char *name) {
+  frame_progress progress = {.stage = STAGE_PICTURE};
   pthread_mutex_lock(&s->pages_lock);
   for (int p = 0; p < MOST_PAGES; p++) {
-    if (s->pages[p].users == 0) continue;
-    if (strcmp(s->pages[p].name, name) == 0) {
-      part = atomic_load(&s->pages[p].frame_part);
-      *stage = (frame_stage)atomic_load(&s->pages[p].stage);
+    server_page *page = &s->pages[p];
+    if (page->users == 0) continue;
+    if (strcmp(page->name, name) == 0) {
+      progress.frame = atomic_load(&page->frame); /* before its part */
+      progress.part = atomic_load(&page->frame_part);
+      progress.stage = (frame_stage)atomic_load(&page->stage);
     } else {
-      *others += 1;
+      progress.others++;
     }
   }
   pthread_mutex_unlock(&s->pages_lock);
-  return part;
+  return progress;
 }
 
 /* Frees memory by ending the renderers of all pages that no request holds. The next frames of these pages
@@ -397,6 +397,7 @@ static void answer_page(server *s, server_page *page, const frame_request *reque
   current.number = request->number;
   atomic_store(&page->frame_part, 0);
   atomic_store(&page->stage, STAGE_PICTURE);
+  atomic_store(&page->frame, request->number);
   hl_status status = make_frame(s, page, request, film, answer, &error);
   /* If memory is short, releases the memory of idle pages and of this page's earlier frames, and tries once
    * more. */

@@ -72,6 +72,8 @@ typedef struct server_page {
   atomic_ullong newest;                  /* the highest number of a requested frame */
   atomic_int frame_part; /* the part of the frame's current stage that is finished, in thousandths */
   atomic_int stage;      /* the current stage, a frame_stage */
+  atomic_ullong frame; /* the number of the frame to which `frame_part` and `stage` belong; it is stored last,
+                        * so that a new number is never seen with the part of the frame before */
   atomic_int film_done, film_frames; /* film_done: the number of finished frames of the film that the page
                                       * renders; film_frames: the number of all frames; 0 if the page renders
                                       * no film */
@@ -223,9 +225,15 @@ typedef struct pages_state {
 } pages_state;
 
 pages_state pages_count(server *s);
-/* The progress of the page's frame, in thousandths of its stage. *others: set to the number of other pages,
- * and lanes of this page, whose frames are being rendered. */
-int page_progress(server *s, const char *name, frame_stage *stage, int *others);
+/* How far a page's frame is. */
+typedef struct frame_progress {
+  unsigned long long frame; /* the frame's number; 0 if no frame of the page is being rendered */
+  frame_stage stage;
+  int part;   /* the finished part of the stage, in thousandths */
+  int others; /* the number of other pages, and lanes of this page, whose frames are being rendered */
+} frame_progress;
+
+frame_progress page_progress(server *s, const char *name);
 /* Answers with a frame. film: null for a picture. */
 void answer_frame(server *s, const frame_request *request, const film_request *film, server_answer *answer);
 /* Answers with the scene, its defaults written out and the page's choices applied. film: if not null, the

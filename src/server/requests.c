@@ -197,10 +197,9 @@ static void answer_progress(server *s, struct MHD_Connection *connection, server
   char *text = NULL;
   static const char *const names[] = {"picture", "labels", "sky"}; /* the names of the stages, in the order of
                                                                     * frame_stage */
-  frame_stage stage;
-  int others, part = page_progress(s, page != NULL ? page : "", &stage, &others);
-  if (asprintf(&text, "{\"part\":%.3f,\"stage\":\"%s\",\"others\":%d}", part / 1000.0, names[stage], others) <
-      0)
+  const frame_progress progress = page_progress(s, page != NULL ? page : "");
+  if (asprintf(&text, "{\"frame\":%llu,\"part\":%.3f,\"stage\":\"%s\",\"others\":%d}", progress.frame,
+               progress.part / 1000.0, names[progress.stage], progress.others) < 0)
     text = NULL;
   answer_json(answer, text);
 }

@@ -281,9 +281,11 @@ def awaited(viewer, scene):
 
     asking = threading.Thread(target=ask)
     asking.start()
-    status, _ = request(viewer, "POST", f"frame?page=sky&number={next(numbers)}&format=png&opened=0", json.dumps(scene))
+    number = next(numbers)
+    status, _ = request(viewer, "POST", f"frame?page=sky&number={number}&format=png&opened=0", json.dumps(scene))
     ended.set()
     asking.join()
+    check({one["frame"] for one in told if one["part"] > 0} == {number}, f"each part names its frame, {number}: {told[:5]}")
     parts = [one["part"] for one in told if one["stage"] == "sky"]
     check(status == 200 and len(parts) > 2 and parts == sorted(parts) and any(0 < part < 1 for part in parts), f"the light of the sky is told: {parts}")
     last = max(n for n, one in enumerate(told) if one["stage"] == "sky")

@@ -140,7 +140,7 @@ function maker(film, { store, channel }) {
     if (frames === 0) return;
     bar.value = done / frames;
     const left = done > 0 ? `, ${timeLeft(((performance.now() - began) / 1000 / done) * (frames - done))} left` : "";
-    told.textContent = `frame ${done + 1} of ${frames}${left}`;
+    told.textContent = done < frames ? `frame ${done + 1} of ${frames}${left}` : `all ${frames} frames are made; the file is being written`;
   }
 
   async function run() {

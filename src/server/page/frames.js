@@ -45,7 +45,9 @@ export class Frames {
   #animation = null; // { change, began: null until its first picture is shown, milliseconds }
   statistics = { previews: 0, cancelled: 0, finals: 0, stage: "start" };
 
-  // report({ stage, width, height, spacing, milliseconds, bytes, error }) is told of every frame.
+  // report({ stage, state, width, height, spacing, milliseconds, bytes, error }) is told of every frame, and when a picture is begun of a
+  // scene at rest. state: a number that is another one after each change. stage: "moving" at a change and with each quick picture; "settling"
+  // and "refining" when the first and the final picture at rest are begun, "settled" and "final" when these are there; "failed".
   constructor({ store, start, channel }, canvas, report) {
     this.#measure(start);
     this.#work = LEAST_PIXELS / firstSpacing(start.volumes);
@@ -187,8 +189,8 @@ export class Frames {
     const pixels = Math.min(Math.max(single * SETTLED_SPACING, LEAST_PIXELS), this.#full().pixels), spacing = Math.min(pixels / single, WIDEST);
     try {
       if (spacing > scene.render.sheet_spacing * 1.2 || pixels < this.#full().pixels)
-        await this.#step(generation, this.#scaled(pixels, spacing), "settled");
-      if (generation === this.#generation) await this.#step(generation, scene, "final");
+        await this.#step(generation, this.#scaled(pixels, spacing), "settled", "settling");
+      if (generation === this.#generation) await this.#step(generation, scene, "final", "refining");
     } catch (error) {
       if (generation === this.#generation) this.#fail(error);
     }
@@ -199,10 +201,11 @@ export class Frames {
     this.#report({ stage: "failed", error });
   }
 
-  async #step(generation, scene, stage) {
+  // before: what is told when the picture is begun.
+  async #step(generation, scene, stage, before) {
     const began = performance.now();
     const options = stage === "final" ? { format: "png" } : { quality: 92, moving: true };
-    if (stage === "final") this.#tell("refining", scene, began, null);
+    this.#tell(before, scene, began, null);
     const frame = await this.#channel.fetchFrame(scene, options);
     if (generation !== this.#generation) return;
     if (frame === null) {
@@ -234,7 +237,7 @@ export class Frames {
   #tell(stage, scene, began, blob) {
     const { width, height } = scene.image;
     this.#report({
-      stage, width, height, spacing: scene.render.sheet_spacing,
+      stage, state: this.#generation, width, height, spacing: scene.render.sheet_spacing,
       milliseconds: performance.now() - began, bytes: blob?.size ?? 0,
     });
   }

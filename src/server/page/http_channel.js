@@ -13,8 +13,8 @@
 //   { depth, opacity, object }. depth: the length along the ray from the eye, or orthographic from the plane through the
 //   camera's position, to where the opacity first reaches 0.01; null: nowhere. object: as in hl_layers. Null: cancelled.
 // - overlay(scene, over): what a figure has over the scene's picture (figure_overlay.js), as the blob of a transparent PNG.
-// - progress(): how far the frame under way is, { part, stage, others }: part of the stage, from 0 to 1; stage: what is made, "labels" (they are
-//   smoothed) and "sky" (its light) before the picture, and "picture"; others: frames of other pages under way.
+// - progress(): how far the frame is that was asked for last, { part, stage, others }: part of the stage, from 0 to 1; stage: what is made,
+//   "labels" (they are smoothed) and "sky" (its light) before the picture, and "picture"; others: frames of other pages under way.
 
 import { Lost } from "./connection.js";
 import { HeldScene } from "./held_scene.js";
@@ -51,9 +51,10 @@ const overlayQuery = ({ scaleBar = false, legend = false, axes = "none", marks =
 
 export class HttpChannel {
   #number = 0;
+  #shown = 0; // the number of the newest frame that is in no lane
   #opened;
   #refined;
-  #held = new HeldScene(() => ++this.#number); // not of the frames in lanes
+  #held = new HeldScene(() => (this.#shown = ++this.#number)); // not of the frames in lanes
   #page = crypto.getRandomValues(new Uint32Array(2)).reduce((name, n) => name + n.toString(36), "p");
 
   #source;
@@ -122,7 +123,8 @@ export class HttpChannel {
   }
 
   async progress() {
-    return (await this.#ask("progress.json", { page: this.#page }, {})).json();
+    const asked = this.#shown, { frame, ...told } = await (await this.#ask("progress.json", { page: this.#page }, {})).json();
+    return frame === asked && asked === this.#shown ? told : { ...told, part: 0, stage: "picture" }; // of an older frame, or not yet begun
   }
 
   // The scene with its defaults written out: presets as points, a camera that frames everything. choices: { look, rig }, names

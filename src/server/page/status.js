@@ -7,31 +7,66 @@ import { make } from "./controls.js";
 const ASK_AFTER = 600, ASK_EVERY = 400;
 // What is waited for before the picture is begun, for each stage of progress() of the channel.
 const AWAITED = { labels: "smoothing labels", sky: "light of the sky" };
-const STAGES = { moving: "moving", settled: "refining", refining: "refining", final: "final", waiting: "waiting" };
+// The names of the stages of frames.js. A coarse picture is at rest, while finer voxels are still to come.
+const STAGES = { moving: "moving", settling: "refining", settled: "refining", refining: "refining", final: "final", coarse: "refining", waiting: "waiting" };
+// The parts of the way to the final picture that are left behind when the quick pictures, the first picture at rest and the final one are there.
+const ENDS = { moving: 0.2, settling: 0.4, refining: 1 };
+const AHEAD = 0.5; // the part of a picture's own way that each thing takes which is made before it
+
+// The way to the final picture of one state, which has up to three pictures. The part that is done never falls.
+export class Way {
+  done = 0;
+  #from = 0; // the part at which the present stage began
+  #end = 0; // the part at which the present picture will be there
+  #picture = "";
+  #made = "";
+
+  // A picture is begun: a stage of frames.js.
+  begin(picture) {
+    if (!(picture in ENDS) || picture === this.#picture) return;
+    [this.#picture, this.#made, this.#from] = [picture, "", this.done];
+    this.#end = Math.max(this.done, ENDS[picture]);
+  }
+
+  // This part of what is made now for the picture is there: of progress() of the channel.
+  go({ part, stage }) {
+    if (stage !== this.#made) [this.#made, this.#from] = [stage, this.done];
+    this.done = Math.max(this.done, this.#from + (this.#end - this.#from) * part * (stage in AWAITED ? AHEAD : 1));
+  }
+}
 
 // find(id): an element of the viewer. Returns show(frame), of frames.js, and end().
 export function statusLine(find, channel) {
   const stage = find("stage"), progress = find("progress");
-  let timer = 0, number = 0;
+  let timer = 0, number = 0, state = null, way = new Way();
 
-  // Shows the progress as long as the picture is under way.
+  // Shows the progress as long as a picture is under way.
   async function ask(mine) {
-    const { part, stage: of, others } = await channel.progress().catch(() => ({ part: 0, stage: "picture", others: 0 }));
+    const told = await channel.progress().catch(() => ({ part: 0, stage: "picture", others: 0 }));
     if (mine !== number) return;
-    const awaited = AWAITED[of], isDone = awaited !== undefined && part >= 1; // the picture has not begun
-    const told = [awaited, part > 0 ? `${Math.round(100 * part)} %` : ""].filter(Boolean).join(", ");
-    progress.textContent = (isDone ? "" : told) + (others > 0 ? ` · with ${others} other ${others === 1 ? "picture" : "pictures"} under way` : "");
+    way.go(told);
+    const { part, stage: made, others } = told, awaited = part < 1 ? AWAITED[made] : undefined; // what is made before the picture may be ready
+    const percent = Math.min(Math.floor(100 * way.done), 99);
+    const line = [percent > 0 ? `${percent} %` : "", awaited].filter(Boolean).join(", ");
+    progress.textContent = line + (others > 0 ? ` · with ${others} other ${others === 1 ? "picture" : "pictures"} under way` : "");
     timer = setTimeout(() => ask(mine), ASK_EVERY);
   }
 
+  function stop() {
+    number++;
+    clearTimeout(timer);
+    progress.textContent = "";
+  }
+
   function show(frame) {
-    const name = frame.error ? "failed" : STAGES[frame.stage];
-    if (name !== stage.dataset.stage || frame.stage === "settled") {
-      number++;
-      clearTimeout(timer);
-      progress.textContent = "";
-      if ((name === "refining" || name === "moving") && channel.progress) timer = setTimeout(ask, ASK_AFTER, number);
+    const name = frame.error ? "failed" : STAGES[frame.stage], isOver = !(frame.stage in ENDS) && frame.stage !== "settled";
+    if (isOver || frame.state !== state) stop();
+    if (!isOver && frame.state !== state) {
+      way = new Way();
+      if (channel.progress) timer = setTimeout(ask, ASK_AFTER, number);
     }
+    state = isOver ? null : frame.state;
+    way.begin(frame.stage);
     stage.textContent = name;
     stage.dataset.stage = name;
     if (frame.error || !(frame.bytes > 0)) return;

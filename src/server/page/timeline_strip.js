@@ -4,6 +4,7 @@ import { button, make } from "./controls.js";
 import { followDrag } from "./drag.js";
 import { CAMERA, trackName, withMovedKey, withoutKey } from "./timeline.js";
 
+// People count the frames from 1 to the last one; in keys, as in commands, the first frame is 0.
 // get() returns { tracks, frames, frame, fps }; setTracks(tracks) takes changed tracks; show(frame) goes to a
 // frame; play() begins or ends playing; canShow: whether frames can be shown at all. Returns { element,
 // update }.
@@ -44,8 +45,8 @@ export function timelineStrip({ get, setTracks, show, play, canShow }) {
 
   const keyMark = (path, [frame, value]) => {
     const mark = button("", () => show(frame), {
-      class: "key", "data-path": path, "data-frame": frame, title: path === CAMERA ? `frame ${frame}` : `frame ${frame}: ${value}`,
-      "aria-label": `Key of ${trackName(path)} at frame ${frame}. Arrow keys move it, Delete removes it.`,
+      class: "key", "data-path": path, "data-frame": frame, title: path === CAMERA ? `frame ${frame + 1}` : `frame ${frame + 1}: ${value}`,
+      "aria-label": `Key of ${trackName(path)} at frame ${frame + 1}. Arrow keys move it, Delete removes it.`,
       onpointerdown: (event) => drag(event, path, frame), onkeydown: (event) => onKey(event, path, frame),
     });
     mark.style.left = left(frame);
@@ -58,7 +59,8 @@ export function timelineStrip({ get, setTracks, show, play, canShow }) {
     slider.max = frames - 1;
     slider.value = frame;
     slider.style.setProperty("--filled", left(frame));
-    told.textContent = `${frame} of ${frames} · ${(frame / fps).toFixed(2)} s`;
+    told.textContent = `${frame + 1} of ${frames} · ${(frame / fps).toFixed(2)} s`;
+    slider.setAttribute("aria-valuetext", `frame ${frame + 1} of ${frames}`);
     player.textContent = playing ? "stop playing" : "play";
     if (drawn?.tracks === tracks && drawn.frames === frames) return;
     drawn = { tracks, frames };

@@ -250,7 +250,7 @@ export function mount(element, channel, whole, { keyboard = element, reopen = ()
   const status = statusLine(find, channel);
   const frames = new Frames(viewer, find("picture"), (frame) => {
     // A picture is not final as long as finer voxels are still to come.
-    status.show(frame.stage === "final" && whole.refining ? { ...frame, stage: "settled" } : frame);
+    status.show(frame.stage === "final" && whole.refining ? { ...frame, stage: "coarse" } : frame);
     if (frame.error) viewer.failed(frame.error);
     if (frame.stage === "final") {
       viewer.probe.rest();

@@ -1,0 +1,82 @@
+#!/usr/bin/env python3
+"""What the page says, in a headless Chromium or Firefox: the progress of a picture never falls, and counts reach their end.
+
+usage: said.py PROGRAM chromium|firefox-esr
+"""
+import json
+import os
+import subprocess
+import sys
+import tempfile
+
+import checks
+from checks import check
+from firefox import browser_named
+from hands import PROGRAM, open_section, rest
+from viewer import Viewer, need_viewer
+
+# A line of its own, whose channel gives one answer after the other; the last one stays.
+LINE = """(async () => {
+  const { statusLine } = await import('./status.js'), place = document.createElement('div');
+  place.innerHTML = '<span id="stage"></span><span id="progress"></span><span id="statistics"></span>';
+  const find = (id) => place.querySelector('#' + id);
+  const line = statusLine(find, { progress: async () => { const answer = window.answers[0]; window.asked++; return answer; } });
+  const show = (stage, state) => line.show({ stage, state, bytes: 0 });
+  Object.assign(window, { answers: [], asked: 0, tells: show, told: () => find('progress').textContent });
+})()"""
+
+
+def told(browser, part, stage="picture"):
+    """What the line says when the picture's progress is this."""
+    browser.run(f"window.answers = [{json.dumps({'part': part, 'stage': stage, 'others': 0})}]; window.before = asked; 0")
+    browser.wait("asked >= before + 2")  # the first one may have been under way
+    return browser.run("told()")
+
+
+def percent(text):
+    return int(text.split(" %")[0]) if "%" in text else 0
+
+
+def progress_rises(browser):
+    """Of all pictures on the way to the final one of a state, and of what is made before each, the line tells one part, which rises."""
+    browser.run(LINE)
+    lines = []
+    for picture, ways in (("moving", [(0.1, "picture"), (0.9, "picture"), (0.2, "picture")]), ("settling", [(0, "picture"), (0.81, "picture")]),
+                          ("refining", [(0, "picture"), (0.5, "labels"), (0.97, "labels"), (0.3, "sky"), (0, "picture"), (0.56, "picture"), (1, "picture")])):
+        browser.run(f"tells('{picture}', 1)")
+        lines += [told(browser, *way) for way in ways]
+    parts = [percent(line) for line in lines]
+    check(parts == sorted(parts) and parts[0] > 0 and parts[-1] == 99, f"the part rises up to the picture: {lines}")
+    check(len(set(parts)) > 7, f"each picture and each thing takes a part of the way: {lines}")
+    check([line for line in lines if "smoothing labels" in line] == lines[6:8] and "light of the sky" in lines[8], f"and what is made is said: {lines}")
+    browser.run("tells('final', 1)")
+    check(browser.run("told()") == "", "no progress of a picture that is there")
+    browser.run("tells('moving', 2)")
+    check(0 < percent(told(browser, 0.5)) < parts[-1], "another state begins anew")
+    browser.run("tells('failed', 2)")
+
+
+def frames_are_counted(browser):
+    """The last frame of a film is as many as the film has."""
+    open_section(browser, "Film")
+    browser.run("(() => { const n = document.querySelector('[aria-label=\"Frames of the film\"]'); n.value = 8; n.dispatchEvent(new Event('change')); })()")
+    count = "document.querySelector('.time').textContent.split(' · ')[0]"
+    browser.run("(() => { const s = document.querySelector('[aria-label=Frame]'); s.value = 0; s.dispatchEvent(new Event('input')); })()")
+    browser.wait(f"{count} === '1 of 8'")
+    browser.run("(() => { const s = document.querySelector('[aria-label=Frame]'); s.value = s.max; s.dispatchEvent(new Event('input')); })()")
+    browser.wait(f"{count} === '8 of 8'")
+    check(browser.run("document.querySelector('[aria-label=Frame]').getAttribute('aria-valuetext')") == "frame 8 of 8", "the slider says it, too")
+
+
+chosen = browser_named(sys.argv[2])
+with tempfile.TemporaryDirectory() as folder:
+    os.chdir(folder)
+    need_viewer(PROGRAM)
+    subprocess.run([PROGRAM, "make", "rings", "--size", "32", "--quiet", "-o", "rings.nrrd"], check=True)
+    with Viewer(PROGRAM, "rings.nrrd", "--sheet-spacing", "2") as viewer, chosen(size=(900, 620)) as page:
+        page.open(viewer.url)
+        rest(page)
+        progress_rises(page)
+        frames_are_counted(page)
+        check(page.problems == [], f"the console has errors: {page.problems}")
+print(f"{checks.count} checks passed")
