@@ -15,22 +15,14 @@ import tempfile
 import zipfile
 
 import checks
+import seen
 from browser import Browser
 from checks import check
-from hands import PROGRAM, center, rest, scene_of
+from hands import PROGRAM, center, press, rest, scene_of
 from viewer import Viewer, need_viewer
 
 SIZES = ((390, 844), (820, 1180), (1280, 720), (1920, 1080))
 OPEN_ALL = """document.querySelectorAll('details').forEach((d) => { d.open = true; })"""
-LEAST_CONTRAST = 3  # WCAG 2.2, 1.4.11, of what makes out a control
-
-# The contrast of two colours, WCAG 2.2; a colour is what a canvas makes of it over what is behind it.
-CONTRAST = """
-const rgb = (color) => { const c = new OffscreenCanvas(1, 1).getContext('2d'); c.fillStyle = color; c.fillRect(0, 0, 1, 1); return [...c.getImageData(0, 0, 1, 1).data]; };
-const luminance = (color) => rgb(color).slice(0, 3).map((x) => x / 255).map((x) => (x <= 0.04045 ? x / 12.92 : ((x + 0.055) / 1.055) ** 2.4)).reduce((sum, x, n) => sum + x * [0.2126, 0.7152, 0.0722][n], 0);
-const contrast = (a, b) => { const [low, high] = [luminance(a), luminance(b)].sort((x, y) => x - y); return (high + 0.05) / (low + 0.05); };
-const behind = (element) => { for (let e = element.parentElement; e; e = e.parentElement) { const color = getComputedStyle(e).backgroundColor; if (rgb(color)[3] === 255) return color; } return 'white'; };
-"""
 
 
 def find_axe(folder):
@@ -51,22 +43,6 @@ def axe_finds_nothing(browser, axe, what):
       violations.map(({ id, help, nodes }) => [id, help, nodes.length, nodes.slice(0, 4).map(({ html, failureSummary }) => [html.slice(0, 160), failureSummary])])])""")
     check("color-contrast" in passed, f"{what}: axe-core has looked: {passed}")
     check(found == [], f"{what}: {json.dumps(found, indent=1)}")
-
-
-def edges_are_seen(browser, what):
-    """Edges of fields, buttons and choices, and tracks of sliders and switches, stand out from the panel."""
-    found = browser.run(f"""(() => {{ {CONTRAST}
-      const seen = (e) => e.getBoundingClientRect().width > 0 && !e.disabled, named = (e, c) => [e.tagName, e.type ?? '', e.getAttribute('aria-label') ?? e.id, c];
-      const all = (selector) => [...document.querySelectorAll(selector)].filter(seen);
-      const edged = all('aside :is(select, textarea, input:is([type=text], [type=search], [type=color])), aside .segments').map((e) => named(e, contrast(getComputedStyle(e).borderTopColor, behind(e))));
-      const tracks = all('aside input[type=range], aside .double').map((e) => named(e, contrast(getComputedStyle(e).getPropertyValue('--track').trim(), behind(e))));
-      const switches = all('aside input[role=switch]').map((e) => named(e, contrast(getComputedStyle(e).backgroundColor, behind(e))));
-      const numbers = all('aside input[type=number]').map((e) => named(e, contrast(getComputedStyle(e).borderBottomColor, behind(e))));
-      return {{ edged, tracks, switches, numbers }}; }})()""")
-    for kind, controls in found.items():
-        check(len(controls) > 0, f"{what}: there are {kind}")
-        low = [control for control in controls if control[3] < LEAST_CONTRAST]
-        check(low == [], f"{what}: {kind} of a contrast below {LEAST_CONTRAST}: {low}")
 
 
 def nothing_is_cut(browser, what):
@@ -153,8 +129,9 @@ with tempfile.TemporaryDirectory() as folder:
                     browser.screenshot(f"{pictures}/{theme}-{size[0]}.png")
                 status_fits(browser, size)
             browser.run(OPEN_ALL)
+            press(browser, "key of the camera now")
             rest(browser)
-            edges_are_seen(browser, theme)
+            seen.edges_are_seen(browser, theme)
             if axe is not None:
                 axe_finds_nothing(browser, axe, theme)
                 browser.run("document.getElementById('help').showModal()")

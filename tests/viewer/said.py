@@ -1,5 +1,6 @@
 #!/usr/bin/env python3
-"""What the page says, in a headless Chromium or Firefox: the progress of a picture never falls, and counts reach their end.
+"""What the page says and shows of itself, in a headless Chromium or Firefox: the progress of a picture never falls, counts reach their end, and edges of
+controls are seen.
 
 usage: said.py PROGRAM chromium|firefox-esr
 """
@@ -13,6 +14,7 @@ import checks
 from checks import check
 from firefox import browser_named
 from hands import PROGRAM, open_section, rest
+from seen import edges_are_seen
 from viewer import Viewer, need_viewer
 
 # A line of its own, whose channel gives one answer after the other; the last one stays.
@@ -78,5 +80,10 @@ with tempfile.TemporaryDirectory() as folder:
         rest(page)
         progress_rises(page)
         frames_are_counted(page)
+        page.run("document.querySelectorAll('details').forEach((d) => { d.open = true; }); [...document.querySelectorAll('button')].find((b) => b.textContent === 'key of the camera now').click()")
+        rest(page)
+        for theme in ("dark", "light"):
+            page.run(f"(() => {{ if (document.querySelector('.viewer').dataset.theme !== '{theme}') document.getElementById('theme').click(); }})()")
+            edges_are_seen(page, theme)
         check(page.problems == [], f"the console has errors: {page.problems}")
 print(f"{checks.count} checks passed")
