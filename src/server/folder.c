@@ -69,6 +69,8 @@ static bool folder_resolve(const server *s, const char *inside, char path[PATH_B
 bool folder_find(const server *s, const char *inside, char path[PATH_BYTES], server_file *file) {
   size_t length = strlen(s->options.folder);
   *file = (server_file){.name = "."};
+  if (strncmp(inside, s->options.folder, length) == 0 && (length == 1 || inside[length] == '/'))
+    inside += length == 1 ? 1 : length + 1; /* an absolute name */
   if (inside[0] == '\0' || !folder_resolve(s, inside, path)) return false;
   const char *below = path + (length == 1 ? 1 : length + (path[length] == '/'));
   if (is_folder(path)) {

@@ -372,6 +372,7 @@ static void post_open(server *s, struct MHD_Connection *connection, server_answe
   server_file file;
   if (name != NULL && s->below != NULL && folder_find(s, name, path, &file)) {
     const char *slash = strrchr(name, '/');
+    file.series = query_text(connection, "series");
     answer_open(s, &file, slash != NULL ? slash + 1 : name, answer);
     hl_context_destroy(file.confined);
   } else {

@@ -19,7 +19,8 @@
  *   it had opened
  * - GET TOKEN/folder.json?at=: the files and folders that can be opened in a folder, at or below the folder
  *   in which the viewer was started
- * - POST TOKEN/open?file=PATH: opens a file there; upload?name=NAME: opens the file in the body. The answer
+ * - POST TOKEN/open?file=PATH&series=NAME: opens a file there, and of a folder with several DICOM series one;
+ *   PATH may be absolute; upload?name=NAME: opens the file in the body. The answer
  *   is the start.json of the file. Its number, as &opened=N, says to which volumes a scene refers
  * - POST TOKEN/join?opened=N&with=M&title=TITLE: a scene file's text in, with the volumes of N; out
  *   comes the start.json of this scene together with the scene M, which is closed
@@ -44,6 +45,8 @@ typedef struct server_file {
   const char *name;     /* the file's name in that folder; "." if the file is a folder */
   const char *folder;   /* the folder's absolute path, by which the scene names files; null if the file was
                          * dropped on the page; its scene can then be saved beside it */
+  const char *series;   /* the DICOM series that is read (hl_volume_selection.series); null stands for the
+                         * largest one */
 } server_file;
 
 typedef struct server_options {

@@ -88,6 +88,24 @@ static void put_absence(FILE *out, const hl_scene_volume *volume) {
   fprintf(out, ",\"absent_chunks\":[%zu,%zu]", absent, chunks + of_mask);
 }
 
+/* Writes the DICOM series of the input from which the volume was read; [] if it has no series. `choice` is
+ * the text by which a series is chosen. */
+static void put_series(FILE *out, const hl_volume *volume) {
+  hl_volume_series series = {.struct_size = sizeof series};
+  fputs(",\"series\":[", out);
+  for (size_t n = 0; hl_volume_get_series(volume, n, &series) == HL_OK; n++) {
+    fprintf(out, "%s{\"choice\":", n > 0 ? "," : "");
+    put_json_text(out, series.uid[0] != '\0' ? series.uid : series.description);
+    fputs(",\"modality\":", out);
+    put_json_text(out, series.modality);
+    fputs(",\"description\":", out);
+    put_json_text(out, series.description);
+    fprintf(out, ",\"dimensions\":[%zu,%zu,%zu],\"chosen\":%s}", series.dimensions[0], series.dimensions[1],
+            series.dimensions[2], series.chosen ? "true" : "false");
+  }
+  fputc(']', out);
+}
+
 /* Returns whether the volume's cuts are the automatic ones, which remove the table or another holder. */
 static bool has_chosen_cuts(hl_context *context, const hl_scene_volume *volume) {
   hl_scene *chosen = NULL;
@@ -127,6 +145,7 @@ static void put_volume(FILE *out, hl_context *context, const hl_scene_volume *vo
   put_histogram(out, &info);
   put_unsmoothed(out, volume->volume);
   put_absence(out, volume);
+  put_series(out, volume->volume);
   const char *space = hl_space_name(info.space);
   fputs(",\"space\":", out);
   if (space != NULL) put_json_text(out, space);

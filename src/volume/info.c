@@ -150,6 +150,17 @@ hl_volume_description hl_volume_own_grid(const hl_volume *volume) {
   return grid;
 }
 
+/* Copies an array for a volume. *copy: receives the copy, which hl_release() releases; it stays as it is if
+ * there is no array. */
+static hl_status copy_array(const hl_volume *volume, const void *array, size_t bytes, const char *subject,
+                            void **copy, hl_error *error) {
+  if (array == NULL || bytes == 0) return HL_OK;
+  *copy = hl_allocate(volume->context, bytes, 1);
+  if (*copy == NULL) return hl_fail_memory(error, bytes, subject);
+  memcpy(*copy, array, bytes);
+  return HL_OK;
+}
+
 hl_status hl_volume_take_about(hl_volume *volume, const hl_volume *from, hl_error *error) {
   volume->index_to_world = from->index_to_world;
   volume->unit = from->unit;
@@ -159,13 +170,17 @@ hl_status hl_volume_take_about(hl_volume *volume, const hl_volume *from, hl_erro
   memcpy(volume->window, from->window, sizeof volume->window);
   volume->selection = from->selection;
   volume->component = from->component;
-  if (from->channels == NULL) return HL_OK;
-  const size_t count = from->selection.channels;
-  volume->channels = hl_allocate(volume->context, count, sizeof *volume->channels);
-  if (volume->channels == NULL)
-    return hl_fail_memory(error, count * sizeof *volume->channels, "a volume's channels");
-  memcpy(volume->channels, from->channels, count * sizeof *volume->channels);
-  return HL_OK;
+  void *channels = NULL, *series = NULL;
+  hl_status status = copy_array(volume, from->channels, from->selection.channels * sizeof *volume->channels,
+                                "a volume's channels", &channels, error);
+  volume->channels = channels;
+  if (status != HL_OK) return status;
+  status = copy_array(volume, from->series, from->series_count * sizeof *volume->series, "a volume's series",
+                      &series, error);
+  volume->series = series;
+  volume->series_count = series != NULL ? from->series_count : 0;
+  volume->chosen_series = from->chosen_series;
+  return status;
 }
 
 void hl_volume_world_box(const hl_volume_info *info, double low[3], double high[3]) {

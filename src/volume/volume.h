@@ -225,8 +225,8 @@ hl_whole hl_volume_whole(const hl_volume *volume, size_t i, size_t j, size_t k, 
 hl_volume_description hl_volume_own_grid(const hl_volume *volume);
 
 /* Copies properties that a description does not hold to a volume on the grid of another volume: the exact
- * place of the voxels, and the facts that the file states about the voxels and the channels. Arrays and
- * segments are not copied. Fails only for lack of memory. */
+ * place of the voxels, and the facts that the file states about the voxels, the channels and the series.
+ * Arrays and segments are not copied. Fails only for lack of memory. */
 hl_status hl_volume_take_about(hl_volume *volume, const hl_volume *from, hl_error *error);
 
 /* Makes a volume of packed voxels that are already in stored form (hl_voxels_store()), in a block of

@@ -17,7 +17,8 @@ def dicom_slice(place=0, more=()):
     """A slice of 8 x 8 voxels at a height; more: (tag, kind, value) of other elements."""
     elements = [(0x00080060, "CS", b"CT"), (0x0020000e, "UI", b"1.2.3"), (0x00200032, "DS", b"0\\0\\%d" % place),
                 (0x00200037, "DS", b"1\\0\\0\\0\\1\\0"), (0x00280004, "CS", b"MONOCHROME2"), (0x00280030, "DS", b"1\\1"),
-                (0x7fe00010, "OW", bytes((n * (1 + place)) % 256 for n in range(64))), *more]
+                (0x7fe00010, "OW", bytes((n * (1 + place)) % 256 for n in range(64)))]
+    elements = [one for one in elements if one[0] not in {tag for tag, *_ in more}] + list(more)
     elements += [(tag, "US", struct.pack("<H", number)) for tag, number in
                  ((0x00280002, 1), (0x00280010, 8), (0x00280011, 8), (0x00280100, 8), (0x00280101, 8), (0x00280102, 7), (0x00280103, 0))]
     return dicom(*(element(*one) for one in sorted(elements)))

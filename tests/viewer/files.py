@@ -23,6 +23,7 @@ from PIL import Image
 import checks
 from browser import Browser
 from checks import check
+from dicom_files import dicom_slice
 from hands import PROGRAM, center, changes, equals_render, final_picture, open_section, press, press_named, rest, scene_of, set_control
 from viewer import Viewer, need_viewer
 
@@ -67,7 +68,26 @@ def folders_are_volumes(viewer):
     check(status == 200 and start["title"] == "slices" and start["volumes"][0]["dimensions"] == [6, 5, 4], "a folder of slices is a volume")
     check(start["scene"]["volumes"][0]["file"] == os.path.realpath("slices"), "and has its whole path")
     for folder in ("none", "linked"):
-        check(request(viewer, "POST", "open", file=folder)[0] in (400, 403), f"the folder {folder} is no volume")
+        status, line = request(viewer, "POST", "open", file=folder)
+        check(status == 400 and line.decode().startswith(f"{folder}: "), f"the folder {folder} is no volume, and is named: {line}")
+    for folder in ("slices", "linked", "none"):
+        shutil.rmtree(folder)
+
+
+def series_of_a_folder(viewer):
+    """Of several DICOM series in a folder the largest is open at first, the others are told, and each can be opened, by an absolute name, too."""
+    os.mkdir("scans")
+    for n in range(9):
+        with open(f"scans/IM{n}", "wb") as file:
+            file.write(dicom_slice(n, [(0x0020000e, "UI", b"1.2.%d" % (3 + n % 3 // 2))]))
+    start = json.loads(request(viewer, "POST", "open", file="scans")[1])
+    told = [(one["choice"], one["modality"], one["dimensions"], one["chosen"]) for one in start["volumes"][0]["series"]]
+    check(sorted(told) == [("1.2.3", "CT", [8, 8, 6], True), ("1.2.4", "CT", [8, 8, 3], False)], f"two series: {told}")
+    other = json.loads(request(viewer, "POST", "open", file=os.path.realpath("scans"), series="1.2.4")[1])
+    check(other["volumes"][0]["dimensions"] == [8, 8, 3] and other["scene"]["volumes"][0]["series"] == "1.2.4", "the other one, which its scene names")
+    status, line = request(viewer, "POST", "open", file="scans", series="1.2.5")
+    check(status == 400 and line.decode().startswith("scans: "), f"no such series: {line}")
+    shutil.rmtree("scans")
 
 
 def damaged(viewer, volume):
@@ -434,6 +454,7 @@ with tempfile.TemporaryDirectory() as folder:
         films(viewer, start["scene"])
         fair_shares(viewer, start["scene"])
         folders_are_volumes(viewer)
+        series_of_a_folder(viewer)
         joined(viewer, start["scene"])
         uploads_are_checked(viewer)
     if chromium is not None:

@@ -12,8 +12,9 @@ import tempfile
 
 import checks
 from checks import check
+from dicom_files import dicom_slice
 from firefox import browser_named
-from hands import PROGRAM, open_section, rest
+from hands import PROGRAM, open_section, resize, rest, set_control
 from seen import edges_are_seen
 from viewer import Viewer, need_viewer
 
@@ -70,11 +71,59 @@ def frames_are_counted(browser):
     check(browser.run("document.querySelector('[aria-label=Frame]').getAttribute('aria-valuetext')") == "frame 8 of 8", "the slider says it, too")
 
 
+def press_in_list(browser, text):
+    browser.wait(f"[...document.querySelectorAll('.files button')].some((b) => b.textContent === {json.dumps(text)})")
+    browser.run(f"[...document.querySelectorAll('.files button')].find((b) => b.textContent === {json.dumps(text)}).scrollIntoView({{ block: 'center' }})")
+    browser.click(browser.run(f"""(() => {{ const b = [...document.querySelectorAll('.files button')].find((x) => x.textContent === {json.dumps(text)}).getBoundingClientRect();
+      return [b.x + b.width / 2, b.y + b.height / 2]; }})()"""))
+
+
+def series_of_a_folder(browser):
+    """A folder of DICOM files without endings is opened from the list. Of its two series the page says which it shows, and opens the other one."""
+    open_section(browser, "Open")
+    press_in_list(browser, "patient ›")
+    press_in_list(browser, "scans ›")
+    browser.wait("document.querySelector('[aria-label=\"Files and folders\"]').textContent.includes('the folder may hold DICOM')")
+    press_in_list(browser, "open as one volume")
+    browser.wait("halflight.start.title === 'scans'")
+    check("is shown, one of 2 series" in browser.run("document.getElementById('message').textContent"), "the message says that there are two")
+    rest(browser)
+    open_section(browser, "Open")
+    browser.wait("[...document.querySelectorAll('.files button')].some((b) => b.textContent === 'scans ›')")  # the list is of the folder where it lies
+    set_control(browser, "Series", "1.2.4", "change")
+    browser.wait("halflight.store.scene.volumes[0].series === '1.2.4'")
+    rest(browser)
+    check(browser.run("halflight.start.volumes[0].dimensions") == [8, 8, 3], "the other series is open")
+    browser.run("window.old = true")
+    browser.reload()
+    browser.wait("!window.old && globalThis.halflight !== undefined")
+    rest(browser)
+    check(browser.run("halflight.store.scene.volumes[0].series") == "1.2.4", "and is so after a reload")
+
+
+def fits_a_phone(browser):
+    """Nothing is cut at 390 pixels, whatever is unfolded, and whatever is touched has 24 pixels."""
+    resize(browser, 390, 844)
+    browser.run("document.querySelectorAll('details').forEach((d) => { d.open = true; })")
+    rest(browser)
+    cut = browser.run("""[...document.querySelectorAll('.viewer :is(button, input, select, canvas, output, summary)')].filter((e) => {
+      const { left, right, width } = e.getBoundingClientRect();
+      return width > 0 && (left < 0 || right > innerWidth || (e.matches('button') && e.scrollWidth > e.clientWidth + 1)); }).map((e) => e.outerHTML.slice(0, 120))""")
+    check(cut == [] and browser.run("document.documentElement.scrollWidth") == 390, f"cut: {cut}")
+    small = browser.run("""[...document.querySelectorAll('.viewer :is(button, input:not([type=radio]), select, summary, .segments label)')].filter((e) => {
+      const { width, height } = e.getBoundingClientRect(); return width > 0 && (width < 24 || height < 24); }).map((e) => e.outerHTML.slice(0, 120))""")
+    check(small == [], f"smaller than 24 pixels: {small}")
+
+
 chosen = browser_named(sys.argv[2])
 with tempfile.TemporaryDirectory() as folder:
     os.chdir(folder)
     need_viewer(PROGRAM)
     subprocess.run([PROGRAM, "make", "rings", "--size", "32", "--quiet", "-o", "rings.nrrd"], check=True)
+    os.makedirs("patient/scans")
+    for n in range(9):
+        with open(f"patient/scans/IM{n}", "wb") as file:
+            file.write(dicom_slice(n, [(0x0020000e, "UI", b"1.2.%d" % (3 + n % 3 // 2)), (0x0008103e, "LO", b"Scan %d" % (n % 3 // 2))]))
     with Viewer(PROGRAM, "rings.nrrd", "--sheet-spacing", "2") as viewer, chosen(size=(900, 620)) as page:
         page.open(viewer.url)
         rest(page)
@@ -85,5 +134,8 @@ with tempfile.TemporaryDirectory() as folder:
         for theme in ("dark", "light"):
             page.run(f"(() => {{ if (document.querySelector('.viewer').dataset.theme !== '{theme}') document.getElementById('theme').click(); }})()")
             edges_are_seen(page, theme)
+        fits_a_phone(page)
+        resize(page, 900, 620)
+        series_of_a_folder(page)
         check(page.problems == [], f"the console has errors: {page.problems}")
 print(f"{checks.count} checks passed")

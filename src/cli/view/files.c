@@ -95,6 +95,7 @@ static hl_status for_volume(hl_context *context, const server_file *file, const 
   hl_volume_load_options options;
   hl_volume_load_options_defaults(&options);
   options.pixels = input_picture_side();
+  options.series = file->series;
   if (file->folder != NULL) options.preview_pixels = VIEW_PREVIEW_PIXELS;
   hl_status status = hl_volume_load_with(file->confined, file->name, &options, &volume, error);
   if (status == HL_OK) status = hl_scene_for_volume(context, volume, path, scene, error);
@@ -113,6 +114,17 @@ static hl_status for_mesh(hl_context *context, const server_file *file, const ch
   return status;
 }
 
+/* If an error names the folder that was opened as ".", replaces this by the folder's own name. */
+static void name_folder(const server_file *file, hl_error *error) {
+  const char *slash = file->folder != NULL ? strrchr(file->folder, '/') : NULL;
+  char rest[sizeof error->message];
+  if (slash == NULL || strcmp(file->name, ".") != 0 || error->message[0] != '.' ||
+      strchr(":/", error->message[1]) == NULL)
+    return;
+  snprintf(rest, sizeof rest, "%s", error->message + 1);
+  snprintf(error->message, sizeof error->message, "%.300s%.600s", slash + 1, rest);
+}
+
 hl_status view_open_file(void *user_data, const server_file *file, hl_scene **scene, hl_error *error) {
   hl_context *context = user_data;
   if (has_extension(file->name, ".json")) {
@@ -128,6 +140,7 @@ hl_status view_open_file(void *user_data, const server_file *file, hl_scene **sc
   *scene = NULL;
   hl_status status = is_mesh_file(file->confined, file->name) ? for_mesh(context, file, path, scene, error)
                                                               : for_volume(context, file, path, scene, error);
+  if (status != HL_OK) name_folder(file, error);
   free(path);
   return status;
 }

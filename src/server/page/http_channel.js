@@ -157,11 +157,11 @@ export class HttpChannel {
     return (await this.#ask("folder.json", { at }, {})).json();
   }
 
-  // Opens a file of the folder, or one that the browser has: what is open then, for a channel of its own. source: a path; "" is what
-  // the viewer began with; of several in a list, the others are added to the first one.
+  // Opens a file of the folder, or one that the browser has: what is open then, for a channel of its own. source: a path, or { file, series },
+  // a path and one of the DICOM series in it; "" is what the viewer began with; of several in a list, the others are added to the first one.
   async open(source) {
     const [first, ...others] = [source].flat();
-    let start = first === "" ? await this.start() : await (await this.#ask("open", { file: first })).json();
+    let start = first === "" ? await this.start() : await (await this.#ask("open", typeof first === "string" ? { file: first } : first)).json();
     for (const file of others) {
       const channel = new HttpChannel(start.opened);
       start = await channel.add(start.scene, await this.open(file), start.title);

@@ -28,6 +28,12 @@ export function openPanel(viewer) {
   const choose = button("choose files …", () => chooser.click(), { hidden: !viewer.choose });
   if (viewer.choose) where.textContent = "or drop files anywhere on the page";
 
+  // The folder of the file that is open, below the viewer's; "": the viewer's own.
+  function folderOf(source) {
+    const path = [source].flat().at(-1);
+    return typeof path === "string" && path.includes("/") ? path.slice(0, path.lastIndexOf("/")) : "";
+  }
+
   async function show(at) {
     try {
       const folder = await channel.folder(at), up = at.includes("/") ? at.slice(0, at.lastIndexOf("/")) : "";
@@ -39,7 +45,7 @@ export function openPanel(viewer) {
         ...folder.entries.map((entry) => make("li", {}, entry.folder && !entry.name.endsWith(".zarr")
           ? button(`${entry.name} ›`, () => show(inside(entry.name)), { class: "file" })
           : opener(inside(entry.name), entry.name, entry.name, entry.folder ? {} : { title: size(entry.bytes) }))));
-      if (folder.entries.length === 0) list.append(make("li", {}, "nothing here that can be opened"));
+      if (folder.entries.length === 0) list.append(make("li", {}, at ? "No file here has an ending that tells what it is. As one volume the folder may hold DICOM." : "nothing here that can be opened"));
     } catch (error) {
       report(error.message);
     }
@@ -70,6 +76,8 @@ export function openPanel(viewer) {
     return null;
   }
 
+  // Opens another DICOM series of a file, in place of the one that is open.
+  viewer.openSeries = (file, series) => load(() => channel.open({ file, series }), file.split("/").pop(), { file, series }, false);
   viewer.upload = (file, added = adds) => load(() => channel.upload(file), file.name, null, added);
   // Where there are several files, the others are added to the first one.
   async function drop([first, ...others]) {
@@ -83,7 +91,7 @@ export function openPanel(viewer) {
       event.preventDefault();
       drop([...event.dataTransfer.files]);
     });
-    element.addEventListener("toggle", () => { if (element.open && list.childElementCount === 0) show(""); });
+    element.addEventListener("toggle", () => { if (element.open && list.childElementCount === 0) show(folderOf(store.source)); });
   }
   body.append(add.element, choose, chooser, where, bar, list);
   viewer.adds = () => adds;

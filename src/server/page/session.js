@@ -13,8 +13,8 @@ const KEEP_AFTER = 300; // milliseconds without a change
 export const sessionOf = (store, { title: whole }, source) =>
   ({ halflight_session: VERSION, title: store.title, whole, source, own: store.source, scene: store.scene, marks: store.marks, page: store.page });
 
-// A path, or a list of paths that are opened together.
-const isSource = (source) => [source].flat().every((path) => typeof path === "string");
+// A path, a path with one of its series, or a list of these that are opened together.
+const isSource = (source) => [source].flat().every((one) => typeof one === "string" || (typeof one?.file === "string" && typeof one.series === "string"));
 
 // A session; the parts on which the page relies are checked. Null: the object is no session.
 export function readSession(object) {

@@ -24,6 +24,7 @@ import { Overlay } from "./overlay.js";
 import { Pointer } from "./pointer.js";
 import { Probe } from "./probe.js";
 import { followRefinement } from "./refinement.js";
+import { seriesOf } from "./series.js";
 import { isOfSameFiles, startOf } from "./session.js";
 import { helpSheet, installShortcuts } from "./shortcuts.js";
 import { sessionPanel } from "./session_panel.js";
@@ -275,6 +276,8 @@ export function mount(element, channel, whole, { keyboard = element, reopen = ()
       panels.forEach((panel) => panel.rebuild?.());
     },
   });
+  const series = start.volumes.map((volume) => volume && seriesOf(volume)).filter(Boolean).join("; ");
+  if (kept === null && series !== "") report(`${series}. The panel “Volume” tells them.`, WARNING_TIME);
   if (kept === null && !matchMedia("(prefers-reduced-motion: reduce)").matches) frames.animate(sweptLight, SWEEP_TIME);
   else frames.move();
   return { store, start: whole, frames, overlay: viewer.overlay, probe: viewer.probe, slices: viewer.slices, marking: viewer.marking, report, adds: viewer.adds, upload: viewer.upload, followLink: viewer.followLink, end: () => { ended.abort(); frames.end(); status.end(); connection.end(); endRefinement(); } };

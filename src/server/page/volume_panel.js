@@ -4,6 +4,7 @@ import { worldBox } from "./boxes.js";
 import { hexOf, linearOf } from "./color.js";
 import { button, color, keyButton, make, row, section, segments, select, shortNumber, slider, toggle } from "./controls.js";
 import { absenceOf } from "./refinement.js";
+import { seriesOf, seriesRow } from "./series.js";
 import { symbolOf } from "./units.js";
 import { length } from "./vector.js";
 
@@ -41,8 +42,8 @@ export function volumeChooser({ store, current, chooseVolume }) {
   return { element: make("div", { class: "chooser", hidden: store.scene.volumes.length < 2 }, element), update, rebuild: update };
 }
 
-export function volumePanel({ store, start, current, overlay, channel, report }) {
-  const { element, body } = section("Volume", false);
+export function volumePanel(viewer) {
+  const { store, start, current, overlay, channel, report } = viewer, { element, body } = section("Volume", false);
   const volume = () => store.scene.volumes[current.volume];
   const change = (name, set) => store.changeVolume(current.volume, name, set);
   let parts = [];
@@ -106,9 +107,10 @@ export function volumePanel({ store, start, current, overlay, channel, report })
     const casts = toggle({ label: "Casts shadows", get: () => volume().casts_shadow !== false, set: (on) => change("casts", (v) => ({ ...v, casts_shadow: on })) });
     const material = materialSliders();
     const unit = about.unit ? ` ${symbolOf(about.unit)}` : "", edges = about.axes.map((axis) => shortNumber(length(axis))).join(" × ");
-    const facts = make("p", { class: "facts" }, `${about.dimensions.join(" × ")} voxels of ${edges}${unit}, ${about.type}, values ${about.range.map(shortNumber).join(" to ")}${absenceOf(about) ? `; ${absenceOf(about)}` : ""}`);
+    const series = seriesRow(viewer, about, volume().file);
+    const facts = make("p", { class: "facts" }, `${about.dimensions.join(" × ")} voxels of ${edges}${unit}, ${about.type}, values ${about.range.map(shortNumber).join(" to ")}${absenceOf(about) ? `; ${absenceOf(about)}` : ""}${seriesOf(about) ? `; ${seriesOf(about)}` : ""}`);
     parts = [...rows, labelled, shading, ...scattering, visible, casts, ...material];
-    body.replaceChildren(facts, ...rows.map((r) => r.element), reset, labelled.element, shading.element,
+    body.replaceChildren(facts, ...series, ...rows.map((r) => r.element), reset, labelled.element, shading.element,
       ...[...material, ...scattering, visible, casts].map((part) => part.element));
     update();
   }
