@@ -338,6 +338,8 @@ def undone_and_redone(browser):
     browser.run("document.getElementById('undo').click()")
     rest(browser)
     open_section(browser, "Open")
+    browser.wait("[...document.querySelectorAll('.files button')].some((b) => b.textContent === '‹ back')")  # the list began where the mesh lies
+    press(browser, "‹ back")
     browser.wait("[...document.querySelectorAll('.files button')].some((b) => b.textContent === 'second.nrrd')")
     set_control(browser, "Add to what is open", "", section="Open")
     press(browser, "second.nrrd")
