@@ -104,6 +104,7 @@ static void on_progress(void *user_data, const char *stage, double fraction) {
 
 static void on_log(void *user_data, hl_log_level level, const char *message) {
   cli_host *host = user_data;
+  if (level == HL_LOG_WARNING && host->warned != NULL) host->warned(message);
   if (host->quiet) return;
   host_clear_bar(host);
   if (level == HL_LOG_WARNING) warn("%s", message);
@@ -182,6 +183,7 @@ int host_open(const cli_host_options *options, cli_host *host) {
    * killed by the system. */
   host->memory_limit = options->memory_limit > 0 ? options->memory_limit : hl_machine_memory();
   host->progressed = options->progressed;
+  host->warned = options->warned;
   host->bar = options->progress && !options->quiet && terminal_can_redraw();
   host->color = color_wanted();
   snprintf(host->subject, sizeof host->subject, "%s", options->subject);

@@ -30,6 +30,7 @@ typedef struct cli_host {
                             * times a second at most */
   bool (*cancelled)(void); /* or null */
   void (*progressed)(const char *stage, double fraction); /* or null */
+  void (*warned)(const char *message);                    /* or null */
   uint64_t memory_limit;                                  /* bytes; 0 if it is unknown */
   int preview_pixels;    /* the value of hl_volume_load_options.preview_pixels for the volumes of the command
                           * line */
@@ -51,6 +52,8 @@ typedef struct cli_host_options {
                             * the thread that renders calls it; may be null */
   void (*progressed)(const char *stage, double fraction); /* receives the progress of a library call, on the
                                                            * thread that made the call; may be null */
+  void (*warned)(const char *message);                    /* receives the library's warnings, also if `quiet`
+                                                           * keeps them from being printed; may be null */
   const char *data_folder;                                /* the folder of "data:..." files; null stands for
                                                            * HALFLIGHT_DATA, or ../shared/data */
   char *const *operands; /* the command line's INPUTs, ended by null; the array must outlive the context.

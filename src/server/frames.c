@@ -25,15 +25,18 @@ static _Thread_local struct {
   const server_opened *opened; /* the open scene that this thread prepares; null if the thread prepares
                                 * none */
   bool opening;                /* whether a file is being opened */
+  server_answer *answer;       /* the answer that receives warnings; null if there is none */
 } current;
 
-void work_begin(server *s, int socket) {
+void work_begin(server *s, int socket, server_answer *answer) {
   current.server = s;
   current.socket = socket;
+  current.answer = answer;
 }
 
 void work_end(void) {
   current.server = NULL;
+  current.answer = NULL;
   current.opened = NULL;
 }
 
@@ -62,6 +65,13 @@ void server_progress(const char *stage, double fraction) {
     atomic_store(&current.page->stage, (int)stage_named(stage));
     atomic_store(&current.page->frame_part, (int)(1000 * fraction));
   }
+}
+
+void server_warned(const char *message) {
+  if (current.answer == NULL || strstr(current.answer->notes, message) != NULL) return;
+  char *notes = current.answer->notes;
+  size_t length = strlen(notes), room = sizeof current.answer->notes - length;
+  snprintf(notes + length, room, "%s%s", length > 0 ? "; " : "", message);
 }
 
 bool pages_begin(server *s) {

@@ -17,6 +17,7 @@ typedef struct server_module {
   void (*progress)(const char *stage, double fraction);                           /* server_progress() */
   bool (*is_outdated)(void);                                                      /* the module's function
                                                                                    * server_is_outdated() */
+  void (*warned)(const char *message);                                            /* server_warned() */
 } server_module;
 
 #endif

@@ -147,6 +147,8 @@ typedef struct server_answer {
   char *text;                 /* owned, hl_text_release(); or null */
   unsigned char *from_malloc; /* owned, free(); or null */
   char problem[1000];         /* an error line, if the answer has neither bytes nor a text */
+  char notes[1000]; /* the library's warnings about the answer, with "; " between them; "" if there are
+                     * none */
   double seconds_read, seconds_render, seconds_encode; /* the times, in seconds, for reading, rendering and
                                                         * encoding a frame; all 0 if the answer is no frame */
   double seconds_once; /* the part of these times that later frames do not need again: the time for preparing
@@ -206,8 +208,8 @@ typedef struct server_upload {
 bool pages_begin(server *s);
 void pages_end(server *s);
 /* Between work_begin() and work_end() this thread works for the client at the other end of the socket. Its
- * work is cancelled when the client has gone. */
-void work_begin(server *s, int socket);
+ * work is cancelled when the client has gone. The answer receives the library's warnings. */
+void work_begin(server *s, int socket, server_answer *answer);
 void work_end(void);
 /* Notes that this thread works for an open scene from now on. The work is cancelled when the page that opened
  * the scene was closed. */

@@ -50,6 +50,21 @@ static enum MHD_Result send_line(struct MHD_Connection *connection, unsigned sta
                        MHD_create_response_from_buffer(strlen(line), (void *)line, MHD_RESPMEM_MUST_COPY));
 }
 
+/* Adds a text as a header's value: letters, digits and a few other characters as they are, and the other
+ * bytes as %XX. */
+static bool add_encoded(struct MHD_Response *response, const char *name, const char *text) {
+  char encoded[3 * sizeof((server_answer *)0)->notes + 1], *end = encoded;
+  for (const unsigned char *c = (const unsigned char *)text; *c != '\0' && end < encoded + sizeof encoded - 4;
+       c++) {
+    const bool is_plain = (*c >= '0' && *c <= '9') || (*c >= 'A' && *c <= 'Z') || (*c >= 'a' && *c <= 'z') ||
+                          strchr("-_.,:;/ ", *c) != NULL;
+    if (is_plain) *end++ = (char)*c;
+    else end += sprintf(end, "%%%02X", *c);
+  }
+  *end = '\0';
+  return MHD_add_response_header(response, name, encoded) == MHD_YES;
+}
+
 static enum MHD_Result send_answer(server *s, struct MHD_Connection *connection, server_answer *answer) {
   const void *bytes = answer->borrowed;
   if (answer->bytes != NULL) bytes = answer->bytes;
@@ -75,6 +90,11 @@ static enum MHD_Result send_answer(server *s, struct MHD_Connection *connection,
       MHD_destroy_response(response);
       return MHD_NO;
     }
+  }
+  if (response != NULL && answer->notes[0] != '\0' &&
+      !add_encoded(response, "Halflight-Note", answer->notes)) {
+    MHD_destroy_response(response);
+    return MHD_NO;
   }
   return send_response(connection, answer->status, answer->type, response);
 }
@@ -434,7 +454,7 @@ static enum MHD_Result answer(server *s, struct MHD_Connection *connection, cons
     return send_answer(s, connection, &a);
   }
   MHD_set_connection_option(connection, MHD_CONNECTION_OPTION_TIMEOUT, 0u);
-  work_begin(s, connection_socket(connection));
+  work_begin(s, connection_socket(connection), &a);
   answer_post(s, connection, r, &a);
   work_end();
   MHD_set_connection_option(connection, MHD_CONNECTION_OPTION_TIMEOUT, (unsigned)IDLE_SECONDS);

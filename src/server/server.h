@@ -83,6 +83,10 @@ bool server_run(const server_options *options, char *problem, size_t problem_siz
  * thread opens, or of the current stage of the frame that it renders. */
 void server_progress(const char *stage, double fraction);
 
+/* A function for warnings of the context's `log` callback. The answer to the request for which this thread
+ * works tells the warning to the page, in the header Halflight-Note. */
+void server_warned(const char *message);
+
 /* A function for the context's `cancelled` callback. Returns whether nobody wants the frame that this thread
  * renders any more. */
 bool server_is_outdated(void);

@@ -78,6 +78,31 @@ def press_in_list(browser, text):
       return [b.x + b.width / 2, b.y + b.height / 2]; }})()"""))
 
 
+def warnings_are_told(browser):
+    """What the program says of a file that is opened, or of what it draws over a picture, is on the page: in passing, and beside the switch."""
+    open_section(browser, "Open")
+    press_in_list(browser, "bare.nrrd")
+    browser.wait("halflight.start.title === 'bare.nrrd'")
+    told = browser.run("document.getElementById('message').textContent")
+    check("bare.nrrd" in told and "little-endian is assumed" in told, f"of the file: {told}")
+    rest(browser)
+    note = "the legend finds no room in the picture and is left out"
+    browser.run("""(() => { const own = window.fetch; window.fetch = async (...all) => {
+      const answer = await own(...all);
+      return window.note && String(all[0]).startsWith('overlay') ? new Response(await answer.blob(), { headers: { 'Halflight-Note': encodeURIComponent(window.note) } }) : answer; }; })()""")
+    browser.run(f"window.note = {json.dumps(note)}; 0")
+    set_control(browser, "Legend", "")
+    said = "[...document.querySelectorAll('aside [role=status]')].filter((e) => !e.hidden && e.closest('details').firstElementChild.textContent === 'Save').map((e) => e.textContent)"
+    browser.wait(f"JSON.stringify({said}) === {json.dumps(json.dumps([note]))}")
+    check(browser.run("document.getElementById('message').textContent") == note, "and over the picture")
+    browser.run("window.note = ''; 0")
+    set_control(browser, "Axes", "arrows", "change")
+    browser.wait(f"{said}.length === 0")
+    set_control(browser, "Axes", "none", "change")
+    set_control(browser, "Legend", "")
+    rest(browser)
+
+
 def series_of_a_folder(browser):
     """A folder of DICOM files without endings is opened from the list. Of its two series the page says which it shows, and opens the other one."""
     open_section(browser, "Open")
@@ -120,6 +145,8 @@ with tempfile.TemporaryDirectory() as folder:
     os.chdir(folder)
     need_viewer(PROGRAM)
     subprocess.run([PROGRAM, "make", "rings", "--size", "32", "--quiet", "-o", "rings.nrrd"], check=True)
+    with open("bare.nrrd", "wb") as file:
+        file.write(b"NRRD0004\ntype: int16\ndimension: 3\nsizes: 8 8 8\nencoding: raw\n\n" + bytes(n % 251 for n in range(1024)))
     os.makedirs("patient/scans")
     for n in range(9):
         with open(f"patient/scans/IM{n}", "wb") as file:
@@ -136,6 +163,7 @@ with tempfile.TemporaryDirectory() as folder:
             edges_are_seen(page, theme)
         fits_a_phone(page)
         resize(page, 900, 620)
+        warnings_are_told(page)
         series_of_a_folder(page)
         check(page.problems == [], f"the console has errors: {page.problems}")
 print(f"{checks.count} checks passed")

@@ -132,6 +132,7 @@ static int run_view(const cli_value *values, char **inputs) {
                               .instruction_set = (hl_instruction_set)render[RENDER_INSTRUCTION_SET].choice,
                               .cancelled = module->is_outdated,
                               .progressed = module->progress,
+                              .warned = module->warned,
                               .keep_unsmoothed = true, /* for slices */
                               .operands = inputs};
   int exit_code = render[RENDER_TIME].chosen

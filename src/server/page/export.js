@@ -97,7 +97,7 @@ export function exportPanel(viewer) {
       const type = format === "exr" ? "exr" : "png";
       const frame = await channel.fetchFrame(scene, { format: type, depth: format === "png16" ? 16 : 8, metadata: !bare.checked, lane: "-save", finest: true, ...over() });
       if (frame !== null) download(frame.blob, `${name()}.${type}`);
-      report(frame === null ? "cancelled by another save" : `saved ${name()}.${type}`);
+      report(frame === null ? "cancelled by another save" : `saved ${name()}.${type}${frame.note ? `: ${frame.note}` : ""}`);
     } catch (error) {
       failed(error);
     }

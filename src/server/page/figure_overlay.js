@@ -6,9 +6,11 @@ import { isActive, make, row, select } from "./controls.js";
 import { isAnatomical } from "./sections.js";
 import { givenUnit, isUnitless } from "./units.js";
 
+const LONG = 15000; // milliseconds of a line over the picture that says what the program has left out
+
 // Returns { elements, update, over, saved }. elements: rows of a panel. over(): what is wanted over the picture and can be drawn,
 // { scaleBar, legend, axes, unit }. saved(): the same for a saved picture, with { marks }.
-export function figureOverlay({ store, start, channel, failed, find, atRest, frames }) {
+export function figureOverlay({ store, start, channel, failed, report, find, atRest, frames }) {
   const wanted = () => ({ scaleBar: false, legend: false, axes: "none", marks: true, ...(channel.overlay ? store.page.over : {}) });
   const want = (part) => store.setPage({ over: { ...wanted(), ...part } });
   const isVisible = (volume) => volume.visible !== false;
@@ -49,11 +51,18 @@ export function figureOverlay({ store, start, channel, failed, find, atRest, fra
     find("view").classList.toggle("with-figure", what !== "");
   }
 
+  // What the program says of the drawing, as that a legend finds no room: in the panel, and once over the picture.
+  function say(note) {
+    if (note !== "" && note !== said.textContent) report(note, LONG);
+    said.textContent = note;
+    said.hidden = note === "";
+  }
+
   async function draw() {
     const what = told();
     if (!channel.overlay || what === shown) return;
     try {
-      const blob = what === "" ? null : await channel.overlay(store.scene, over()), bitmap = blob && await createImageBitmap(blob);
+      const answer = what === "" ? null : await channel.overlay(store.scene, over()), bitmap = answer && await createImageBitmap(answer.blob);
       if (what !== told()) return; // another drawing has been asked for since
       if (bitmap) {
         [canvas.width, canvas.height] = [bitmap.width, bitmap.height];
@@ -61,6 +70,7 @@ export function figureOverlay({ store, start, channel, failed, find, atRest, fra
         bitmap.close();
       }
       show(bitmap ? what : "");
+      say(answer?.note ?? "");
     } catch (error) {
       failed(error);
     }
@@ -82,9 +92,10 @@ export function figureOverlay({ store, start, channel, failed, find, atRest, fra
   const unitRow = row(make("label", { for: "unit", title: "One unit of length of the volume's file" }, "Unit"), unit);
   const bar = box("Scale bar", "scale-bar", "scaleBar"), legend = box("Legend", "legend", "legend"), marks = box("Marks", "saved-marks", "marks");
   const axes = select({ label: "Axes", choices: kinds, get: () => over().axes, set: (name) => want({ axes: name }) });
+  const said = make("p", { class: "facts", role: "status", hidden: true });
   const unknown = make("p", { class: "facts", id: "no-unit" }, "The volume's file tells no unit of length. With one, a scale bar can be drawn.");
   bar.input.setAttribute("aria-describedby", "no-unit");
-  const elements = channel.overlay ? [unitRow, bar.element, unknown, legend.element, marks.element, axes.element] : [];
+  const elements = channel.overlay ? [unitRow, bar.element, unknown, legend.element, marks.element, axes.element, said] : [];
 
   function update() {
     const { scaleBar, legend: hasLegend, marks: hasMarks } = saved();

@@ -12,7 +12,8 @@
 // - depth(scene): how deep lies what the middle pixel of the scene's picture (at most 64 x 64 pixels) shows:
 //   { depth, opacity, object }. depth: the length along the ray from the eye, or orthographic from the plane through the
 //   camera's position, to where the opacity first reaches 0.01; null: nowhere. object: as in hl_layers. Null: cancelled.
-// - overlay(scene, over): what a figure has over the scene's picture (figure_overlay.js), as the blob of a transparent PNG.
+// - overlay(scene, over): what a figure has over the scene's picture (figure_overlay.js), { blob, note }: a transparent PNG, and what the program says
+//   of it, as that a part finds no room; "": nothing.
 // - progress(): how far the frame is that was asked for last, { part, stage, others }: part of the stage, from 0 to 1; stage: what is made,
 //   "labels" (they are smoothed) and "sky" (its light) before the picture, and "picture"; others: frames of other pages under way.
 
@@ -43,6 +44,15 @@ async function check(response) {
 // "render;dur=12.5, encode;dur=3" as { render: 12.5, encode: 3 }, in milliseconds.
 function parseTimes(header) {
   return Object.fromEntries((header ?? "").split(", ").map((part) => part.split(";dur=")).map(([k, v]) => [k, +v]));
+}
+
+// The program's warnings about an answer; "": there are none.
+function noteOf(response) {
+  try {
+    return decodeURIComponent(response.headers.get("Halflight-Note") ?? "");
+  } catch {
+    return ""; // it is cut in the middle of a letter
+  }
 }
 
 const numbered = (keys) => Object.fromEntries(keys.map((key, n) => [`key${n}`, key]));
@@ -133,7 +143,7 @@ export class HttpChannel {
     return (await this.#ask("scene", { opened: 0, ...choices }, { method: "POST", body: JSON.stringify(scene) })).json();
   }
 
-  // A picture of the scene: { blob, times }, or null where a newer frame of this page has cancelled it. `lane` sets
+  // A picture of the scene: { blob, times, note }, with the program's warnings in `note`, or null where a newer frame of this page has cancelled it. `lane` sets
   // frames apart that do not cancel each other; `moving` makes a quick picture, of coarser volumes where the sheets are wide; `finest`
   // waits until the finest resolutions that are to be read are there, and fails where they cannot be read.
   // scaleBar, legend, axes, marks (those of the scene): drawn over a PNG of 8 bits; a bar is refused where neither the scene's files nor `unit` tell a unit of length.
@@ -142,14 +152,14 @@ export class HttpChannel {
     const ask = (number, body, base) => this.#ask("frame", { ...query, number, ...(base === undefined ? {} : { base }) }, { method: "POST", body });
     const response = await (lane === "" ? this.#held.send(scene, moving, ask) : ask(++this.#number, JSON.stringify(scene)));
     if (response.status === 204) return null;
-    return { blob: await response.blob(), times: parseTimes(response.headers.get("Server-Timing")) };
+    return { blob: await response.blob(), times: parseTimes(response.headers.get("Server-Timing")), note: noteOf(response) };
   }
 
-  // What is drawn over the scene's picture, as a transparent PNG of its size; null: it was cancelled.
+  // What is drawn over the scene's picture: { blob, note }, a transparent PNG of its size; null: it was cancelled.
   async overlay(scene, over) {
     const query = { page: `${this.#page}-overlay`, number: ++this.#number, opened: 0, ...overlayQuery(over) };
     const response = await this.#ask("overlay", query, { method: "POST", body: JSON.stringify(scene) });
-    return response.status === 204 ? null : response.blob();
+    return response.status === 204 ? null : { blob: await response.blob(), note: noteOf(response) };
   }
 
   // What can be opened in a folder below the one that the viewer was started in: { at, entries }.
@@ -161,7 +171,7 @@ export class HttpChannel {
   // a path and one of the DICOM series in it; "" is what the viewer began with; of several in a list, the others are added to the first one.
   async open(source) {
     const [first, ...others] = [source].flat();
-    let start = first === "" ? await this.start() : await (await this.#ask("open", typeof first === "string" ? { file: first } : first)).json();
+    let start = first === "" ? await this.start() : await this.#opens(this.#ask("open", typeof first === "string" ? { file: first } : first));
     for (const file of others) {
       const channel = new HttpChannel(start.opened);
       start = await channel.add(start.scene, await this.open(file), start.title);
@@ -177,7 +187,13 @@ export class HttpChannel {
   }
 
   async upload(file) {
-    return (await this.#ask("upload", { name: file.name }, { method: "POST", body: file })).json();
+    return this.#opens(this.#ask("upload", { name: file.name }, { method: "POST", body: file }));
+  }
+
+  // What an answer opens, with the program's warnings as its `note`.
+  async #opens(asked) {
+    const response = await asked;
+    return { ...(await response.json()), note: noteOf(response) };
   }
 
   get opened() { return this.#opened; }

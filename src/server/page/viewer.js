@@ -277,7 +277,8 @@ export function mount(element, channel, whole, { keyboard = element, reopen = ()
     },
   });
   const series = start.volumes.map((volume) => volume && seriesOf(volume)).filter(Boolean).join("; ");
-  if (kept === null && series !== "") report(`${series}. The panel “Volume” tells them.`, WARNING_TIME);
+  const first = series !== "" ? `${series}. The panel “Volume” tells them.` : (whole.note ?? "").replace(/^\.(?=[:/])/, whole.title); // a folder that was opened is "."
+  if (kept === null && first !== "") report(first, WARNING_TIME);
   if (kept === null && !matchMedia("(prefers-reduced-motion: reduce)").matches) frames.animate(sweptLight, SWEEP_TIME);
   else frames.move();
   return { store, start: whole, frames, overlay: viewer.overlay, probe: viewer.probe, slices: viewer.slices, marking: viewer.marking, report, adds: viewer.adds, upload: viewer.upload, followLink: viewer.followLink, end: () => { ended.abort(); frames.end(); status.end(); connection.end(); endRefinement(); } };
