@@ -213,13 +213,16 @@ def keys_beside_sliders(browser):
     check(browser.run("[...document.querySelectorAll('.key-here')].every((b) => b.offsetParent === null)"), "unseen before")
     browser.run("document.querySelectorAll('details').forEach((d) => { d.open = ['Film', 'Lights', 'View', 'Volume'].includes(d.querySelector('summary').textContent); })")
     browser.wait("document.querySelector('.viewer').classList.contains('filming')")
-    set_control(browser, "Exposure", 1)
+    check("clip" not in scene_of(browser)["volumes"][0] and "exposure" not in scene_of(browser)["image"], "numbers that the scene does not name")
     for name in ("Add a key of Intensity", "Add a key of Exposure", "Add a key of the light's place", "Add a key of Specular", "Add a key of clip x"):
         press_named(browser, name)
     tracks = browser.run("[...document.querySelectorAll('.track-name')].map((n) => n.textContent)")
-    check(tracks == ["light 1, intensity", "image exposure", *(f"light 1, direction {axis}" for axis in "xyz"), "volume 1, material specular"],
+    check(tracks == ["light 1, intensity", "image exposure", *(f"light 1, direction {axis}" for axis in "xyz"), "volume 1, material specular", "volume 1, clip min x", "volume 1, clip max x"],
           f"tracks: {tracks}; {browser.run('document.getElementById(`message`).textContent')}")
-    check("not in the scene yet" in browser.run("document.getElementById('message').textContent"), "a number that is not there is refused with its reason")
+    press_named(browser, "Undo")
+    check(browser.run("document.querySelectorAll('.track-name').length") == 6 and "clip" not in scene_of(browser)["volumes"][0], "one step takes the key back, and what it has named")
+    missing = browser.run("[...document.querySelectorAll('aside input[type=range]')].filter((e) => e.closest('details').firstElementChild.textContent !== 'Slices' && !e.closest('.row')?.querySelector('.key-here')).map((e) => e.labels[0]?.textContent)")
+    check(missing == ["Sub-lights"], f"each slider of a number that can change from frame to frame has a key: {missing}")
     browser.run("document.querySelectorAll('details').forEach((d) => { d.open = false; })")
 
 

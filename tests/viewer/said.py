@@ -59,6 +59,20 @@ def progress_rises(browser):
     browser.run("tells('failed', 2)")
 
 
+def awaited_states(browser):
+    """From the click on a look, or on "Show all", no picture is called final until the scene that was asked for is there and drawn."""
+    browser.run("""(() => { const own = window.fetch; window.fetch = async (...all) => { if (/^scene/.test(String(all[0]))) await window.held; return own(...all); }; })()""")
+    for act in ("[...document.querySelectorAll('.choice')].find((b) => b.textContent === 'xray').click()", "document.getElementById('reset').click()"):
+        browser.run("window.held = new Promise((go) => { window.release = go; }); 0")
+        said = browser.run(f"({act}, document.getElementById('stage').textContent)")
+        check(said == "waiting", f"at the click: {said}")
+        browser.run("window.release()")
+        rest(browser)
+        browser.wait("document.getElementById('stage').textContent === 'final'")
+    browser.run("document.getElementById('undo').click()")
+    rest(browser)
+
+
 def frames_are_counted(browser):
     """The last frame of a film is as many as the film has."""
     open_section(browser, "Film")
@@ -155,6 +169,7 @@ with tempfile.TemporaryDirectory() as folder:
         page.open(viewer.url)
         rest(page)
         progress_rises(page)
+        awaited_states(page)
         frames_are_counted(page)
         page.run("document.querySelectorAll('details').forEach((d) => { d.open = true; }); [...document.querySelectorAll('button')].find((b) => b.textContent === 'key of the camera now').click()")
         rest(page)

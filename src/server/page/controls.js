@@ -31,10 +31,10 @@ export function shortNumber(value) {
 }
 
 // A button that adds a key for numbers of the scene to the film. It is seen while the panel of films is open
-// (film_panel.js listens).
-export const keyButton = (label, path) => make("button", {
+// (film_panel.js listens). write(): sets the numbers in the scene to what they are by default, where the scene does not have them yet.
+export const keyButton = (label, path, write) => make("button", {
   type: "button", class: "key-here", title: "Key of the film: this number at the chosen frame", "aria-label": `Add a key of ${label}`,
-  onclick: (event) => event.currentTarget.dispatchEvent(new CustomEvent("halflight-key", { bubbles: true, detail: [path()].flat() })),
+  onclick: (event) => event.currentTarget.dispatchEvent(new CustomEvent("halflight-key", { bubbles: true, detail: { paths: [path()].flat(), write } })),
 }, "◆");
 
 // A slider with its number beside it. get() returns the value, and set(value) changes it. exponential: the
@@ -66,7 +66,7 @@ export function slider({ label, low, high, step = "any", unit = "", exponential 
     if (!isActive(number)) number.value = shortNumber(value);
   }
   const name = make("label", { for: id, title }, label);
-  return { element: row(name, range, make("span", { class: "measure" }, number, make("span", { class: "unit" }, unit), ...(path ? [keyButton(label, path)] : []))), update };
+  return { element: row(name, range, make("span", { class: "measure" }, number, make("span", { class: "unit" }, unit), ...(path ? [keyButton(label, path, () => set(get()))] : []))), update };
 }
 
 // A choice of one among several, as buttons side by side: [[value, text], ...].

@@ -183,9 +183,10 @@ export function filmPanel(viewer) {
   const addKey = (name, value) => film.set({ tracks: withKey(film.tracks, name, film.frame, value) });
   // A button beside a slider (controls.js).
   root.addEventListener("halflight-key", ({ detail }) => {
-    const values = detail.map((name) => numberAt(store.scene, name));
-    if (values.some((value) => typeof value !== "number")) report("This number is not in the scene yet: change it first.");
-    else detail.forEach((name, n) => addKey(name, values[n]));
+    const { paths, write } = detail, isThere = () => paths.every((name) => typeof numberAt(store.scene, name) === "number");
+    if (!isThere()) write?.();
+    if (isThere()) paths.forEach((name) => addKey(name, numberAt(store.scene, name)));
+    else report("This number is not in the scene yet: change it first.");
   });
   function addNumber() {
     const name = path.value.trim(), value = numberAt(store.scene, name);

@@ -79,7 +79,7 @@ function presetGroups(names, { kind, range }) {
   return [{ group: `suited to ${kind}`, choices: listed(suited) }, { group: "for other volumes", choices: listed(names.filter((name) => !suited.includes(name))) }];
 }
 
-export function functionPanel({ store, start, current, channel, failed }) {
+export function functionPanel({ store, start, current, channel, failed, waits }) {
   const { element, body } = section("Transfer function");
   const volume = () => store.scene.volumes[current.volume];
   const get = () => volume().transfer_function;
@@ -99,7 +99,7 @@ export function functionPanel({ store, start, current, channel, failed }) {
       return name === "automatic" ? rest : { ...rest, transfer_function: { preset: name } };
     });
     try {
-      const complete = await channel.completeScene({ ...store.scene, volumes });
+      const complete = await waits(channel.completeScene({ ...store.scene, volumes }));
       const made = complete.volumes[current.volume].transfer_function;
       named.set(JSON.stringify(made), name);
       set(made, `preset ${name}`);

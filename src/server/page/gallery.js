@@ -21,7 +21,7 @@ export function smallPictures(channel) {
 
 // names: the choices. made(name) resolves to the scene with one of them; take(name, scene) takes it; isTaken(scene of a choice): whether
 // the viewer shows it now. Returns { element, update, atRest }: atRest() is called when the picture has come to rest.
-export function gallery({ label, names, viewer: { store, smallPicture, failed, frames }, made, take, isTaken }) {
+export function gallery({ label, names, viewer: { store, smallPicture, failed, frames, waits }, made, take, isTaken }) {
   const canvases = new Map(), scenes = new Map(); // by name
   const buttons = names.map((name) => {
     const canvas = make("canvas", { "aria-hidden": "true", ...SIDES });
@@ -33,7 +33,7 @@ export function gallery({ label, names, viewer: { store, smallPicture, failed, f
 
   async function choose(name) {
     try {
-      const scene = await made(name);
+      const scene = await waits(made(name));
       scenes.set(name, scene);
       take(name, scene);
     } catch (error) {

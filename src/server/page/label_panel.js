@@ -41,7 +41,7 @@ export function labelPanel({ store, current, report }) {
   const labels = () => labelsOf(volumes()[index()]);
   const mask = () => (volumes()[index()]?.labels ? undefined : volumes()[index()]?.mask);
   const rest = slider({
-    label: "Rest", low: 0, high: 1, title: "The opacity of what lies outside the labels",
+    label: "Rest", path: () => `volumes.${index()}.mask.rest`, low: 0, high: 1, title: "The opacity of what lies outside the labels",
     get: () => mask()?.rest ?? 0, set: (value) => setMask("rest", { rest: value }),
   });
   let rows = [];

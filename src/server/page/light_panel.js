@@ -113,7 +113,7 @@ export function shadowPanel(viewer) {
     set: (count) => store.changeRender("light_samples", Math.round(count)),
   });
   const spacing = slider({
-    label: "Step", low: 0.25, high: 4, exponential: true, unit: "voxels", title: "How far apart the final picture takes samples (its sheets): closer is finer and slower",
+    label: "Step", path: () => "render.sheet_spacing", low: 0.25, high: 4, exponential: true, unit: "voxels", title: "How far apart the final picture takes samples (its sheets): closer is finer and slower",
     get: () => render().sheet_spacing, set: (value) => store.changeRender("sheet_spacing", +value.toPrecision(3)),
   });
   const edges = slider({

@@ -67,7 +67,7 @@ export async function linkOf(store, start) {
 export const isLink = (text) => text.includes(MARK);
 
 // Shows the state in a link, as one step. Throws where the text is no link, or does not fit the open scene.
-export async function follow(text, { store, start, channel }) {
+export async function follow(text, { store, start, channel, waits }) {
   let told;
   try {
     told = changed(beginning(start), JSON.parse(await unpacked(text.slice(text.indexOf(MARK) + MARK.length))));
@@ -75,7 +75,7 @@ export async function follow(text, { store, start, channel }) {
     throw new Error(`this link cannot be read: ${error.message || "it is cut short"}`);
   }
   const marks = readMarks(told?.marks), page = told?.page;
-  const scene = await channel.completeScene(told?.scene ?? {});
+  const scene = await waits(channel.completeScene(told?.scene ?? {}));
   store.replace({
     scene, marks, page: { ...(page !== null && typeof page === "object" && !Array.isArray(page) ? page : {}), bookmarks: store.page.bookmarks, ...(store.page.film ? { film: store.page.film } : {}) },
   });

@@ -40,11 +40,16 @@ export function planePanel({ store, start, current, get, set }) {
   // The softness of a shape: the falloff of a polygon, or the part of a box that is edge.
   const soft = () => (isPolygon(chosen()) ? (chosen().falloff ?? 1) / 2 : (chosen().edge?.[0] ?? 0) / (chosen().value[1] - chosen().value[0]));
   const softened = (part) => (isPolygon(chosen()) ? { falloff: 2 * part } : { edge: ["value", "second"].map((key) => part * (chosen()[key][1] - chosen()[key][0])) });
+  // The chosen shape in the scene.
+  const place = () => {
+    const n = canvas.selected, boxes = canvas.boxes.length;
+    return `volumes.${current.volume}.transfer_function.${n < boxes ? `boxes.${n}` : `polygons.${n - boxes}`}`;
+  };
   const parts = [
     color({ label: "Fill colour", get: () => hexOf(chosen().color), set: (hex) => canvas.change(canvas.selected, { color: linearOf(hex) }, "color") }),
-    slider({ label: "Fill opacity", low: 0, high: 1, get: () => chosen().opacity, set: (opacity) => canvas.change(canvas.selected, { opacity }, "opacity") }),
+    slider({ label: "Fill opacity", path: () => `${place()}.opacity`, low: 0, high: 1, get: () => chosen().opacity, set: (opacity) => canvas.change(canvas.selected, { opacity }, "opacity") }),
     slider({
-      label: "Soft edge", low: 0, high: 0.5, title: "The part of the shape's width within which it fades towards its border", get: soft,
+      label: "Soft edge", path: () => (isPolygon(chosen()) ? `${place()}.falloff` : [`${place()}.edge.0`, `${place()}.edge.1`]), low: 0, high: 0.5, title: "The part of the shape's width within which it fades towards its border", get: soft,
       set: (part) => canvas.change(canvas.selected, softened(part), "edge"),
     }),
   ];

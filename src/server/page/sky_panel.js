@@ -31,10 +31,10 @@ export function skyPanel({ store, start, overlay }) {
   });
   const colors = [shade("color", "Sky", "uniform"), shade("zenith", "Zenith", "gradient"), shade("horizon", "Horizon", "gradient"), shade("ground", "Ground", "gradient")];
   const strength = slider({
-    label: "Strength", low: 0, high: 3, get: () => sky().strength ?? 1, set: (value) => change("strength", { strength: value }),
+    label: "Strength", path: () => "sky.strength", low: 0, high: 3, get: () => sky().strength ?? 1, set: (value) => change("strength", { strength: value }),
   });
   const rotation = slider({
-    label: "Rotation", low: -180, high: 180, unit: "°", title: "About up, counterclockwise as seen from above",
+    label: "Rotation", path: () => "sky.rotation_deg", low: -180, high: 180, unit: "°", title: "About up, counterclockwise as seen from above",
     get: () => sky().rotation_deg ?? 0, set: (value) => change("rotation", { rotation_deg: value }),
   });
   const hemisphere = toggle({ label: "Dark below the horizon", get: () => sky().hemisphere === true, set: (on) => change("hemisphere", { hemisphere: on }) });

@@ -8,7 +8,7 @@ const ASK_AFTER = 600, ASK_EVERY = 400;
 // What is waited for before the picture is begun, for each stage of progress() of the channel.
 const AWAITED = { labels: "smoothing labels", sky: "light of the sky" };
 // The names of the stages of frames.js. A coarse picture is at rest, while finer voxels are still to come.
-const STAGES = { moving: "moving", settling: "refining", settled: "refining", refining: "refining", final: "final", coarse: "refining", waiting: "waiting" };
+const STAGES = { moving: "moving", settling: "refining", settled: "refining", refining: "refining", final: "final", coarse: "refining" };
 // The parts of the way to the final picture that are left behind when the quick pictures, the first picture at rest and the final one are there.
 const ENDS = { moving: 0.2, settling: 0.4, refining: 1 };
 const AHEAD = 0.5; // the part of a picture's own way that each thing takes which is made before it
@@ -35,19 +35,20 @@ export class Way {
   }
 }
 
-// find(id): an element of the viewer. Returns show(frame), of frames.js, and end().
+// find(id): an element of the viewer. Returns show(frame), of frames.js; wait(promise), which returns the promise: until it is kept, a state is
+// awaited that a person has asked for, and no picture is final; and end().
 export function statusLine(find, channel) {
   const stage = find("stage"), progress = find("progress");
-  let timer = 0, number = 0, state = null, way = new Way();
+  let timer = 0, number = 0, state = null, way = new Way(), name = "", awaited = 0;
 
   // Shows the progress as long as a picture is under way.
   async function ask(mine) {
     const told = await channel.progress().catch(() => ({ part: 0, stage: "picture", others: 0 }));
     if (mine !== number) return;
     way.go(told);
-    const { part, stage: made, others } = told, awaited = part < 1 ? AWAITED[made] : undefined; // what is made before the picture may be ready
+    const { part, stage: made, others } = told, before = part < 1 ? AWAITED[made] : undefined; // what is made before the picture may be ready
     const percent = Math.min(Math.floor(100 * way.done), 99);
-    const line = [percent > 0 ? `${percent} %` : "", awaited].filter(Boolean).join(", ");
+    const line = [percent > 0 ? `${percent} %` : "", before].filter(Boolean).join(", ");
     progress.textContent = line + (others > 0 ? ` · with ${others} other ${others === 1 ? "picture" : "pictures"} under way` : "");
     timer = setTimeout(() => ask(mine), ASK_EVERY);
   }
@@ -58,8 +59,23 @@ export function statusLine(find, channel) {
     progress.textContent = "";
   }
 
+  function tell() {
+    if (name === "") return; // no picture has been begun
+    stage.textContent = stage.dataset.stage = name === "final" && awaited > 0 ? "waiting" : name;
+  }
+
+  function wait(promise) {
+    awaited++;
+    tell();
+    return promise.finally(() => {
+      awaited--;
+      tell();
+    });
+  }
+
   function show(frame) {
-    const name = frame.error ? "failed" : STAGES[frame.stage], isOver = !(frame.stage in ENDS) && frame.stage !== "settled";
+    name = frame.error ? "failed" : STAGES[frame.stage];
+    const isOver = !(frame.stage in ENDS) && frame.stage !== "settled";
     if (isOver || frame.state !== state) stop();
     if (!isOver && frame.state !== state) {
       way = new Way();
@@ -67,12 +83,11 @@ export function statusLine(find, channel) {
     }
     state = isOver ? null : frame.state;
     way.begin(frame.stage);
-    stage.textContent = name;
-    stage.dataset.stage = name;
+    tell();
     if (frame.error || !(frame.bytes > 0)) return;
     const seconds = frame.milliseconds < 1000 ? `${Math.round(frame.milliseconds)} ms` : `${(frame.milliseconds / 1000).toFixed(1)} s`;
     const told = [`${frame.width} × ${frame.height}`, `step ${+frame.spacing.toPrecision(2)} voxels`, seconds, `${Math.ceil(frame.bytes / 1024)} KiB`];
     find("statistics").replaceChildren(...told.map((part) => make("span", {}, part)));
   }
-  return { show, end: () => { number++; clearTimeout(timer); } };
+  return { show, wait, end: () => { number++; clearTimeout(timer); } };
 }

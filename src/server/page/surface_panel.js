@@ -76,7 +76,7 @@ function commonest({ histogram, range: [low, high] }) {
   return low + ((histogram.indexOf(Math.max(...histogram)) + 0.5) / histogram.length) * (high - low);
 }
 
-export function surfacePanel({ store, start, current, failed, channel }) {
+export function surfacePanel({ store, start, current, failed, channel, waits }) {
   const { element, body } = section("Isosurfaces", false);
   const volume = () => store.scene.volumes[current.volume], about = () => start.volumes[current.volume];
   const surfaces = () => volume().iso ?? [], surface = () => surfaces()[chosen];
@@ -122,7 +122,7 @@ export function surfacePanel({ store, start, current, failed, channel }) {
     else
       try {
         const volumes = store.scene.volumes.map((v, n) => (n === index ? bare : v));
-        set((await channel.completeScene({ ...store.scene, volumes })).volumes[index].transfer_function);
+        set((await waits(channel.completeScene({ ...store.scene, volumes }))).volumes[index].transfer_function);
       } catch (error) {
         failed(error);
       }

@@ -118,10 +118,10 @@ function followSize(store, area, signal) {
 
 // Fits the seen part into the picture again, from the same side: the program chooses only the distance and
 // the target.
-async function frameEverything({ store, channel, failed }) {
+async function frameEverything({ store, channel, failed, waits }) {
   const { camera, ...rest } = store.scene;
   try {
-    const complete = await channel.completeScene({ ...rest, camera: { type: camera.type, ...(camera.fovy_deg ? { fovy_deg: camera.fovy_deg } : {}) } });
+    const complete = await waits(channel.completeScene({ ...rest, camera: { type: camera.type, ...(camera.fovy_deg ? { fovy_deg: camera.fovy_deg } : {}) } }));
     store.setCamera(complete.camera);
   } catch (error) {
     failed(error);
@@ -216,7 +216,7 @@ export function mount(element, channel, whole, { keyboard = element, reopen = ()
   const ended = new AbortController();
   const start = startOf(kept?.scene ?? whole.scene, whole);
   const store = new Store(kept?.scene ?? start.scene, { ...kept, source: kept?.own ?? source, title: kept?.title ?? whole.title }), report = messageBox(find("message"));
-  const viewer = { store, start, channel, smallPicture: smallPictures(channel), report, reopen, root, find, source, startAfresh, choose, copy: copier(report, store), current: { volume: 0, light: 0 }, address, atRest: [], frames: () => frames };
+  const viewer = { store, start, channel, smallPicture: smallPictures(channel), report, reopen, root, find, source, startAfresh, choose, copy: copier(report, store), current: { volume: 0, light: 0 }, address, atRest: [], frames: () => frames, waits: (promise) => status.wait(promise) };
   const connection = watchConnection(root.querySelector("main"), channel, report, { onBack: () => { frames.move(); viewer.slices.update(); }, save: () => viewer.saveSession() });
   viewer.failed = connection.failed;
   if (restore !== null) viewer.openSession = (file) => openSession(file, restore, viewer);

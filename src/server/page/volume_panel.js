@@ -22,7 +22,7 @@ function clipRow(axis, box, get, set, paths) {
     },
   });
   const inputs = { min: input("min"), max: input("max") };
-  const text = make("span", { class: "value" }), measure = make("span", { class: "measure wide" }, text, keyButton(`clip ${name}`, paths));
+  const text = make("span", { class: "value" }), measure = make("span", { class: "measure wide" }, text, keyButton(`clip ${name}`, paths, () => set(get(), axis)));
   const track = make("span", { class: "double" }, inputs.min, inputs.max);
   function update() {
     const ends = ["min", "max"].map((end) => get()[end][axis]);
@@ -43,7 +43,7 @@ export function volumeChooser({ store, current, chooseVolume }) {
 }
 
 export function volumePanel(viewer) {
-  const { store, start, current, overlay, channel, report } = viewer, { element, body } = section("Volume", false);
+  const { store, start, current, overlay, channel, report, waits } = viewer, { element, body } = section("Volume", false);
   const volume = () => store.scene.volumes[current.volume];
   const change = (name, set) => store.changeVolume(current.volume, name, set);
   let parts = [];
@@ -69,7 +69,7 @@ export function volumePanel(viewer) {
         get: () => scattering().anisotropy ?? 0, set: (g) => set("anisotropy", { anisotropy: Math.abs(g) < 0.02 ? 0 : g }),
       }),
       slider({
-        label: "Albedo", low: 0, high: 1, title: "The fraction of light that a medium scatters; the rest is lost",
+        label: "Albedo", path: () => [0, 1, 2].map((c) => `volumes.${current.volume}.scattering.albedo.${c}`), low: 0, high: 1, title: "The fraction of light that a medium scatters; the rest is lost",
         get: level, set: (most) => set("albedo", { albedo: ofTint(tint(), most) }),
       }),
       color({ label: "Tint", get: () => hexOf(tint()), set: (hex) => set("tint", { albedo: ofTint(linearOf(hex), level()) }) }),
@@ -82,7 +82,7 @@ export function volumePanel(viewer) {
     const { transfer_function: _, iso: __, shading: ___, ...bare } = volume(), index = current.volume;
     const volumes = store.scene.volumes.map((v, n) => (n === index ? { ...bare, labels: true } : v));
     try {
-      const complete = await channel.completeScene({ ...store.scene, volumes });
+      const complete = await waits(channel.completeScene({ ...store.scene, volumes }));
       store.changeVolume(index, "labels", () => complete.volumes[index]);
     } catch (error) {
       report(error.message);
