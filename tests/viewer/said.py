@@ -15,7 +15,7 @@ from checks import check
 from dicom_files import dicom_slice
 from firefox import browser_named
 from hands import PROGRAM, open_section, resize, rest, set_control
-from seen import edges_are_seen
+from seen import LEAST_CONTRAST, edges_are_seen, in_window
 from viewer import Viewer, need_viewer
 
 # A line of its own, whose channel gives one answer after the other; the last one stays.
@@ -154,6 +154,18 @@ def fits_a_phone(browser):
     check(small == [], f"smaller than 24 pixels: {small}")
 
 
+def banner_is_seen(browser, viewer):
+    """The buttons of the banner that says that the viewer is lost stand out from it in both themes."""
+    viewer.process.terminate()
+    viewer.process.wait()
+    browser.run("halflight.store.changeRender('shadows', 'hard')")
+    browser.wait("!document.querySelector('.banner').hidden")
+    for theme in ("dark", "light"):
+        browser.run(f"(() => {{ if (document.querySelector('.viewer').dataset.theme !== '{theme}') document.getElementById('theme').click(); }})()")
+        buttons = {name: contrast for name, contrast in in_window(browser).items() if "Retry" in name or "save session" in name}
+        check(any("Retry" in name for name in buttons) and min(buttons.values()) >= LEAST_CONTRAST, f"{theme}: {buttons}")
+
+
 chosen = browser_named(sys.argv[2])
 with tempfile.TemporaryDirectory() as folder:
     os.chdir(folder)
@@ -181,4 +193,5 @@ with tempfile.TemporaryDirectory() as folder:
         warnings_are_told(page)
         series_of_a_folder(page)
         check(page.problems == [], f"the console has errors: {page.problems}")
+        banner_is_seen(page, viewer)
 print(f"{checks.count} checks passed")

@@ -16,7 +16,7 @@ CONTROLS = """(() => {
   const named = (e) => `${e.tagName.toLowerCase()} ${e.type ?? ''} "${e.getAttribute('aria-label') ?? e.labels?.[0]?.textContent ?? (e.textContent.trim().slice(0, 30) || e.className)}"`;
   const list = (kind, selector) => [...document.querySelectorAll(selector)].filter(seen).map((e) => {
     const { left, top, right, bottom } = e.getBoundingClientRect(); return [kind, named(e), [left, top, right, bottom], e.closest('aside') !== null]; });
-  return [...list('edge', ':is(aside, header, footer, .timeline) :is(button:not(.file, .key, .key-here), select, textarea, input:is([type=text], [type=search], [type=color], [type=checkbox]:not([role]))), aside .segments, aside canvas[tabindex]'),
+  return [...list('edge', ':is(aside, header, footer, .timeline, .banner) :is(button:not(.file, .key, .key-here), select, textarea, input:is([type=text], [type=search], [type=color], [type=checkbox]:not([role]))), aside .segments, aside canvas[tabindex]'),
     ...list('line', 'aside input[type=number]'), ...list('track', ':is(aside, .timeline) input[type=range]:not(.double *), aside .double, .track-keys'),
     ...list('fill', 'aside input[role=switch]'), ...list('mark', '.key')];
 })()"""
