@@ -19,19 +19,30 @@ extern "C" {
 /* The ways in which a picture can show the directions of the world. */
 typedef enum hl_axes {
   HL_AXES_NONE = 0,
-  HL_AXES_ARROWS = 1, /* three arrows at the lower right of the picture. They are named after the directions
-                       * of the body if the volume's file tells these; else x, y and z */
+  HL_AXES_ARROWS = 1, /* three arrows, whose usual corner is the lower right one. They are named after the
+                       * directions of the body if the volume's file tells these; else x, y and z */
   HL_AXES_LETTERS = 2 /* letters at the picture's edges for the directions of the body: R or L, A or P, S or
                        * I; refused if the volume's file does not tell these directions */
 } hl_axes;
+
+/* The places of a scale bar, a legend and arrows in a picture. */
+typedef enum hl_corner {
+  HL_CORNER_FREE = 0, /* wherever the part covers the least of what the picture shows, at an edge of the
+                       * picture and clear of all other parts; of several such places the one that is the
+                       * nearest to the part's usual corner */
+  HL_CORNER_UPPER_LEFT = 1,
+  HL_CORNER_UPPER_RIGHT = 2,
+  HL_CORNER_LOWER_LEFT = 3,
+  HL_CORNER_LOWER_RIGHT = 4
+} hl_corner;
 
 /* A text over a picture. */
 typedef struct hl_annotation {
   const char *text;
   double at[3]; /* the place in the picture, as fractions of the picture's width and height, measured from its
                  * upper left corner; at[2] is not used */
-  int in_world; /* non-zero if `at` is a point of the scene's world instead, and a ring is drawn around the
-                 * point */
+  int in_world; /* non-zero if `at` is a point of the scene's world instead. A ring is drawn around the point,
+                 * and the text stands beside the ring, clear of other parts */
 } hl_annotation;
 
 /* A value of hl_overlay.scale_bar_depth that stands for the distance from the eye to the camera's target. */
@@ -39,13 +50,14 @@ typedef struct hl_annotation {
 
 /* The things that are drawn over one picture. hl_overlay_defaults() fills the struct so that nothing is
  * drawn. If the panel's image shows matter behind the scale bar, the legend or the arrows, a translucent
- * ground is drawn between the image and the bar, the legend or the arrows. */
+ * ground is drawn between the image and the bar, the legend or the arrows. A bar, a legend or arrows that
+ * find no room in the picture are left out, and the context's log is told so. */
 typedef struct hl_overlay {
   size_t struct_size;
-  int scale_bar;              /* non-zero if a scale bar is drawn at the lower left, with its length as
-                               * text */
-  double scale_bar_length;    /* the scale bar's length in scale_bar_unit; if 0, a length is chosen that is 1,
-                               * 2 or 5 times a power of ten and at most a quarter of the picture's width */
+  int scale_bar;           /* non-zero if a scale bar is drawn, with its length as text; its usual corner is
+                            * the lower left one */
+  double scale_bar_length; /* the scale bar's length in scale_bar_unit; if 0, a length is chosen that is 1,
+                            * 2 or 5 times a power of ten and at most a quarter of the picture's width */
   const char *scale_bar_unit; /* the unit of the scale bar's length and text; if null, world_unit, or another
                                * unit that makes the number short */
   const char *world_unit;     /* the unit of length of the scene's world: "m", "mm", "um", "nm", "A", ..., or
@@ -55,11 +67,12 @@ typedef struct hl_overlay {
   double scale_bar_depth; /* the distance from the eye, in the scene's units, at which the scale bar is right,
                            * or HL_DEPTH_OF_TARGET. A perspective camera needs it, because its scale changes
                            * with depth; if 0, the scale bar is refused for such a camera */
-  int legend; /* non-zero if a legend is drawn at the right. It shows the colours and opacity of each visible
-               * volume over the volume's values, the colours of its isosurfaces, or the names of its
-               * labels */
+  int legend; /* non-zero if a legend is drawn; its usual corner is the upper right one. It shows the colours
+               * and opacity of each visible volume over the volume's values, the colours of its isosurfaces,
+               * or the names of its labels */
   const char *legend_title; /* the title of the first volume's legend, which replaces the volume's name; the
-                             * unit of the values is added; may be null */
+                             * unit of the values is added; may be null. A title that is wider than the
+                             * legend is broken into lines */
   hl_axes axes;
   int marks; /* non-zero if the scene's marks (hl_mark) are drawn, with their lengths and angles in the world
               * of the first volume's file. The unit of lengths is world_unit, or else the unit that this file
@@ -71,6 +84,7 @@ typedef struct hl_overlay {
   double legend_range[2]; /* the range of values over which the legend's strips go, the lower end first; if
                            * both ends are equal (the default), each strip goes over the range of its volume's
                            * values that have opacity */
+  hl_corner scale_bar_corner, legend_corner, arrows_corner; /* default HL_CORNER_FREE */
 } hl_overlay;
 
 HL_API void hl_overlay_defaults(hl_overlay *overlay);
@@ -81,6 +95,9 @@ typedef struct hl_figure_panel {
    * without an image has the colours that suit the scene's picture, so that somebody can lay the overlay over
    * the picture. */
   const hl_image *image;
+  /* Borrowed; a picture of the same view that is not drawn, of any size: the overlay keeps clear of the
+   * matter that it shows, and has grounds over it. If null, `image` stands for it. */
+  const hl_image *matter;
   const hl_scene *scene;           /* borrowed; the scene that the picture shows, from which the overlay takes
                                     * background, exposure, camera and volumes; if null, the overlay may hold
                                     * only a letter, and annotations whose places are fractions */

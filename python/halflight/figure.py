@@ -19,6 +19,9 @@ __all__ = ["Figure", "figure"]
 
 _FORMATS = ("pdf", "svg", "png", "tif")
 _AXES = {"arrows": "HL_AXES_ARROWS", "letters": "HL_AXES_LETTERS"}
+_PLACED = {"legend": "legend_corner", "scale_bar": "scale_bar_corner", "axes": "arrows_corner"}
+_CORNERS = {"upper left": "HL_CORNER_UPPER_LEFT", "upper right": "HL_CORNER_UPPER_RIGHT", "lower left": "HL_CORNER_LOWER_LEFT",
+            "lower right": "HL_CORNER_LOWER_RIGHT"}
 _MILLIMETRES = {"mm": 1.0, "cm": 10.0, "in": 25.4, "pt": 25.4 / 72}
 
 
@@ -44,6 +47,7 @@ class _Overlay:
     marks: bool = False
     texts: Sequence[tuple[str, Sequence[float]]] | Mapping[str, Sequence[float]] = ()
     letter: str | None = None
+    places: Mapping[str, str] = field(default_factory=dict)
 
     def fill(self, overlay: Any, kept: list[Any]) -> None:
         """Write the overlay to an hl_overlay, whose texts `kept` keeps alive."""
@@ -75,6 +79,9 @@ class _Overlay:
         overlay.marks = bool(self.marks)
         if self.letter is not None:
             overlay.letter = text(self.letter)
+        for part, corner in self.places.items():
+            there = _PLACED[choice("places", part, list(_PLACED))]
+            setattr(overlay, there, getattr(lib, _CORNERS[choice(f"places: {part}", corner, list(_CORNERS))]))
         items = list(self.texts.items() if isinstance(self.texts, Mapping) else self.texts)
         notes = ffi.new("hl_annotation[]", max(1, len(items)))
         for note, (words, at) in zip(notes, items):

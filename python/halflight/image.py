@@ -287,6 +287,7 @@ class Image(NDArrayOperatorsMixin):
     def annotate(self, *, scale_bar: bool | str = False, unit: str | None = None, depth: float | str | None = None,
                  legend: bool | str = False, axes: str | None = None, marks: bool = False,
                  texts: Sequence[tuple[str, Sequence[float]]] | Mapping[str, Sequence[float]] = (), letter: str | None = None,
+                 places: Mapping[str, str] | None = None,
                  width: float | str | None = None, dpi: float | None = None, font_size: float = 7, font: str = "Sans") -> Figure:
         """The picture as a figure, with an overlay that is drawn over it. The figure's `save` writes .pdf, .svg, .png
         or .tif.
@@ -312,6 +313,9 @@ class Image(NDArrayOperatorsMixin):
             point of the scene's world.
         letter : str, optional
             The panel's letter, which is drawn at the upper left.
+        places : mapping, optional
+            Corners for "legend", "scale_bar" and "axes" (arrows), such as ``{"legend": "upper left"}``. Each of them that
+            has no corner here lies where it covers the least.
         width : float or str, optional
             The width of the picture on paper: millimetres, or a text such as "89mm", "3.5in".
         dpi : float, optional
@@ -326,7 +330,7 @@ class Image(NDArrayOperatorsMixin):
         """
         from .figure import _Overlay, annotate
 
-        overlay = _Overlay(scale_bar, unit, depth, legend, axes, marks, texts, letter)
+        overlay = _Overlay(scale_bar, unit, depth, legend, axes, marks, texts, letter, dict(places or {}))
         return annotate(self, overlay, width, dpi, font_size, font)
 
     def __repr__(self) -> str:

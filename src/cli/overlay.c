@@ -26,6 +26,16 @@ bool overlay_is_any(const cli_overlay *overlay) {
   return overlay->drawn || overlay->width > 0 || overlay->pixels_per_inch > 0;
 }
 
+static void hold(hl_corner *corner, hl_corner usual) {
+  if (*corner == HL_CORNER_FREE) *corner = usual;
+}
+
+void overlay_hold(cli_overlay *overlay) {
+  hold(&overlay->overlay.legend_corner, HL_CORNER_UPPER_RIGHT);
+  hold(&overlay->overlay.scale_bar_corner, HL_CORNER_LOWER_LEFT);
+  hold(&overlay->overlay.arrows_corner, HL_CORNER_LOWER_RIGHT);
+}
+
 /* Describes the page that the picture fills. */
 static void make_figure(const cli_overlay *overlay, const hl_image *image, const hl_scene *scene,
                         hl_figure *figure, hl_figure_panel *panel) {

@@ -29,6 +29,10 @@ void overlay_release(cli_overlay *overlay);
  * describe the file. */
 bool overlay_is_any(const cli_overlay *overlay);
 
+/* Keeps the parts of the overlay in place from picture to picture of a series: those for which no corner is
+ * asked have their usual ones. */
+void overlay_hold(cli_overlay *overlay);
+
 /* Finds out, before a picture of the scene is made, whether all overlays can be drawn over it. */
 hl_status overlay_check_scene(hl_context *context, const cli_overlay *overlay, const hl_scene *scene,
                               hl_error *error);

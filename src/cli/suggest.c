@@ -20,6 +20,7 @@ static const struct {
     {"scale-bar", "scalebar scalebars ruler"},
     {"axes", "axis orientation-axes triad orientation-marker"},
     {"annotate", "annotation text title caption"},
+    {"place", "legend-position legend-loc legend-place location position corner corners anchor"},
     {"depth", "bits bit-depth color-depth"},
     {"background",
      "bg background-color bgcolor background-colour canvas backdrop world-color transparent alpha"},

@@ -1,5 +1,5 @@
-/* figure/axes.c - draws the directions of the world: arrows at the lower right, or letters at the picture's
- * edges.
+/* figure/axes.c - draws the directions of the world: arrows, usually at the lower right, or letters at the
+ * picture's edges.
  *
  * If a volume's file states the orientation of a body, the letters are the letters of anatomy: R and L for
  * the body's right and left, A and P for its front and back, S and I for the directions of its head and
@@ -37,8 +37,6 @@ static vec3 seen(const hl_map *map, int axis) {
 /* Lengths in the drawing of the axes, in units of the letters' size. */
 static const double arrow_length = 2.1, letter_room = 1.1;
 
-double hl_overlay_arrows_height(const hl_ink *ink) { return 2 * (arrow_length + letter_room) * ink->size; }
-
 /* Draws an arrow with a filled head, from (from_x, from_y) along (x, y). */
 static void draw_arrow(const hl_ink *ink, double from_x, double from_y, double x, double y) {
   const double length = hypot(x, y), head = fmin(0.5 * ink->size, length);
@@ -56,7 +54,7 @@ static void draw_arrow(const hl_ink *ink, double from_x, double from_y, double x
 
 static void draw_arrows(const hl_ink *ink, const hl_overlay_place *place) {
   const axis_names *names = names_of(hl_scene_space(place->scene));
-  const double length = arrow_length * ink->size, room = hl_overlay_arrows_height(ink) / 2;
+  const double length = arrow_length * ink->size, room = (arrow_length + letter_room) * ink->size;
   const double x = place->picture.left + place->picture.width - place->margin - room;
   const double y = place->picture.top + place->picture.height - place->margin - room;
   int order[3] = {0, 1, 2}; /* the indices of the axes; the axis that points farthest away from the eye comes
@@ -99,24 +97,21 @@ static void name_direction(const hl_overlay_place *place, const axis_names *name
   (void)place;
 }
 
-/* Moves a text along the picture's edge, by steps to either side of its middle, to the first place that
- * nothing has taken. Where there is none, the text stays. along_x: the edge is the upper or the lower one. */
+/* Moves a text along the picture's edge, from its middle to the nearest place that keeps clear of what is
+ * taken. Where there is none, the text stays. along_x: the edge is the upper or the lower one. */
 static void slide_clear(const hl_ink *ink, const hl_overlay_place *place, bool along_x,
                         hl_line_of_text *line) {
   const double length = along_x ? place->picture.width : place->picture.height;
   double *at = along_x ? &line->x : &line->y;
   const double middle = *at;
-  const double apart = 0.8 * ink->size;
-  if (hl_overlay_is_free(place, hl_ink_box(ink, line))) return;
-  for (double step = 0.5 * ink->size; step < 0.4 * length; step += 0.5 * ink->size)
+  hl_search search = {.taken = &place->taken, .rim = 0.4 * ink->size, .unit = 1};
+  double best = middle;
+  for (double way = 0; way < 0.4 * length; way += 0.5 * ink->size)
     for (int side = -1; side <= 1; side += 2) {
-      *at = middle + side * step;
-      hl_rectangle box = hl_ink_box(ink, line);
-      if (along_x) box.left -= apart, box.width += 2 * apart;
-      else box.top -= apart, box.height += 2 * apart;
-      if (hl_overlay_is_free(place, box)) return;
+      *at = middle + side * way;
+      if (hl_search_try(&search, hl_ink_box(ink, line), way)) best = *at;
     }
-  *at = middle;
+  *at = best;
 }
 
 static hl_status draw_letters(const hl_ink *ink, const hl_overlay_place *place, hl_error *error) {

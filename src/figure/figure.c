@@ -62,6 +62,10 @@ static hl_status check_panel(const hl_figure_panel *panel, size_t index, hl_erro
       return hl_fail(error, HL_ERROR_ARGUMENT,
                      "panel %zu: its place must be finite, and its width and height above 0 mm", index + 1);
   const hl_overlay *overlay = &panel->overlay;
+  const hl_corner corners[] = {overlay->scale_bar_corner, overlay->legend_corner, overlay->arrows_corner};
+  for (int n = 0; n < 3; n++)
+    if ((unsigned)corners[n] > HL_CORNER_LOWER_RIGHT)
+      return hl_fail(error, HL_ERROR_ARGUMENT, "panel %zu: %d is no hl_corner", index + 1, (int)corners[n]);
   bool of_scene = overlay->scale_bar || overlay->legend || overlay->marks || overlay->axes != HL_AXES_NONE;
   for (size_t a = 0; a < overlay->annotation_count; a++) of_scene |= overlay->annotations[a].in_world != 0;
   if (of_scene && panel->scene == NULL)
@@ -99,11 +103,9 @@ static double pixels_of(const hl_figure *figure, double length) {
   return round(length * figure->pixels_per_inch / MILLIMETRES_PER_INCH);
 }
 
-hl_status hl_figure_draw(hl_context *context, const hl_figure *figure, hl_image **image, hl_error *error) {
-  HL_DOOR;
-  if (context == NULL || figure == NULL || image == NULL)
-    return hl_fail(error, HL_ERROR_ARGUMENT, "hl_figure_draw: context, figure and image must not be null");
-  *image = NULL;
+/* is_told: whether the context's log is told which parts of overlays find no room. */
+static hl_status draw(hl_context *context, const hl_figure *figure, bool is_told, hl_image **image,
+                      hl_error *error) {
   hl_status status = check(figure, error);
   if (status != HL_OK) return status;
   const double width = pixels_of(figure, figure->width), height = pixels_of(figure, figure->height);
@@ -112,7 +114,15 @@ hl_status hl_figure_draw(hl_context *context, const hl_figure *figure, hl_image 
         error, HL_ERROR_ARGUMENT,
         "figure: %g x %g pixels: each side must be from 1 to %d: change its size or its pixels an inch",
         width, height, (int)MOST_SIDE_PIXELS);
-  return hl_page_draw(context, figure, (int)width, (int)height, image, error);
+  return hl_page_draw(context, figure, is_told, (int)width, (int)height, image, error);
+}
+
+hl_status hl_figure_draw(hl_context *context, const hl_figure *figure, hl_image **image, hl_error *error) {
+  HL_DOOR;
+  if (context == NULL || figure == NULL || image == NULL)
+    return hl_fail(error, HL_ERROR_ARGUMENT, "hl_figure_draw: context, figure and image must not be null");
+  *image = NULL;
+  return draw(context, figure, true, image, error);
 }
 
 hl_status hl_figure_check(hl_context *context, const hl_figure *figure, hl_error *error) {
@@ -131,7 +141,7 @@ hl_status hl_figure_check(hl_context *context, const hl_figure *figure, hl_error
   }
   if (figure->panels != NULL) trial.panels = panels;
   trial.pixels_per_inch = fmax(1, figure->pixels_per_inch / COARSER);
-  hl_status status = hl_figure_draw(context, &trial, &image, error);
+  hl_status status = draw(context, &trial, false, &image, error);
   hl_image_destroy(image);
   hl_release(context, panels);
   return status;

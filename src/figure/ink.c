@@ -51,6 +51,11 @@ static PangoLayout *lay_out(const hl_ink *ink, const hl_line_of_text *line) {
     pango_layout_set_width(layout, (int)(line->wide_most * PANGO_SCALE));
     pango_layout_set_ellipsize(layout, PANGO_ELLIPSIZE_END);
   }
+  if (line->lines_most > 1) {
+    pango_layout_set_wrap(layout, PANGO_WRAP_WORD_CHAR);
+    pango_layout_set_height(layout, -line->lines_most);
+  }
+  if (line->align_x == 1) pango_layout_set_alignment(layout, PANGO_ALIGN_RIGHT);
   if (line->align_x == 0.5) pango_layout_set_alignment(layout, PANGO_ALIGN_CENTER);
   if (line->gap > 0) {
     PangoAttrList *wider = pango_attr_list_new();

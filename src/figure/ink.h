@@ -29,6 +29,8 @@ typedef struct hl_line_of_text {
   /* the greatest width of a line, points; a longer line is cut and ends in "..."; 0 if lines may have any
    * width */
   double wide_most;
+  int lines_most; /* if above 1, a text that is wider than wide_most is broken between words into lines, at
+                   * most this number of them, before it is cut */
 } hl_line_of_text;
 
 void hl_ink_text(const hl_ink *ink, const hl_line_of_text *line);

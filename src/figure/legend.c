@@ -16,10 +16,20 @@
 #include "text/stem.h"
 #include "text/units.h"
 
-enum { STEPS_BETWEEN_POINTS = 8, CURVE_STEPS = 256, TICKS_MOST = 6, NUMBER_BYTES = 40, NAME_BYTES = 64 };
+enum {
+  STEPS_BETWEEN_POINTS = 8,
+  CURVE_STEPS = 256,
+  TICKS_MOST = 6,
+  TITLE_LINES_MOST = 4,
+  ROW_LINES_MOST = 3,
+  NUMBER_BYTES = 40,
+  NAME_BYTES = 64
+};
 
 /* lengths in the legend, in units of the letters' size */
 static const double row = 1.35, strip_width = 1.1, curve_width = 1.6, gap = 0.45, swatch = 0.9;
+/* A title that is at most this wide has one line, also if all else in the legend is narrower. */
+static const double title_width = 10;
 
 /* The state of drawing the legend, from its top downwards. */
 typedef struct legend {
@@ -28,6 +38,8 @@ typedef struct legend {
   double right, bottom; /* the legend's right and lower edge, points */
   double y;             /* the place of the top of the next volume's part on the page, points */
   double strip_height;  /* height of a strip of colours, points */
+  size_t left_out;      /* the number of rows without room */
+  double body;          /* the greatest width of a strip with its curve and numbers, or of a row; points */
 } legend;
 
 /* ---- what a volume has ---- */
@@ -75,22 +87,45 @@ static double widest_row(const legend *made, const char *text) {
   return width;
 }
 
-static bool fits(const legend *made) { return made->y + row * made->ink->size <= made->bottom; }
+/* The width of the widest word of a text, points. */
+static double widest_word(const legend *made, const char *text) {
+  char **words = g_strsplit(text, " ", 0);
+  double widest = 0;
+  for (char **word = words; *word != NULL; word++) widest = fmax(widest, widest_row(made, *word));
+  g_strfreev(words);
+  return widest;
+}
+
+/* The text of a row, beside its swatch. A text that is too wide is broken into lines. *height: the row's
+ * height, points. */
+static hl_line_of_text lay_row(const legend *made, double left, const char *text, double *height) {
+  const double size = made->ink->size, middle = made->y + row * size / 2;
+  hl_line_of_text line = {.text = text,
+                          .x = left + (swatch + gap) * size,
+                          .y = middle,
+                          .align_y = 0.5,
+                          .wide_most = made->right - left - (swatch + gap) * size + 1,
+                          .lines_most = ROW_LINES_MOST};
+  double width, high, one;
+  hl_ink_measure(made->ink, &line, &width, &high);
+  hl_ink_measure(made->ink, &(hl_line_of_text){.text = text}, &width, &one);
+  line.y += fmax(high - one, 0) / 2;
+  *height = row * size + fmax(high - one, 0);
+  return line;
+}
 
 static void draw_row(legend *made, double left, const double color[3], const char *text) {
   const double size = made->ink->size, side = swatch * size, middle = made->y + row * size / 2;
+  double height;
+  const hl_line_of_text line = lay_row(made, left, text, &height);
   cairo_t *cairo = made->ink->cairo;
   cairo_rectangle(cairo, left, middle - side / 2, side, side);
   hl_ink_stroke(made->ink, 0.12 * size);
   cairo_rectangle(cairo, left, middle - side / 2, side, side);
   hl_ink_source(cairo, color, 1);
   cairo_fill(cairo);
-  hl_ink_text(made->ink, &(hl_line_of_text){.text = text,
-                                            .x = left + side + gap * size,
-                                            .y = middle,
-                                            .align_y = 0.5,
-                                            .wide_most = made->right - left - side - gap * size + 1});
-  made->y += row * size;
+  hl_ink_text(made->ink, &line);
+  made->y += height;
 }
 
 /* Finds the colour and the name that the n-th row of a volume shows. Returns false if the volume has fewer
@@ -115,23 +150,68 @@ static bool row_of(const hl_scene_volume *volume, size_t n, const double **color
   return true;
 }
 
-static void draw_rows(legend *made, const hl_scene_volume *volume) {
-  const size_t count = count_rows(volume);
-  const double size = made->ink->size, most = 0.45 * made->place->picture.width;
-  double widest = 0;
+/* The greatest width of anything in a legend; points. */
+static double most_wide(const legend *made) { return 0.45 * made->place->picture.width; }
+
+/* The number of a volume's rows for which the legend could have room. */
+static size_t most_rows(const legend *made) {
+  const double top = made->place->picture.top + made->place->margin;
+  return (size_t)fmax((made->bottom - top) / (row * made->ink->size), 0) + 1;
+}
+
+/* Returns whether no row has too many lines in a width. */
+static bool rows_fit(const legend *made, const hl_scene_volume *volume, double width) {
+  const double size = made->ink->size;
   const double *color;
   char text[NUMBER_BYTES * 4];
-  for (size_t n = 0; row_of(volume, n, &color, text); n++) widest = fmax(widest, widest_row(made, text));
-  double left = made->right - fmin(most, widest + (swatch + gap) * size);
-  for (size_t n = 0; row_of(volume, n, &color, text) && fits(made); n++) {
-    bool last = made->y + 2 * row * size > made->bottom && n + 1 < count;
-    if (!last) {
+  for (size_t n = 0; n < most_rows(made) && row_of(volume, n, &color, text); n++) {
+    double wide, high, one;
+    hl_line_of_text line = {
+        .text = text, .wide_most = width - (swatch + gap) * size + 1, .lines_most = ROW_LINES_MOST + 1};
+    hl_ink_measure(made->ink, &line, &wide, &high);
+    hl_ink_measure(made->ink, &(hl_line_of_text){.text = text}, &wide, &one);
+    if (high > (ROW_LINES_MOST + 0.5) * one) return false;
+  }
+  return true;
+}
+
+/* The width of a volume's rows; 0 if it has none. It is at most the width that the legend's shape states, but
+ * for words and rows that need more. */
+static double width_of_rows(const legend *made, const hl_scene_volume *volume) {
+  const double size = made->ink->size, beside = (swatch + gap) * size;
+  double widest = 0, word = 0;
+  const double *color;
+  char text[NUMBER_BYTES * 4];
+  size_t n = 0;
+  for (; n < most_rows(made) && row_of(volume, n, &color, text); n++) {
+    widest = fmax(widest, widest_row(made, text));
+    word = fmax(word, widest_word(made, text));
+  }
+  double width = fmax(fmin(widest + beside, made->place->legend.width), word + beside);
+  while (n > 0 && width < fmin(most_wide(made), widest + beside) && !rows_fit(made, volume, width))
+    width += 0.5 * size;
+  return n > 0 ? fmin(most_wide(made), width) : 0;
+}
+
+/* Draws the rows for which there is room, and says how many are left out. The first row is drawn in any case:
+ * a legend that is too high for the picture finds no place in it. */
+static void draw_rows(legend *made, const hl_scene_volume *volume) {
+  const size_t count = count_rows(volume);
+  const double size = made->ink->size, left = made->right - width_of_rows(made, volume);
+  const double *color;
+  char text[NUMBER_BYTES * 4];
+  for (size_t n = 0; row_of(volume, n, &color, text); n++) {
+    double height;
+    lay_row(made, left, text, &height);
+    if (n == 0 || n + 1 == count || made->y + height + row * size <= made->bottom) {
       draw_row(made, left, color, text);
       continue;
     }
     snprintf(text, sizeof text, "\u2026 %zu more", count - n);
     hl_ink_text(made->ink, &(hl_line_of_text){.text = text, .x = made->right, .y = made->y, .align_x = 1});
     made->y += row * size;
+    made->left_out += count - n;
+    return;
   }
 }
 
@@ -248,14 +328,22 @@ static double draw_numbers(const legend *made, const double range[2], double x, 
   return widest + (0.3 + gap) * size;
 }
 
+/* Finds the values at the ends of a volume's strip. */
+static hl_status find_range(const legend *made, const hl_scene_volume *volume, double range[2],
+                            hl_error *error) {
+  const double *stated = made->place->overlay->legend_range;
+  hl_status status = hl_transfer_function_visible_range(volume->volume, &volume->transfer_function, range,
+                                                        error);
+  if (status == HL_OK && stated[0] < stated[1]) memcpy(range, stated, sizeof(double[2]));
+  return status;
+}
+
 static hl_status draw_strip(legend *made, const hl_scene_volume *volume, hl_error *error) {
   const hl_transfer_function *function = &volume->transfer_function;
   const double size = made->ink->size, top = made->y + 0.5 * size, bottom = top + made->strip_height;
   double range[2];
-  hl_status status = hl_transfer_function_visible_range(volume->volume, function, range, error);
+  hl_status status = find_range(made, volume, range, error);
   if (status != HL_OK) return status;
-  const double *stated = made->place->overlay->legend_range;
-  if (stated[0] < stated[1]) memcpy(range, stated, sizeof range);
   double numbers = draw_numbers(made, range, 0, bottom, top, false), x = made->right - numbers;
   cairo_t *cairo = made->ink->cairo;
   cairo_save(cairo);
@@ -275,18 +363,54 @@ static hl_status draw_strip(legend *made, const hl_scene_volume *volume, hl_erro
 
 /* ---- the whole ---- */
 
-static hl_status draw_volume(legend *made, const hl_scene_volume *volume, bool first, hl_error *error) {
+/* Widens the legend's body to a volume's strip and rows. */
+static hl_status widen_body(legend *made, const hl_scene_volume *volume, bool first, hl_error *error) {
   char name[NAME_BYTES];
-  const char *title = title_of(made->place, volume, first, name);
-  if (volume->transfer_function.plane.second != HL_SECOND_NONE)
+  double range[2];
+  if (volume->transfer_function.plane.second != HL_SECOND_NONE) {
+    const char *title = title_of(made->place, volume, first, name);
     return hl_fail(error, HL_ERROR_ARGUMENT,
                    "legend: the transfer function of '%.60s' takes two numbers: a strip of colours shows one",
                    title != NULL ? title : "the volume");
-  if (title != NULL && fits(made)) {
-    hl_ink_text(made->ink, &(hl_line_of_text){
-                               .text = title, .x = made->right, .y = made->y, .align_x = 1, .wide_most = 0});
-    made->y += row * made->ink->size;
   }
+  made->body = fmax(made->body, width_of_rows(made, volume));
+  if (!has_strip(volume)) return HL_OK;
+  hl_status status = find_range(made, volume, range, error);
+  if (status != HL_OK) return status;
+  const double numbers = draw_numbers(made, range, 0, made->strip_height, 0, false);
+  made->body = fmax(made->body, numbers + (strip_width + curve_width) * made->ink->size);
+  return HL_OK;
+}
+
+/* Draws a title. It is broken into lines that are as wide as the body of the legend, or a little wider; wider
+ * still where it would have too many lines. */
+static void draw_title(legend *made, const char *title) {
+  const double size = made->ink->size;
+  const double least = fmax(fmin(title_width * size, made->place->legend.width), widest_word(made, title));
+  hl_line_of_text line = {.text = title,
+                          .x = made->right,
+                          .y = made->y,
+                          .align_x = 1,
+                          .wide_most = fmax(made->body, least) + 1,
+                          .lines_most = 2 * TITLE_LINES_MOST};
+  double width, height, one;
+  hl_ink_measure(made->ink, &(hl_line_of_text){.text = title}, &width, &one);
+  hl_ink_measure(made->ink, &line, &width, &height);
+  while (height > (TITLE_LINES_MOST + 0.5) * one && line.wide_most < most_wide(made)) {
+    line.wide_most += 0.5 * size;
+    hl_ink_measure(made->ink, &line, &width, &height);
+  }
+  line.wide_most = fmin(line.wide_most, most_wide(made));
+  line.lines_most = TITLE_LINES_MOST;
+  hl_ink_measure(made->ink, &line, &width, &height);
+  hl_ink_text(made->ink, &line);
+  made->y += row * size + fmax(height - one, 0);
+}
+
+static hl_status draw_volume(legend *made, const hl_scene_volume *volume, bool first, hl_error *error) {
+  char name[NAME_BYTES];
+  const char *title = title_of(made->place, volume, first, name);
+  if (title != NULL) draw_title(made, title);
   hl_status status = has_strip(volume) ? draw_strip(made, volume, error) : HL_OK;
   if (status == HL_OK) draw_rows(made, volume);
   made->y += 0.5 * made->ink->size;
@@ -295,8 +419,7 @@ static hl_status draw_volume(legend *made, const hl_scene_volume *volume, bool f
 
 hl_status hl_overlay_legend(const hl_ink *ink, const hl_overlay_place *place, hl_error *error) {
   const hl_scene_description *scene = place->scene;
-  const double arrows = place->overlay->axes == HL_AXES_ARROWS ? hl_overlay_arrows_height(ink) : 0;
-  const double height = place->picture.height - 2 * place->margin - arrows;
+  const double height = place->legend.height;
   size_t strips = 0, lines = 0;
   for (size_t v = 0; v < scene->volume_count; v++) {
     const hl_scene_volume *volume = &scene->volumes[v];
@@ -310,15 +433,19 @@ hl_status hl_overlay_legend(const hl_ink *ink, const hl_overlay_place *place, hl
   legend made = {.ink = ink,
                  .place = place,
                  .right = place->picture.left + place->picture.width - place->margin,
-                 .bottom = place->picture.top + place->picture.height - place->margin - arrows,
+                 .bottom = place->picture.top + place->margin + height,
                  .y = place->picture.top + place->margin,
-                 .strip_height = fmax(3 * ink->size, fmin(9 * ink->size, each))};
+                 .strip_height = fmax(3 * ink->size, fmin(place->legend.strip_height, each))};
   hl_status status = HL_OK;
-  bool first = true;
-  for (size_t v = 0; status == HL_OK && v < scene->volume_count; v++) {
-    if (!scene->volumes[v].visible) continue;
-    status = draw_volume(&made, &scene->volumes[v], first, error);
-    first = false;
+  for (int turn = 0; turn < 2; turn++) { /* the body's width is known before anything is drawn */
+    bool first = true;
+    for (size_t v = 0; status == HL_OK && v < scene->volume_count; v++) {
+      const hl_scene_volume *volume = &scene->volumes[v];
+      if (!volume->visible) continue;
+      status = turn == 0 ? widen_body(&made, volume, first, error) : draw_volume(&made, volume, first, error);
+      first = false;
+    }
   }
+  if (place->rows_left_out != NULL) *place->rows_left_out = made.left_out;
   return status;
 }

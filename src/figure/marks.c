@@ -151,6 +151,7 @@ static hl_line_of_text lay_caption(const hl_ink *ink, const hl_overlay_place *pl
   enum { MOST_FAR = 4 };
   const bool ruler = mark->kind == HL_MARK_RULER, below = rises(mark, first);
   const int points = ruler ? (int)(sizeof along / sizeof *along) : 1, turns = ruler ? 2 : 4;
+  hl_search search = {.taken = &place->taken, .unit = 1};
   for (int n = 0; n < MOST_FAR * points * turns; n++) {
     const int turn = n % turns, point = n / turns % points;
     const bool other = turn % 2 == 1;
@@ -159,7 +160,7 @@ static hl_line_of_text lay_caption(const hl_ink *ink, const hl_overlay_place *pl
       at.x += along[point] * (first[1].x - first[0].x), at.y += along[point] * (first[1].y - first[0].y);
     const hl_line_of_text line = try_caption(ink, caption, at, below != other, ruler ? other : turn >= 2,
                                              n / turns / points);
-    if (hl_overlay_is_free(place, hl_ink_box(ink, &line))) return line;
+    if (hl_search_try(&search, hl_ink_box(ink, &line), n)) return line;
   }
   return try_caption(ink, caption, anchor, below, false, 0);
 }
@@ -173,7 +174,7 @@ static void draw_caption(const hl_ink *ink, hl_overlay_place *place, const hl_ma
   if (*caption) {
     const hl_line_of_text line = lay_caption(ink, place, caption, mark, first, at);
     hl_ink_text(ink, &line);
-    hl_overlay_take(place, hl_ink_box(ink, &line));
+    hl_take(&place->taken, hl_ink_box(ink, &line));
   }
   g_free(caption);
 }

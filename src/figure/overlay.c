@@ -1,148 +1,312 @@
 /* figure/overlay.c - draws the overlay of one picture. Annotations and the panel's letter are drawn here;
- * each other part has a file of its own. */
+ * each other part has a file of its own.
+ *
+ * All places are found before anything is drawn, on a surface of its own, so that a figure has the same
+ * places in every format. First come the insets and the texts whose places are stated, then the parts that
+ * have asked for corners, then the arrows, the bar and the legend, which takes the height that is left, and
+ * at last the texts that stand at edges and beside marks. Each keeps clear of all before it. */
 #include "figure/overlay.h"
 
-/* ---- what is taken ---- */
+#include <string.h>
 
-bool hl_rectangles_meet(hl_rectangle a, hl_rectangle b) {
-  return a.left < b.left + b.width && b.left < a.left + a.width && a.top < b.top + b.height &&
-         b.top < a.top + a.height;
+#include "core/context.h"
+#include "core/memory.h"
+
+/* The distance from a part to the border of its ground, and the distance that texts keep; in units of the
+ * letters' size. */
+static const double rim = 0.4;
+
+/* ---- measuring ---- */
+
+/* Makes an ink that draws on a surface which only records. Destroy trial.cairo after use. */
+static hl_ink begin_trial(const hl_ink *ink) {
+  cairo_surface_t *record = cairo_recording_surface_create(CAIRO_CONTENT_COLOR_ALPHA, NULL);
+  hl_ink trial = *ink;
+  trial.cairo = cairo_create(record);
+  cairo_surface_destroy(record);
+  return trial;
 }
 
-static bool lies_in(hl_rectangle box, hl_rectangle picture) {
-  return box.left >= picture.left && box.left + box.width <= picture.left + picture.width &&
-         box.top >= picture.top && box.top + box.height <= picture.top + picture.height;
-}
+typedef hl_status (*draw_function)(const hl_ink *ink, const hl_overlay_place *place, hl_error *error);
 
-bool hl_overlay_is_free(const hl_overlay_place *place, hl_rectangle box) {
-  for (size_t n = 0; n < place->taken_count; n++)
-    if (hl_rectangles_meet(place->taken[n], box)) return false;
-  return lies_in(box, place->picture);
-}
-
-void hl_overlay_take(hl_overlay_place *place, hl_rectangle box) {
-  if (place->taken_count < HL_MOST_TAKEN) place->taken[place->taken_count++] = box;
-}
-
-/* The distance, to the left or to the right, by which a box must be moved so that it overlaps no taken
- * rectangle. The result is 0 if the box overlaps none already, or if no such place lies within the
- * picture. */
-static double way_to_clear(const hl_overlay_place *place, hl_rectangle box, bool to_left) {
-  const double from = box.left;
-  for (size_t turn = 0; turn <= place->taken_count; turn++) {
-    size_t n = 0;
-    while (n < place->taken_count && !hl_rectangles_meet(place->taken[n], box)) n++;
-    if (n == place->taken_count) return turn == 0 || lies_in(box, place->picture) ? box.left - from : 0;
-    const hl_rectangle taken = place->taken[n];
-    box.left = to_left ? taken.left - box.width : taken.left + taken.width;
-  }
-  return 0;
+/* Finds the box around the drawing of a part at its usual place. */
+static hl_status find_box(const hl_ink *ink, const hl_overlay_place *place, draw_function draw,
+                          hl_rectangle *box, hl_error *error) {
+  hl_ink trial = begin_trial(ink);
+  hl_status status = draw(&trial, place, error);
+  cairo_recording_surface_ink_extents(cairo_get_target(trial.cairo), &box->left, &box->top, &box->width,
+                                      &box->height);
+  cairo_destroy(trial.cairo);
+  return status;
 }
 
 /* ---- texts ---- */
 
-/* Fills a text with the content of an annotation. circle: the radius of the ring around a point of the world;
- * 0 if the annotation has no ring. */
-static hl_status lay_annotation(const hl_ink *ink, const hl_overlay_place *place, const hl_annotation *note,
-                                hl_line_of_text *line, double *circle, hl_error *error) {
+hl_line_of_text hl_overlay_beside(const hl_ink *ink, const hl_taken *taken, hl_line_of_text text,
+                                  double apart) {
+  static const double sides[4][2] = {{1, 0}, {-1, 0}, {0, 1}, {0, -1}};
+  const double x = text.x, y = text.y;
+  hl_search search = {.taken = taken, .unit = 1};
+  for (int turn = 0; turn <= 4; turn++) {
+    const double *side = sides[turn % 4]; /* the usual side once more, if no side is free */
+    text.x = x + apart * side[0];
+    text.y = y + apart * side[1];
+    text.align_x = (1 - side[0]) / 2;
+    text.align_y = (1 - side[1]) / 2;
+    if (hl_search_try(&search, hl_ink_box(ink, &text), turn)) break;
+  }
+  return text;
+}
+
+/* The radius of the ring around a point of the world, and the distance from the point to its text; points. */
+static double ring_of(const hl_ink *ink) { return 0.3 * ink->size; }
+static double apart_of(const hl_ink *ink) { return 2.2 * ring_of(ink); }
+
+/* Finds the text of an annotation, at the place or the point that the annotation states. */
+static hl_status lay_annotation(const hl_overlay_place *place, const hl_annotation *note,
+                                hl_line_of_text *line, hl_error *error) {
   const hl_rectangle picture = place->picture;
   double x = picture.left + note->at[0] * picture.width, y = picture.top + note->at[1] * picture.height;
   if (note->text == NULL || !isfinite(note->at[0] + note->at[1] + note->at[2]))
     return hl_fail(error, HL_ERROR_ARGUMENT, "annotation: it needs a text and a finite place");
-  *circle = 0;
-  if (note->in_world) {
-    if (!hl_map_point(&place->map, vec3_of(note->at), &x, &y))
-      return hl_fail(error, HL_ERROR_ARGUMENT, "annotation '%.40s': its point lies behind the eye",
-                     note->text);
-    *circle = 0.3 * ink->size;
-  }
-  *line = (hl_line_of_text){
-      .text = note->text, .x = x + 2.2 * *circle, .y = y, .align_y = 0.5, .paragraphs = true};
+  if (note->in_world && !hl_map_point(&place->map, vec3_of(note->at), &x, &y))
+    return hl_fail(error, HL_ERROR_ARGUMENT, "annotation '%.40s': its point lies behind the eye", note->text);
+  *line = (hl_line_of_text){.text = note->text, .x = x, .y = y, .align_y = 0.5, .paragraphs = true};
   return HL_OK;
 }
 
-static hl_status draw_annotation(const hl_ink *ink, const hl_overlay_place *place, const hl_annotation *note,
-                                 hl_error *error) {
-  hl_line_of_text line;
-  double circle;
-  hl_status status = lay_annotation(ink, place, note, &line, &circle, error);
-  if (status != HL_OK) return status;
-  if (circle > 0) {
+/* Finds the texts of all annotations: of those that state places in the picture first. The texts of points
+ * keep clear of them. lines: [annotation_count]. */
+static hl_status place_annotations(const hl_ink *ink, hl_overlay_place *place, hl_line_of_text *lines,
+                                   hl_error *error) {
+  const hl_overlay *overlay = place->overlay;
+  const double ring = ring_of(ink);
+  hl_status status = HL_OK;
+  for (int in_world = 0; in_world <= 1; in_world++)
+    for (size_t a = 0; a < overlay->annotation_count && status == HL_OK; a++) {
+      const hl_annotation *note = &overlay->annotations[a];
+      if ((note->in_world != 0) != in_world) continue;
+      status = lay_annotation(place, note, &lines[a], error);
+      if (status != HL_OK) break;
+      if (in_world) {
+        const hl_rectangle point = {lines[a].x, lines[a].y, 0, 0};
+        lines[a] = hl_overlay_beside(ink, &place->taken, lines[a], apart_of(ink));
+        hl_take(&place->taken, hl_rectangle_widened(point, ring));
+      }
+      hl_take(&place->taken, hl_ink_box(ink, &lines[a]));
+    }
+  return status;
+}
+
+static void draw_annotation(const hl_ink *ink, const hl_overlay_place *place, const hl_annotation *note,
+                            const hl_line_of_text *line) {
+  double x, y;
+  if (note->in_world && hl_map_point(&place->map, vec3_of(note->at), &x, &y)) {
     cairo_new_path(ink->cairo);
-    cairo_arc(ink->cairo, line.x - 2.2 * circle, line.y, circle, 0, 2 * HL_PI);
+    cairo_arc(ink->cairo, x, y, ring_of(ink), 0, 2 * HL_PI);
     hl_ink_stroke(ink, 0.1 * ink->size);
   }
-  hl_ink_text(ink, &line);
-  return HL_OK;
+  hl_ink_text(ink, line);
 }
 
-/* The panel's letter at the upper left, beside an inset that lies there. */
-static hl_line_of_text lay_letter(const hl_ink *ink, const hl_overlay_place *place) {
+/* Finds the place of the panel's letter: at the upper left, beside an inset that lies there. */
+static hl_line_of_text place_letter(const hl_ink *ink, hl_overlay_place *place) {
   hl_line_of_text line = {.text = place->overlay->letter,
                           .x = place->picture.left + place->margin,
                           .y = place->picture.top + 0.7 * place->margin,
                           .scale = 1.4,
                           .bold = true};
-  line.x += way_to_clear(place, hl_ink_box(ink, &line), false);
+  hl_search search = {.taken = &place->taken, .unit = 1};
+  hl_rectangle usual = hl_ink_box(ink, &line), other = usual;
+  other.left = place->picture.left + place->picture.width - place->margin - usual.width;
+  hl_search_edge(&search, usual, other, 0.5 * ink->size);
+  if (search.found) line.x += search.box.left - usual.left;
+  hl_take(&place->taken, hl_ink_box(ink, &line));
   return line;
 }
 
-/* Marks the places of the panel's letter and of the annotations as taken, so that no other text is drawn
- * there. */
-static hl_status take_texts(const hl_ink *ink, hl_overlay_place *place, const hl_line_of_text *letter,
-                            hl_error *error) {
-  if (letter->text != NULL) hl_overlay_take(place, hl_ink_box(ink, letter));
-  for (size_t a = 0; a < place->overlay->annotation_count; a++) {
-    hl_line_of_text line;
-    double circle;
-    hl_status status = lay_annotation(ink, place, &place->overlay->annotations[a], &line, &circle, error);
-    if (status != HL_OK) return status;
-    hl_overlay_take(place, hl_ink_box(ink, &line));
+/* ---- parts with corners ---- */
+
+/* A part that is drawn at its usual place, in a corner, and moved from there. */
+typedef struct corner_part {
+  const char *name;
+  draw_function draw;
+  bool wanted;
+  hl_corner usual, asked;
+  bool is_placed;
+  hl_rectangle box; /* where the part lies before it is moved */
+  double x, y;      /* the way that it is moved by, points */
+  double covered;   /* the area of what the picture shows that it covers, points squared */
+} corner_part;
+
+static bool is_right(hl_corner corner) {
+  return corner == HL_CORNER_UPPER_RIGHT || corner == HL_CORNER_LOWER_RIGHT;
+}
+
+static bool is_lower(hl_corner corner) {
+  return corner == HL_CORNER_LOWER_LEFT || corner == HL_CORNER_LOWER_RIGHT;
+}
+
+/* Searches for the place of a part: the corner that is asked for, whatever lies there, or all along the
+ * edges. box: the part at its usual place. unit: as in hl_search. */
+static hl_search find_place(const hl_ink *ink, const hl_overlay_place *place, const hl_cover *cover,
+                            const corner_part *part, hl_rectangle box, double unit) {
+  const hl_taken nothing = {.picture = place->picture};
+  hl_search search = {.taken = &place->taken, .cover = cover, .rim = rim * ink->size, .unit = unit};
+  if (part->asked == HL_CORNER_FREE) {
+    hl_search_edges(&search, box, 0.5 * ink->size);
+    return search;
   }
+  search.taken = &nothing;
+  search.cover = NULL;
+  hl_search_try(&search,
+                hl_rectangle_in_corner(box, place->picture, is_right(part->asked) != is_right(part->usual),
+                                       is_lower(part->asked) != is_lower(part->usual)),
+                0);
+  return search;
+}
+
+/* The unit by which the areas are counted that parts cover: a twentieth of a part. */
+static double unit_of(hl_rectangle box) { return fmax(box.width * box.height / 20, 1e-3); }
+
+/* Gives a part the place that a search has found. box: the part at its usual place. */
+static void give_place(corner_part *part, hl_rectangle box, const hl_search *search) {
+  part->is_placed = true;
+  part->box = box;
+  part->x = search->box.left - box.left;
+  part->y = search->box.top - box.top;
+  part->covered = search->covered * search->unit;
+}
+
+/* The height that a part as wide as a box may have at one side of the picture. */
+static double height_at(const hl_ink *ink, const hl_overlay_place *place, hl_rectangle box, bool other_side) {
+  const double around = place->margin - rim * ink->size;
+  if (other_side) box = hl_rectangle_in_corner(box, place->picture, true, false);
+  hl_rectangle column = hl_rectangle_widened(box, rim * ink->size);
+  column.top = place->picture.top + around;
+  column.height = place->picture.height - 2 * around;
+  return hl_free_height(&place->taken, column) - 2 * rim * ink->size;
+}
+
+/* Finds the best of several shapes of the legend, all of one height, and its place: the shape that leaves out
+ * the least rows, then the one that covers the least, then the first one. whole: the legend with all the
+ * height of the picture. */
+static hl_status shape_legend(const hl_ink *ink, hl_overlay_place *place, const hl_cover *cover,
+                              corner_part *part, hl_rectangle whole, double height, hl_error *error) {
+  static const double widths[] = {1e3, 12, 9, 7}, strips[] = {9, 5.5}; /* in units of the letters' size */
+  enum { WIDTHS = sizeof widths / sizeof *widths, STRIPS = sizeof strips / sizeof *strips };
+  hl_legend_shape best_shape = {0};
+  hl_search best = {0};
+  size_t best_left_out = 0, left_out = 0, left_out_first = 0;
+  place->rows_left_out = &left_out;
+  hl_status status = HL_OK;
+  for (int n = 0; n < WIDTHS * STRIPS && status == HL_OK; n++) {
+    hl_rectangle box;
+    if (n % WIDTHS > 0 && left_out_first > 0) continue; /* narrower rows leave out no less */
+    place->legend = (hl_legend_shape){height, widths[n % WIDTHS] * ink->size, strips[n / WIDTHS] * ink->size};
+    status = find_box(ink, place, part->draw, &box, error);
+    if (status != HL_OK) break;
+    if (n % WIDTHS == 0) left_out_first = left_out;
+    const hl_search found = find_place(ink, place, cover, part, box, unit_of(whole));
+    const bool is_better = left_out != best_left_out ? left_out < best_left_out
+                                                     : found.covered < best.covered;
+    if (!found.found || (best.found && !is_better)) continue;
+    give_place(part, box, &found);
+    best = found;
+    best_left_out = left_out;
+    best_shape = place->legend;
+  }
+  place->rows_left_out = NULL;
+  place->legend = best_shape;
+  return status;
+}
+
+/* Places the legend. It is as high as there is room at its usual side of the picture, or else at the other
+ * side: also where it is whole at the other side alone. */
+static hl_status place_legend(const hl_ink *ink, hl_overlay_place *place, const hl_cover *cover,
+                              corner_part *part, hl_error *error) {
+  const bool across = part->asked != HL_CORNER_FREE && is_right(part->asked) != is_right(part->usual);
+  hl_rectangle whole;
+  size_t left_out = 0;
+  place->rows_left_out = &left_out;
+  place->legend = (hl_legend_shape){place->picture.height - 2 * place->margin, 1e3 * ink->size,
+                                    9 * ink->size};
+  hl_status status = find_box(ink, place, part->draw, &whole, error);
+  if (status != HL_OK) return status;
+  const double heights[2] = {height_at(ink, place, whole, across), height_at(ink, place, whole, !across)};
+  const bool turned = part->asked == HL_CORNER_FREE && left_out == 0 && heights[0] < whole.height &&
+                      heights[1] >= whole.height;
+  for (int side = 0; side < 2 && status == HL_OK && !part->is_placed; side++)
+    status = shape_legend(ink, place, cover, part, whole, heights[(side == 1) != turned], error);
+  return status;
+}
+
+static hl_status place_part(const hl_ink *ink, hl_overlay_place *place, const hl_cover *cover,
+                            corner_part *part, hl_error *error) {
+  hl_status status;
+  if (part->draw == hl_overlay_legend) {
+    status = place_legend(ink, place, cover, part, error);
+  } else {
+    hl_rectangle box;
+    status = find_box(ink, place, part->draw, &box, error);
+    if (status != HL_OK) return status;
+    const hl_search found = find_place(ink, place, cover, part, box, unit_of(box));
+    if (found.found) give_place(part, box, &found);
+  }
+  if (part->is_placed) {
+    hl_rectangle moved = hl_rectangle_widened(part->box, rim * ink->size);
+    moved.left += part->x;
+    moved.top += part->y;
+    hl_take(&place->taken, moved);
+  }
+  return status;
+}
+
+enum { PARTS = 3, LEGEND = 2 };
+
+/* Places all parts in one order, those that have asked for corners first. legend_first: whether the legend
+ * comes before the others. */
+static hl_status place_in_order(const hl_ink *ink, hl_overlay_place *place, const hl_cover *cover,
+                                corner_part parts[PARTS], bool legend_first, hl_error *error) {
+  hl_status status = HL_OK;
+  for (int asked = 1; asked >= 0; asked--)
+    for (int n = 0; n < PARTS && status == HL_OK; n++) {
+      corner_part *part = &parts[(n + (legend_first ? LEGEND : 0)) % PARTS];
+      if (part->wanted && (part->asked != HL_CORNER_FREE) == asked)
+        status = place_part(ink, place, cover, part, error);
+    }
+  return status;
+}
+
+/* What speaks against the places of all parts: the area that they cover, and parts that are left out. */
+static double cost_of(const corner_part parts[PARTS]) {
+  double cost = 0;
+  for (int n = 0; n < PARTS; n++) cost += parts[n].wanted && !parts[n].is_placed ? 1e12 : parts[n].covered;
+  return cost;
+}
+
+/* Places the parts in that order of two in which they cover less. A legend that comes first has more places
+ * to choose from, and one that comes last is lower. */
+static hl_status place_parts(const hl_ink *ink, hl_overlay_place *place, const hl_cover *cover,
+                             corner_part parts[PARTS], hl_error *error) {
+  hl_overlay_place first_place = *place;
+  corner_part first_parts[PARTS];
+  memcpy(first_parts, parts, sizeof first_parts);
+  hl_status status = place_in_order(ink, place, cover, parts, false, error);
+  if (status != HL_OK || cost_of(parts) == 0 || !parts[LEGEND].wanted) return status;
+  status = place_in_order(ink, &first_place, cover, first_parts, true, error);
+  if (status != HL_OK || cost_of(first_parts) >= cost_of(parts)) return status;
+  *place = first_place;
+  memcpy(parts, first_parts, sizeof first_parts);
   return HL_OK;
 }
 
-/* ---- the ground behind parts that lie over matter ---- */
-
-typedef hl_status (*overlay_part)(const hl_ink *ink, const hl_overlay_place *place, hl_error *error);
+/* ---- drawing ---- */
 
 /* The least opacity of a black ground at which white letters have the contrast 4.5 (WCAG 2.1, 1.4.3) over a
  * white picture. Derived: (1 + 0.05) / (Y + 0.05) = 4.5 for the luminance Y = 0.183 of the sRGB grey 1 -
  * 0.534. A white ground under black letters needs less: 0.456. */
 static const double ground_opacity = 0.54;
-
-/* The least opacity that changes an 8-bit code. */
-static const float seen_opacity = 0.5F / 255;
-
-/* Finds the box around the drawing of a part, by drawing the part on a recording surface. */
-static hl_status find_box(const hl_ink *ink, const hl_overlay_place *place, overlay_part part,
-                          hl_rectangle *box, hl_error *error) {
-  cairo_surface_t *record = cairo_recording_surface_create(CAIRO_CONTENT_COLOR_ALPHA, NULL);
-  hl_ink trial = *ink;
-  trial.cairo = cairo_create(record);
-  hl_status status = part(&trial, place, error);
-  cairo_destroy(trial.cairo);
-  cairo_recording_surface_ink_extents(record, &box->left, &box->top, &box->width, &box->height);
-  cairo_surface_destroy(record);
-  return status;
-}
-
-/* The number of a picture's pixel at a place, from 0 to `count`; part: the place, from 0 to 1. */
-static int pixel_at(double part, int count) { return (int)fmin(fmax(floor(part * count), 0), count); }
-
-/* Returns whether the picture shows matter in a box on the page. */
-static bool shows_matter(const hl_image *image, hl_rectangle picture, hl_rectangle box) {
-  const int width = hl_image_width(image), height = hl_image_height(image);
-  const float *pixels = hl_image_pixels_const(image);
-  const double left = (box.left - picture.left) / picture.width,
-               top = (box.top - picture.top) / picture.height;
-  const int first = pixel_at(left, width), last = pixel_at(left + box.width / picture.width, width - 1);
-  const int end = pixel_at(top + box.height / picture.height, height - 1);
-  for (int y = pixel_at(top, height); y <= end; y++)
-    for (int x = first; x <= last; x++)
-      if (pixels[4 * ((size_t)y * (size_t)width + (size_t)x) + 3] >= seen_opacity) return true;
-  return false;
-}
 
 /* Fills a box with round corners. */
 static void draw_ground(const hl_ink *ink, hl_rectangle box) {
@@ -158,72 +322,97 @@ static void draw_ground(const hl_ink *ink, hl_rectangle box) {
   cairo_fill(ink->cairo);
 }
 
-/* A part that has a corner of the picture to itself. */
-typedef struct corner_part {
-  overlay_part draw;
-  bool wanted, right; /* right: the corner lies at the picture's right side */
-  hl_rectangle box;   /* where the part lies, before it is moved, with a rim */
-  double way;         /* the way to the right that the part is moved by, points */
-} corner_part;
-
-/* Finds the place of a part, beside what is taken. */
-static hl_status settle_part(const hl_ink *ink, const hl_overlay_place *place, corner_part *part,
-                             hl_error *error) {
-  const double rim = 0.4 * ink->size;
-  hl_status status = find_box(ink, place, part->draw, &part->box, error);
-  if (status != HL_OK) return status;
-  part->box = (hl_rectangle){part->box.left - rim, part->box.top - rim, part->box.width + 2 * rim,
-                             part->box.height + 2 * rim};
-  part->way = way_to_clear(place, part->box, part->right);
-  return HL_OK;
-}
-
-static hl_rectangle moved_box(const corner_part *part) {
-  hl_rectangle box = part->box;
-  box.left += part->way;
-  return box;
-}
-
 /* Draws a part, on a ground where matter lies behind it. */
-static hl_status draw_part(const hl_ink *ink, const hl_overlay_place *place, const hl_image *image,
+static hl_status draw_part(const hl_ink *ink, const hl_overlay_place *place, const hl_cover *cover,
                            const corner_part *part, hl_error *error) {
+  const hl_rectangle box = hl_rectangle_widened(part->box, rim * ink->size);
+  hl_rectangle moved = box;
+  moved.left += part->x;
+  moved.top += part->y;
   cairo_save(ink->cairo);
-  cairo_translate(ink->cairo, part->way, 0);
-  if (image != NULL && shows_matter(image, place->picture, moved_box(part))) draw_ground(ink, part->box);
+  cairo_translate(ink->cairo, part->x, part->y);
+  if (hl_cover_in(cover, place->picture, moved) > 0) draw_ground(ink, box);
   hl_status status = part->draw(ink, place, error);
   cairo_restore(ink->cairo);
   return status;
 }
 
-hl_status hl_overlay_draw(const hl_ink *ink, const hl_overlay *overlay, const hl_scene *scene,
-                          const hl_image *image, hl_rectangle picture, const hl_rectangle *insets,
-                          size_t inset_count, hl_error *error) {
+/* Tells the context's log which parts are left out, because they find no room. */
+static void tell_left_out(const hl_overlay_ground *ground, const corner_part parts[PARTS]) {
+  char panel[40] = "";
+  if (ground->panel > 0) snprintf(panel, sizeof panel, "panel %zu: ", ground->panel);
+  for (int n = 0; n < PARTS && ground->is_told; n++)
+    if (parts[n].wanted && !parts[n].is_placed)
+      hl_log(
+          ground->context, HL_LOG_WARNING,
+          "%sthe %s finds no room in the picture and is left out: smaller letters or a larger picture make "
+          "room",
+          panel, parts[n].name);
+}
+
+/* Draws all parts at the places that are found. lines: [annotation_count]; the texts of annotations. */
+static hl_status draw_all(const hl_ink *ink, const hl_overlay_place *place, const hl_cover *cover,
+                          const corner_part parts[PARTS], const hl_line_of_text *lines,
+                          const hl_line_of_text *letter, hl_error *error) {
+  const hl_overlay *overlay = place->overlay;
+  hl_status status = overlay->marks ? hl_overlay_marks(ink, place, error) : HL_OK;
+  for (int n = 0; n < PARTS && status == HL_OK; n++)
+    if (parts[n].is_placed) status = draw_part(ink, place, cover, &parts[n], error);
+  if (status == HL_OK && overlay->axes == HL_AXES_LETTERS) status = hl_overlay_axes(ink, place, error);
+  for (size_t a = 0; status == HL_OK && a < overlay->annotation_count; a++)
+    draw_annotation(ink, place, &overlay->annotations[a], &lines[a]);
+  if (status == HL_OK && letter->text != NULL) hl_ink_text(ink, letter);
+  return status;
+}
+
+/* Finds all places, and then draws. lines: [annotation_count]; room for the texts of annotations. */
+static hl_status place_and_draw(const hl_ink *ink, hl_overlay_place *place, const hl_cover *cover,
+                                const hl_overlay_ground *ground, hl_line_of_text *lines, hl_error *error) {
+  const hl_overlay *overlay = place->overlay;
+  corner_part parts[PARTS] = {{.name = "picture of the axes",
+                               .draw = hl_overlay_axes,
+                               .wanted = overlay->axes == HL_AXES_ARROWS,
+                               .usual = HL_CORNER_LOWER_RIGHT,
+                               .asked = overlay->arrows_corner},
+                              {.name = "scale bar",
+                               .draw = hl_overlay_bar,
+                               .wanted = overlay->scale_bar,
+                               .usual = HL_CORNER_LOWER_LEFT,
+                               .asked = overlay->scale_bar_corner},
+                              {.name = "legend",
+                               .draw = hl_overlay_legend,
+                               .wanted = overlay->legend,
+                               .usual = HL_CORNER_UPPER_RIGHT,
+                               .asked = overlay->legend_corner}};
+  hl_ink trial = begin_trial(ink);
+  hl_line_of_text letter = {0};
+  if (overlay->letter != NULL) letter = place_letter(&trial, place);
+  hl_status status = place_annotations(&trial, place, lines, error);
+  if (status == HL_OK) status = place_parts(&trial, place, cover, parts, error);
+  cairo_destroy(trial.cairo);
+  if (status == HL_OK) tell_left_out(ground, parts);
+  if (status == HL_OK) status = draw_all(ink, place, cover, parts, lines, &letter, error);
+  return status;
+}
+
+hl_status hl_overlay_draw(const hl_ink *ink, const hl_overlay *overlay, const hl_overlay_ground *ground,
+                          hl_error *error) {
+  const hl_rectangle picture = ground->picture;
   hl_overlay_place place = {.overlay = overlay,
-                            .scene = hl_scene_describe(scene),
+                            .scene = hl_scene_describe(ground->scene),
                             .picture = picture,
+                            .taken.picture = picture,
                             .margin = fmin(ink->size, 0.06 * fmin(picture.width, picture.height))};
   if (place.scene != NULL) place.map = hl_map_of(&place.scene->camera, picture);
-  corner_part parts[] = {
-      {.draw = hl_overlay_legend, .wanted = overlay->legend, .right = true},
-      {.draw = hl_overlay_bar, .wanted = overlay->scale_bar},
-      {.draw = hl_overlay_axes, .wanted = overlay->axes == HL_AXES_ARROWS, .right = true},
-  };
-  const size_t count = sizeof parts / sizeof *parts;
-  hl_status status = HL_OK;
-  for (size_t n = 0; n < inset_count; n++) hl_overlay_take(&place, insets[n]);
-  hl_line_of_text letter = {0};
-  if (overlay->letter != NULL) letter = lay_letter(ink, &place);
-  for (size_t n = 0; n < count && status == HL_OK; n++)
-    if (parts[n].wanted) status = settle_part(ink, &place, &parts[n], error);
-  for (size_t n = 0; n < count && status == HL_OK; n++)
-    if (parts[n].wanted) hl_overlay_take(&place, moved_box(&parts[n]));
-  if (status == HL_OK) status = take_texts(ink, &place, &letter, error);
-  if (status == HL_OK && overlay->marks) status = hl_overlay_marks(ink, &place, error);
-  for (size_t n = 0; n < count && status == HL_OK; n++)
-    if (parts[n].wanted) status = draw_part(ink, &place, image, &parts[n], error);
-  if (status == HL_OK && overlay->axes == HL_AXES_LETTERS) status = hl_overlay_axes(ink, &place, error);
-  for (size_t a = 0; status == HL_OK && a < overlay->annotation_count; a++)
-    status = draw_annotation(ink, &place, &overlay->annotations[a], error);
-  if (status == HL_OK && letter.text != NULL) hl_ink_text(ink, &letter);
+  for (size_t n = 0; n < ground->inset_count; n++) hl_take(&place.taken, ground->insets[n]);
+  const size_t count = overlay->annotation_count;
+  hl_cover cover = {0};
+  hl_line_of_text *lines = hl_allocate(ground->context, count + 1, sizeof *lines);
+  hl_status status = lines != NULL ? HL_OK
+                                   : hl_fail_memory(error, (count + 1) * sizeof *lines, "a figure's texts");
+  if (status == HL_OK) status = hl_cover_measure(ground->context, ground->matter, &cover, error);
+  if (status == HL_OK) status = place_and_draw(ink, &place, &cover, ground, lines, error);
+  hl_cover_release(&cover);
+  hl_release(ground->context, lines);
   return status;
 }

@@ -4,9 +4,7 @@
 
 #include "core/error.h"
 #include "figure/ink.h"
-#include "figure/map.h"
-
-enum { HL_MOST_TAKEN = 128 };
+#include "figure/places.h"
 
 /* The picture over which an overlay is drawn, and its place on the page. */
 typedef struct hl_overlay_place {
@@ -15,30 +13,41 @@ typedef struct hl_overlay_place {
   hl_rectangle picture;              /* the rectangle of the picture on the page, points */
   double margin;                     /* the distance of the overlay from the picture's edges, points */
   hl_map map;                        /* the map from points of `scene` to places on the page */
-  hl_rectangle taken[HL_MOST_TAKEN]; /* [taken_count]; rectangles on the page that texts keep clear of:
-                                      * insets, and parts of the overlay whose places are already known */
-  size_t taken_count;
+  hl_taken taken;                    /* insets, and parts of the overlay whose places are already known */
+  struct hl_legend_shape {
+    double height;       /* the greatest height of the legend, points */
+    double width;        /* the greatest width of its titles and rows, points, if their words allow it */
+    double strip_height; /* the greatest height of a strip of colours, points */
+  } legend;
+  size_t *rows_left_out; /* takes the number of rows that the legend has no room for; may be null */
 } hl_overlay_place;
 
-/* Draws the whole overlay over a picture. scene: may be null. image: the picture. If it shows matter behind
- * the bar, the legend or the arrows, a ground is drawn between the matter and the part. If image is null, no
- * ground is drawn. insets: [inset_count]; rectangles on the page that will lie over the picture. The parts of
- * the overlay that have corners move sideways to where no inset covers them. */
-hl_status hl_overlay_draw(const hl_ink *ink, const hl_overlay *overlay, const hl_scene *scene,
-                          const hl_image *image, hl_rectangle picture, const hl_rectangle *insets,
-                          size_t inset_count, hl_error *error);
+typedef struct hl_legend_shape hl_legend_shape;
 
-/* Returns whether two rectangles overlap. */
-bool hl_rectangles_meet(hl_rectangle a, hl_rectangle b);
-/* Returns whether a rectangle lies within the picture and overlaps no taken rectangle. */
-bool hl_overlay_is_free(const hl_overlay_place *place, hl_rectangle box);
-/* Adds a rectangle to the taken rectangles. */
-void hl_overlay_take(hl_overlay_place *place, hl_rectangle box);
+/* What hl_overlay_draw() draws over. */
+typedef struct hl_overlay_ground {
+  hl_context *context;
+  const hl_scene *scene;  /* may be null */
+  const hl_image *matter; /* shows where matter lies, of which the overlay keeps clear, and over which it has
+                           * grounds; if null, there is none */
+  hl_rectangle picture;   /* the rectangle of the picture on the page, points */
+  const hl_rectangle *insets; /* [inset_count]; rectangles on the page that will lie over the picture */
+  size_t inset_count;
+  size_t panel; /* the panel's number, which messages name; 0 if the page has no other panel */
+  bool is_told; /* whether the context's log is told which parts find no room */
+} hl_overlay_ground;
 
-/* The height, from the picture's lower margin, that the arrows of the axes take; points. */
-double hl_overlay_arrows_height(const hl_ink *ink);
+/* Draws the whole overlay over a picture. */
+hl_status hl_overlay_draw(const hl_ink *ink, const hl_overlay *overlay, const hl_overlay_ground *ground,
+                          hl_error *error);
 
-/* Functions that each draw one part of the overlay, if the overlay has this part. */
+/* Places a text beside a point on the page: to the right of it (the usual place), to the left, below or
+ * above. The first place that keeps clear of what is taken is chosen, or else the usual one. apart: the
+ * distance from the point, points. */
+hl_line_of_text hl_overlay_beside(const hl_ink *ink, const hl_taken *taken, hl_line_of_text text,
+                                  double apart);
+
+/* Functions that each draw one part of the overlay, if the overlay has this part, at its usual place. */
 hl_status hl_overlay_bar(const hl_ink *ink, const hl_overlay_place *place, hl_error *error);
 hl_status hl_overlay_legend(const hl_ink *ink, const hl_overlay_place *place, hl_error *error);
 hl_status hl_overlay_axes(const hl_ink *ink, const hl_overlay_place *place, hl_error *error);

@@ -171,7 +171,8 @@ static void draw_frame(const hl_ink *ink, hl_rectangle place) {
 }
 
 /* Draws the overlay of a panel, beside the panels that will be drawn over it. */
-static hl_status draw_overlay(const hl_figure *figure, size_t index, const hl_ink *ink, hl_error *error) {
+static hl_status draw_overlay(hl_context *context, const hl_figure *figure, size_t index, const hl_ink *ink,
+                              bool is_told, hl_error *error) {
   const hl_figure_panel *panel = &figure->panels[index];
   const hl_rectangle picture = rectangle_of(panel);
   hl_rectangle insets[HL_MOST_TAKEN];
@@ -180,11 +181,19 @@ static hl_status draw_overlay(const hl_figure *figure, size_t index, const hl_in
     const hl_rectangle other = rectangle_of(&figure->panels[p]);
     if (hl_rectangles_meet(picture, other)) insets[count++] = other;
   }
-  return hl_overlay_draw(ink, &panel->overlay, panel->scene, panel->image, picture, insets, count, error);
+  const hl_overlay_ground ground = {.context = context,
+                                    .scene = panel->scene,
+                                    .matter = panel->matter != NULL ? panel->matter : panel->image,
+                                    .picture = picture,
+                                    .insets = insets,
+                                    .inset_count = count,
+                                    .panel = figure->panel_count > 1 ? index + 1 : 0,
+                                    .is_told = is_told};
+  return hl_overlay_draw(ink, &panel->overlay, &ground, error);
 }
 
 static hl_status draw_panels(hl_context *context, const hl_figure *figure, cairo_t *cairo, bool pixels,
-                             hl_error *error) {
+                             bool is_told, hl_error *error) {
   if (!figure->background_transparent) {
     hl_ink_source(cairo, figure->background, 1);
     cairo_paint(cairo);
@@ -195,7 +204,7 @@ static hl_status draw_panels(hl_context *context, const hl_figure *figure, cairo
     if (panel->image != NULL) status = draw_picture(context, cairo, figure, panel, pixels, error);
     hl_ink ink = ink_for(cairo, figure, panel);
     if (panel->frame) draw_frame(&ink, rectangle_of(panel));
-    if (status == HL_OK) status = draw_overlay(figure, p, &ink, error);
+    if (status == HL_OK) status = draw_overlay(context, figure, p, &ink, is_told, error);
   }
   if (status == HL_OK && cairo_status(cairo) != CAIRO_STATUS_SUCCESS)
     status = hl_fail(error, HL_ERROR_INTERNAL, "figure: cairo says: %s",
@@ -234,8 +243,8 @@ static hl_status to_image(hl_context *context, cairo_surface_t *surface, hl_imag
   return HL_OK;
 }
 
-hl_status hl_page_draw(hl_context *context, const hl_figure *figure, int width, int height, hl_image **image,
-                       hl_error *error) {
+hl_status hl_page_draw(hl_context *context, const hl_figure *figure, bool is_told, int width, int height,
+                       hl_image **image, hl_error *error) {
   cairo_surface_t *surface = cairo_image_surface_create(CAIRO_FORMAT_ARGB32, width, height);
   cairo_t *cairo = cairo_create(surface);
   hl_status status = cairo_status(cairo) == CAIRO_STATUS_SUCCESS
@@ -243,7 +252,7 @@ hl_status hl_page_draw(hl_context *context, const hl_figure *figure, int width, 
                          : hl_fail_memory(error, 4 * (size_t)width * (size_t)height, "a figure's pixels");
   cairo_scale(cairo, width / (figure->width * points_per_millimetre),
               height / (figure->height * points_per_millimetre));
-  if (status == HL_OK) status = draw_panels(context, figure, cairo, true, error);
+  if (status == HL_OK) status = draw_panels(context, figure, cairo, true, is_told, error);
   if (status == HL_OK) status = to_image(context, surface, image, error);
   cairo_destroy(cairo);
   cairo_surface_destroy(surface);
@@ -267,7 +276,7 @@ hl_status hl_page_write(const hl_figure *figure, bool pdf, hl_output *output, hl
     cairo_pdf_surface_set_metadata(surface, CAIRO_PDF_METADATA_CREATE_DATE, "");
   }
   cairo_t *cairo = cairo_create(surface);
-  hl_status status = draw_panels(output->context, figure, cairo, false, error);
+  hl_status status = draw_panels(output->context, figure, cairo, false, true, error);
   cairo_destroy(cairo);
   errno = 0;
   cairo_surface_finish(surface);

@@ -10,9 +10,10 @@
 #define MILLIMETRES_PER_INCH 25.4
 #define POINTS_PER_INCH      72.0
 
-/* Draws a figure as width x height pixels. *image is owned by the caller. */
-hl_status hl_page_draw(hl_context *context, const hl_figure *figure, int width, int height, hl_image **image,
-                       hl_error *error);
+/* Draws a figure as width x height pixels. is_told: whether the context's log is told which parts of overlays
+ * find no room. *image is owned by the caller. */
+hl_status hl_page_draw(hl_context *context, const hl_figure *figure, bool is_told, int width, int height,
+                       hl_image **image, hl_error *error);
 
 /* Writes a figure as PDF, or as SVG, to output->file. */
 hl_status hl_page_write(const hl_figure *figure, bool pdf, hl_output *output, hl_error *error);

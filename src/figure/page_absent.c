@@ -7,9 +7,9 @@ static hl_status refuse(hl_error *error) {
                  "this build draws no figures: install cairo and pango, and build with -Dfigures=enabled");
 }
 
-hl_status hl_page_draw(hl_context *context, const hl_figure *figure, int width, int height, hl_image **image,
-                       hl_error *error) {
-  (void)context, (void)figure, (void)width, (void)height, (void)image;
+hl_status hl_page_draw(hl_context *context, const hl_figure *figure, bool is_told, int width, int height,
+                       hl_image **image, hl_error *error) {
+  (void)context, (void)figure, (void)is_told, (void)width, (void)height, (void)image;
   return refuse(error);
 }
 

@@ -482,8 +482,99 @@ def grounds_behind_parts():
     labels[8:56, 8:56, 8:56] = 1 + np.arange(48)[:, None, None]
     nifti("labels.nii", labels, 1.0)
     halflight("labels.nii", "--ortho", "--size", "400x400", "--zoom", "4", "--quiet", "--legend", "auto", "--axes", "arrows", "-o", "rows.svg")
-    legend, arrows = grounds("rows.svg")
+    legend, arrows = sorted(grounds("rows.svg"), key=lambda ground: ground[1])
     check(legend[3] <= arrows[1] + 1e-6, f"the legend {legend} ends above the arrows {arrows}")
+
+
+def changed(picture, plain):
+    """Where a picture differs from another one."""
+    return (np.asarray(Image.open(picture).convert("RGB")) != np.asarray(Image.open(plain).convert("RGB"))).any(axis=2)
+
+
+def box_of(where):
+    """(left, top, right, bottom) of what is true, in pixels."""
+    rows, columns = np.nonzero(where)
+    return columns.min(), rows.min(), columns.max() + 1, rows.max() + 1
+
+
+def parts_cover_the_least():
+    """A legend, a bar and arrows cover nothing where there is room beside the matter, in all formats at one place; a corner that is asked for is
+    exact, and its mirror image is another corner's."""
+    block = np.zeros((64, 64, 64), np.uint8)
+    block[2:36, 20:44, 2:62] = 200
+    nifti("block.nii", block, 1.0)
+
+    def seen(zoom, aside):
+        """aside.json: the block at that part of the picture's height to the right of its middle."""
+        scene = json.loads(halflight("block.nii", "--look", "surface", "--ortho", "--view", "front", "--whole", "--size", "360x300", "--zoom", zoom, "--print-scene"))
+        camera = scene["camera"]
+        way = np.cross(np.subtract(camera["target"], camera["position"]), camera["up"])
+        way *= -aside * camera["height"] / np.linalg.norm(way)
+        camera.update({key: np.add(camera[key], way).tolist() for key in ("position", "target")})
+        Path("aside.json").write_text(json.dumps(scene))
+        halflight("aside.json", "--quiet", "-o", "plain.png")
+
+    seen(1.2, 0.35)
+    halflight("aside.json", "--quiet", "-o", "plain.npy")
+    matter = np.load("plain.npy")[..., 3] > 0.5 / 255
+    look = ["aside.json", "--quiet"]
+    check(matter[30:150, 340].all() and not matter[:, :160].any(), "the matter is at the right, where legends usually are")
+    parts = ["--legend", "Flow of water through the porous rock (m/s)", "--scale-bar", "10mm", "--axes", "arrows"]
+    for name in "free.png", "free.svg", "free.pdf":
+        halflight(*look, *parts, "-o", name)
+    drawn = changed("free.png", "plain.png")
+    check(drawn.sum() > 500 and not (drawn & matter).any() and grounds("free.svg") == [], f"{(drawn & matter).sum()} pixels cover matter")
+    halflight(*look, *parts, "--place", "legend=upper-right", "-o", "asked.png")
+    check((changed("asked.png", "plain.png") & matter).sum() > 500, "the usual corner of the legend is over matter")
+    # The strip of colours and the numbers beside it are where the PNG has them.
+    page = float(XML.parse("free.svg").getroot().get("viewBox").split()[2])
+    strip, = [n for style, n in paths("free.svg") if "fill:url(#" in style and len(n) == 10]
+    left, top, right, bottom = (round(x * 360 / page) for x in (min(strip[::2]), min(strip[1::2]), max(strip[::2]), max(strip[1::2])))
+    inside = drawn[top + 1:bottom - 1, left + 1:right - 1]
+    check(inside.all() and inside.size > 200 and right < 180, f"the strip at {left}, {top}, {right}, {bottom}")
+    boxes = re.findall(r'xMin="([\d.]+)" yMin="([\d.]+)" xMax="([\d.]+)" yMax="([\d.]+)">([^<]*)<', tool("pdftotext", "-bbox", "free.pdf", "-"))
+    check({"Flow", "of", "water", "(m/s)", "10", "mm"} <= {word for *_, word in boxes}, f"{boxes}: nothing of the title is cut")
+    for x0, y0, x1, y1, word in boxes:
+        x, y = (round((float(a) + float(b)) / 2 * 360 / page) for a, b in ((x0, x1), (y0, y1)))
+        check(drawn[y - 5:y + 6, x - 6:x + 7].any() and not matter[y, x], f"{word} of the PDF at {x}, {y}")
+    # Corners: over nothing, a part is as far from the edges of each.
+    seen(0.1, 0)
+    for part, words_of_part, usual in (("legend", ["--legend", "auto"], "upper-right"), ("scale-bar", ["--scale-bar", "100mm"], "lower-left"), ("axes", ["--axes", "arrows"], "lower-right")):
+        halflight(*look, *words_of_part, "-o", "free.png")
+        halflight(*look, *words_of_part, "--place", f"{part}={usual}", "-o", "asked.png")
+        check(Path("free.png").read_bytes().split(b"IDAT", 1)[1] == Path("asked.png").read_bytes().split(b"IDAT", 1)[1], f"{part}: the usual corner is free")
+        one = box_of(changed("asked.png", "plain.png"))
+        for corner in "upper-left", "upper-right", "lower-left", "lower-right":
+            halflight(*look, *words_of_part, "--place", f"{part}={corner}", "-o", "asked.png")
+            found = box_of(changed("asked.png", "plain.png"))
+            x = [one[0], one[2]] if corner.split("-")[1] == usual.split("-")[1] else [360 - one[2], 360 - one[0]]
+            y = [one[1], one[3]] if corner.split("-")[0] == usual.split("-")[0] else [300 - one[3], 300 - one[1]]
+            check(max(abs(np.subtract(found, (x[0], y[0], x[1], y[1])))) <= 1, f"{part} in the {corner} corner: {found}, expected {x}, {y}")
+
+
+def titles_of_legends():
+    """The ground of a legend with a long title is as wide as its lines, and no word is cut; a title that is broken keeps the strip."""
+    nifti("full.nii", np.full((32, 32, 32), 200, np.uint8), 1.0)
+    look = ["full.nii", "--look", "surface", "--ortho", "--whole", "--zoom", "4", "--size", "500x400", "--quiet", "--range", "0,250"]
+    title = "X-ray attenuation of the bonsai tree (arbitrary units)"
+    widths = []
+    for asked in "Flow", title:
+        halflight(*look, "--legend", asked, "-o", "full.svg")
+        (left, _, right, _), = grounds("full.svg")
+        widths.append((right - left) / 7)
+    check(widths[0] < 8 and widths[0] <= widths[1] < 11.5, f"{widths} sizes of letters")
+    halflight(*look, "--legend", title, "-o", "full.pdf")
+    check(title.split() == [word for word in words("full.pdf").split() if not re.fullmatch(r"[\d.]+", word)], f"{words('full.pdf')!r}")
+
+
+def without_room():
+    """A part that finds no room is left out, and a line says so."""
+    nifti("rods.nii", rods, 1.0)
+    look = ["rods.nii", "--ortho", "--size", "40x30"]
+    halflight(*look, "--quiet", "-o", "plain.png")
+    done = subprocess.run([program, "render", *look, "--font-size", "12", "--legend", "auto", "-o", "none.png"], capture_output=True, text=True)
+    check(done.returncode == 0 and done.stderr.count("the legend finds no room in the picture and is left out") == 1, done.stderr)
+    check(not changed("none.png", "plain.png").any(), "nothing is drawn")
 
 
 def linear_files_are_refused():
@@ -499,7 +590,8 @@ with tempfile.TemporaryDirectory() as folder:
     import os
     os.chdir(folder)
     for test in (bars, chosen_lengths, perspective, units_are_not_invented, physical_sizes, hostile_texts, legends, label_legends, letters,
-                 points_of_the_world, lengths_of_marks, places_of_marks, pages, plain_pictures, letters_stay_in_place, grounds_behind_parts, linear_files_are_refused):
+                 points_of_the_world, lengths_of_marks, places_of_marks, pages, plain_pictures, letters_stay_in_place, grounds_behind_parts,
+                 parts_cover_the_least, titles_of_legends, without_room, linear_files_are_refused):
         before = checks
         test()
         print(f"{test.__name__}: {checks - before} checks", flush=True)

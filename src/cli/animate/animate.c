@@ -340,6 +340,7 @@ static int run_animate(const cli_value *values, char **operands) {
   int exit_code = frames_read_part(&render[RENDER_PART], &render[RENDER_RANKS], &job.part, &job.parts);
   if (exit_code == EXIT_CODE_OK) exit_code = render_check_options(render);
   if (exit_code == EXIT_CODE_OK) exit_code = render_overlay_read(render, &job.overlay);
+  overlay_hold(&job.overlay);
   if (exit_code == EXIT_CODE_OK) exit_code = choose_output(&job);
   bool series = render_has_pattern(operands) || render[RENDER_TIME].chosen;
   if (exit_code == EXIT_CODE_OK && !series && render[RENDER_RANGE_OF_ALL].given)

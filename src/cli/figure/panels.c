@@ -309,7 +309,7 @@ static int add_panel(page_reading *reading, const json_t *given, const json_t *b
     json_t *bare = json_copy(keys); /* the inset gets the panel's options without the overlays, which are
                                      * drawn once, over the panel */
     static const char *const drawn[] = {"scale-bar", "scale_bar", "legend", "axes",
-                                        "marks",     "annotate",  "unit"};
+                                        "marks",     "annotate",  "unit",   "place"};
     for (size_t n = 0; n < sizeof drawn / sizeof *drawn; n++) json_object_del(bare, drawn[n]);
     exit_code = add_panel(reading, inset, bare, index);
     json_decref(bare);

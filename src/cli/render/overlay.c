@@ -80,6 +80,40 @@ static int read_annotation(const char *text, cli_overlay *made) {
   return note->text != NULL ? EXIT_CODE_OK : fail(EXIT_CODE_FAILURE, "out of memory");
 }
 
+/* The option that draws a part of the overlay, and the part's corner. */
+typedef struct placed_part {
+  const char *name;
+  int option;
+  hl_corner *corner;
+} placed_part;
+
+/* Reads a value of --place: "PART=CORNER". */
+static int read_place(const char *text, const cli_value *values, hl_overlay *overlay) {
+  const placed_part parts[] = {{"legend", RENDER_LEGEND, &overlay->legend_corner},
+                               {"scale-bar", RENDER_SCALE_BAR, &overlay->scale_bar_corner},
+                               {"axes", RENDER_AXES, &overlay->arrows_corner}};
+  static const char *const corners[] = {"upper-left", "upper-right", "lower-left", "lower-right"};
+  const size_t length = strcspn(text, "=");
+  char corner[16] = "";
+  if (text[length] == '=') snprintf(corner, sizeof corner, "%.15s", text + length + 1);
+  for (char *space = strchr(corner, ' '); space != NULL; space = strchr(space, ' ')) *space = '-';
+  for (size_t p = 0; p < sizeof parts / sizeof *parts; p++) {
+    if (strlen(parts[p].name) != length || strncmp(text, parts[p].name, length) != 0) continue;
+    if (!values[parts[p].option].given || (parts[p].option == RENDER_AXES && overlay->axes != HL_AXES_ARROWS))
+      return fail(EXIT_CODE_USAGE, "--place: '%s': nothing is there to place: add --%s", text,
+                  parts[p].option == RENDER_AXES ? "axes arrows" : parts[p].name);
+    for (int c = 0; c < 4; c++)
+      if (strcmp(corner, corners[c]) == 0) {
+        *parts[p].corner = (hl_corner)(HL_CORNER_UPPER_LEFT + c);
+        return EXIT_CODE_OK;
+      }
+  }
+  return fail(EXIT_CODE_USAGE,
+              "--place: '%s' is no PART=CORNER: give legend, scale-bar or axes, and upper-left, upper-right, "
+              "lower-left or lower-right, as legend=upper-left",
+              text);
+}
+
 int render_overlay_read(const cli_value *values, cli_overlay *overlay) {
   *overlay = (cli_overlay){0};
   hl_overlay_defaults(&overlay->overlay);
@@ -109,6 +143,8 @@ int render_overlay_read(const cli_value *values, cli_overlay *overlay) {
   if (values[RENDER_SCALE_BAR].given) exit_code = read_scale_bar(&values[RENDER_SCALE_BAR], overlay);
   for (int n = 0; n < values[RENDER_ANNOTATE].count && exit_code == EXIT_CODE_OK; n++)
     exit_code = read_annotation(values[RENDER_ANNOTATE].texts[n], overlay);
+  for (int n = 0; n < values[RENDER_PLACE].count && exit_code == EXIT_CODE_OK; n++)
+    exit_code = read_place(values[RENDER_PLACE].texts[n], values, &overlay->overlay);
   return exit_code;
 }
 

@@ -58,7 +58,9 @@ static int check_options(series_job *job) {
   int exit_code = frames_read_part(&job->values[RENDER_PART], &job->values[RENDER_RANKS], &job->part,
                                    &job->parts);
   if (exit_code == EXIT_CODE_OK) exit_code = render_check_options(job->values);
-  return exit_code == EXIT_CODE_OK ? render_overlay_read(job->values, &job->overlay) : exit_code;
+  if (exit_code == EXIT_CODE_OK) exit_code = render_overlay_read(job->values, &job->overlay);
+  overlay_hold(&job->overlay);
+  return exit_code;
 }
 
 /* Does the work of --range-of-all: sets --range, and the range of legends, to the range of all files that can

@@ -50,6 +50,7 @@ static bool has_render_option(size_t row) {
     case RENDER_AXES:
     case RENDER_MARKS:
     case RENDER_ANNOTATE:
+    case RENDER_PLACE:
     case RENDER_FONT_SIZE:
     case RENDER_RANGE_OF_ALL:
     case RENDER_PART:

@@ -1,7 +1,7 @@
 # A film takes render's options: a frame is the picture that render makes with them. Easing is slow at both ends, a light
 # sweeps as --light says, and a pattern of files is time.
 halflight make rings --size 24 --quiet
-look="--size 20x16 --look mip --colormap viridis --legend auto --quiet"
+look="--size 120x96 --look mip --colormap viridis --legend auto --place legend=upper-right --quiet"
 halflight animate rings.nrrd $look --key camera.azimuth=0:10,4:50 -o turn
 for frame in 0 4; do
   halflight render rings.nrrd $look --azimuth $((10 + 10 * frame)) -o alone.png
