@@ -64,7 +64,7 @@ static bool find_matter(const hl_screen *screen, uint64_t voxel, double most, ve
 
 /* Places that are found one after the other, of which evenly distributed ones are kept. */
 typedef struct kept_places {
-  uint64_t met, every; /* places so far; of so many, one is kept */
+  uint64_t met, every; /* the number of places so far; one of `every` places is kept */
 } kept_places;
 
 static void keep_place(channel_views *views, kept_places *kept, vec3 point) {

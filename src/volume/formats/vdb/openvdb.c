@@ -20,8 +20,8 @@ static hl_status fail_unconverted(const char *path, hl_error *error) {
 static hl_status fail_without_callback(const char *path, hl_error *error) {
   return hl_fail(
       error, HL_ERROR_UNSUPPORTED,
-      "%s: an OpenVDB file, which another program converts: run `halflight convert NAME.vdb NAME.nrrd` "
-      "or `nanovdb_convert NAME.vdb NAME.nvdb`, or set hl_context_options.convert",
+      "%s: an OpenVDB file: convert it by `halflight convert NAME.vdb NAME.nrrd` or `nanovdb_convert "
+      "NAME.vdb NAME.nvdb` (libnanovdb-tools), or set hl_context_options.convert",
       path);
 }
 
