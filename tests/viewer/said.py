@@ -25,7 +25,7 @@ LINE = """(async () => {
   const find = (id) => place.querySelector('#' + id);
   const line = statusLine(find, { progress: async () => { const answer = window.answers[0]; window.asked++; return answer; } });
   const show = (stage, state) => line.show({ stage, state, bytes: 0 });
-  Object.assign(window, { answers: [], asked: 0, tells: show, told: () => find('progress').textContent });
+  Object.assign(window, { answers: [], asked: 0, tells: show, ends: line.end, told: () => find('progress').textContent });
 })()"""
 
 
@@ -56,7 +56,11 @@ def progress_rises(browser):
     check(browser.run("told()") == "", "no progress of a picture that is there")
     browser.run("tells('moving', 2)")
     check(0 < percent(told(browser, 0.5)) < parts[-1], "another state begins anew")
-    browser.run("tells('failed', 2)")
+    browser.run("ends()")
+    browser.run("tells('moving', 3)")
+    asked = browser.run("asked")
+    browser.run("new Promise((done) => setTimeout(done, 1500))")
+    check(browser.run("asked") <= asked + 1, "a page that shows another file asks no more; one question may have been under way")
 
 
 def awaited_states(browser):

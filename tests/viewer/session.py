@@ -114,6 +114,36 @@ def menus_follow(browser):
     rest(browser)
 
 
+def steps_change_something(browser):
+    """What changes nothing is no step; what lies over the picture is undone, too; and a slider shows again what it had shown."""
+    rest(browser)
+    steps = "halflight.store.history[0].length"
+    count = browser.run(steps)
+    browser.run("document.querySelector('.choice[aria-pressed=true]').click()")
+    browser.run("halflight.store.changeRender('shadows', halflight.store.scene.render.shadows)")
+    browser.wait("document.getElementById('stage').textContent === 'final'")  # the click waits for the look's scene
+    check(browser.run(steps) == count, "the choice of what is chosen is no step")
+    boxes = "['legend', 'scale-bar'].map((id) => document.getElementById(id).checked)"
+    open_section(browser, "Save")
+    browser.run("document.getElementById('legend').click()")
+    browser.wait("!document.querySelector('canvas.figure').hidden")
+    check(browser.run(boxes) == [True, False], "a legend")
+    undo(browser)
+    check(browser.run(boxes) == [False, False] and browser.run("document.querySelector('canvas.figure').hidden"), "is undone")
+    press_named(browser, "Redo")
+    browser.wait("!document.querySelector('canvas.figure').hidden")
+    undo(browser)
+    open_section(browser, "Transfer function")
+    set_control(browser, "Opacity", -1, section="Transfer function")
+    shown = "document.querySelector('[aria-label=\"Opacity in ×\"]').value"
+    before = browser.run(shown)
+    press(browser, "by gradient")
+    undo(browser)
+    check(browser.run(shown) == before != "1", f"the factor is what it was: {before}, {browser.run(shown)}")
+    undo(browser)
+    rest(browser)
+
+
 def fields_undo_themselves(browser):
     """Ctrl + Z in a field is the field's; keys work again after a light was dragged."""
     open_section(browser, "Lights")
@@ -296,7 +326,7 @@ def film_is_undone(browser):
     # A step of the scene leaves the view from which a whole turn starts.
     browser.run("(() => { const t = [...document.querySelectorAll('label')].find((l) => l.textContent === 'Whole turn'); document.getElementById(t.htmlFor).click(); })()")
     seek(0)
-    browser.run("halflight.store.changeRender('shadows', 'hard')")
+    browser.run("halflight.store.changeRender('shadows', 'off')")
     browser.run("import('./camera.js').then((m) => halflight.store.setCamera(m.turn(halflight.store.scene.camera, 0.3, 0)))")
     seek(1)
     start = "JSON.stringify(halflight.store.page.film.from)"
@@ -369,7 +399,7 @@ def after_restart(browser, viewer, options):
 def network(browser):
     """Without a network the banner comes, and goes when the network is back, without a hand."""
     browser.offline(True)
-    set_control(browser, "Colours", "magma", "change")
+    set_control(browser, "Colours", "viridis", "change")
     browser.wait(f"!{BANNER}.hidden")
     browser.offline(False)
     browser.wait(f"{BANNER}.hidden")
@@ -480,6 +510,7 @@ with tempfile.TemporaryDirectory() as place:
         one_step_a_gesture(page)
         cameras_are_undone(page)
         menus_follow(page)
+        steps_change_something(page)
         fields_undo_themselves(page)
         zoom_goes_on(page)
         true_status(page)

@@ -129,7 +129,7 @@ export function functionPanel({ store, start, current, channel, failed, waits })
     const canvas = new FunctionCanvas({ get, set, histogram: about.histogram, range });
     const chosen = chosenPoint(canvas, get, set, range), ends = rangeRow(get, set);
     canvas.onSelect = () => chosen.update();
-    const unit = get().unit_distance;
+    const unit = start.scene.volumes[current.volume]?.transfer_function?.unit_distance ?? get().unit_distance; // of the program's own choice
     const density = slider({
       label: "Opacity", path: () => `volumes.${current.volume}.transfer_function.unit_distance`, low: 0.02, high: 50, exponential: true, unit: "×", title: "How much a length of matter hides",
       get: () => unit / get().unit_distance, set: (factor) => set({ ...get(), unit_distance: unit / factor }, "density"),

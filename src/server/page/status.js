@@ -39,7 +39,7 @@ export class Way {
 // awaited that a person has asked for, and no picture is final; and end().
 export function statusLine(find, channel) {
   const stage = find("stage"), progress = find("progress");
-  let timer = 0, number = 0, state = null, way = new Way(), name = "", awaited = 0;
+  let timer = 0, number = 0, state = null, way = new Way(), name = "", awaited = 0, ended = false;
 
   // Shows the progress as long as a picture is under way.
   async function ask(mine) {
@@ -74,6 +74,7 @@ export function statusLine(find, channel) {
   }
 
   function show(frame) {
+    if (ended) return; // of a picture that was under way at the end
     name = frame.error ? "failed" : STAGES[frame.stage];
     const isOver = !(frame.stage in ENDS) && frame.stage !== "settled";
     if (isOver || frame.state !== state) stop();
@@ -89,5 +90,5 @@ export function statusLine(find, channel) {
     const told = [`${frame.width} × ${frame.height}`, `step ${+frame.spacing.toPrecision(2)} voxels`, seconds, `${Math.ceil(frame.bytes / 1024)} KiB`];
     find("statistics").replaceChildren(...told.map((part) => make("span", {}, part)));
   }
-  return { show, wait, end: () => { number++; clearTimeout(timer); } };
+  return { show, wait, end: () => { ended = true; stop(); } };
 }

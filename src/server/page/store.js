@@ -3,13 +3,14 @@
 // elsewhere. Objects are never altered, only replaced.
 
 import { reshaped } from "./camera.js";
+import { difference } from "./link.js";
 import { readMarks } from "./marks.js";
 
 const MOST_STEPS = 100; // the most steps that can be undone, for each history
 const UNREMEMBERED = ["camera", "size", "time", "page"]; // changes that are no steps of the main history
 
 // The settings of the page that are undone besides the film. The crosshair and which sections are unfolded are left as they are.
-const KEPT = ["layout", "plane", "oblique", "windows", "thickness", "blend", "showLabels", "showIsolines", "bookmarks"];
+const KEPT = ["layout", "plane", "oblique", "windows", "thickness", "blend", "showLabels", "showIsolines", "bookmarks", "over", "unit"];
 
 const keptOf = (page) => Object.fromEntries(KEPT.map((key) => [key, page[key]]));
 
@@ -26,6 +27,9 @@ const isSameFilm = (a, b) => ["tracks", "frames", "fps", "turns"].every((key) =>
 const filmAgain = (film, now) => ({ ...film, frame: Math.min(now?.frame ?? 0, (film?.frames ?? 1) - 1), open: now?.open ?? false, format: now?.format });
 
 const isSame = (a, b) => Object.keys({ ...a, ...b }).every((key) => a[key] === b[key]);
+
+// Whether two parts of a scene or of the page are alike, as files would have them.
+const isAlike = (a, b) => a === b || difference(a, b) === undefined;
 
 export class Store {
   #listeners = [];
@@ -72,8 +76,10 @@ export class Store {
 
   // Replaces the scene by change(scene), which must not alter its argument. `name` says what changes ("camera",
   // "light 0"). Changes outside of a gesture are undone together as long as they have one name and no gesture comes between.
+  // What changes nothing, as the choice of what is chosen, is no step.
   change(name, change) {
     const scene = change(this.scene);
+    if (isAlike(scene, this.scene)) return;
     if (name === "camera") this.#rememberCamera();
     else this.#remember(name);
     this.scene = scene;
@@ -81,6 +87,7 @@ export class Store {
   }
 
   setMarks(name, marks) {
+    if (isAlike(marks, this.marks)) return;
     this.#remember(`marks ${name}`);
     this.marks = marks;
     this.#tell("marks");
@@ -88,13 +95,13 @@ export class Store {
 
   // Changes the film's keys or its length.
   setFilm(film) {
-    this.#remember("film");
+    if (!isAlike(film, this.page.film)) this.#remember("film");
     this.setPage({ film });
   }
 
   // Changes parts of what the page shows besides pictures.
   setPage(part) {
-    const changed = KEPT.filter((key) => key in part && part[key] !== this.page[key]);
+    const changed = KEPT.filter((key) => key in part && !isAlike(part[key], this.page[key]));
     if (changed.length > 0) this.#remember(`page's ${changed}`);
     this.page = { ...this.page, ...part };
     this.#tell("page");

@@ -234,16 +234,20 @@ export function mount(element, channel, whole, { keyboard = element, reopen = ()
   };
   const parts = Object.entries(PARTS).map(([name, files]) => [name, files.map((panel) => panel(viewer))]), panels = parts.flatMap(([, made]) => made);
   find("panels").append(...parts.map(([name, made]) => make("section", { class: "part", "aria-label": name }, make("h2", {}, name), ...made.map((panel) => panel.element))));
+  const followHistory = () => {
+    find("undo").disabled = !store.canUndo;
+    find("redo").disabled = !store.canRedo;
+  };
   const update = () => {
     panels.forEach((panel) => panel.update());
     find("title").textContent = store.title;
-    find("undo").disabled = !store.canUndo;
-    find("redo").disabled = !store.canRedo;
+    followHistory();
   };
   // Following the camera and the layout is little work, which is done for each movement of the hand.
   store.listen((_, name) => {
     if (name !== "camera" && name !== "page") update();
     else panels.forEach((panel) => panel.updateView?.());
+    followHistory(); // changes of the page may be steps, too
   });
   viewer.probe = new Probe(viewer, find("view"));
   viewer.slices.update();
