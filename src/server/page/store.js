@@ -79,17 +79,19 @@ export class Store {
   // What changes nothing, as the choice of what is chosen, is no step.
   change(name, change) {
     const scene = change(this.scene);
-    if (isAlike(scene, this.scene)) return;
-    if (name === "camera") this.#rememberCamera();
-    else this.#remember(name);
-    this.scene = scene;
+    if (!isAlike(scene, this.scene)) {
+      if (name === "camera") this.#rememberCamera();
+      else this.#remember(name);
+      this.scene = scene;
+    }
     this.#tell(name);
   }
 
   setMarks(name, marks) {
-    if (isAlike(marks, this.marks)) return;
-    this.#remember(`marks ${name}`);
-    this.marks = marks;
+    if (!isAlike(marks, this.marks)) {
+      this.#remember(`marks ${name}`);
+      this.marks = marks;
+    }
     this.#tell("marks");
   }
 
