@@ -101,6 +101,7 @@ def warnings_are_told(browser):
     open_section(browser, "Open")
     press_in_list(browser, "bare.nrrd")
     browser.wait("halflight.start.title === 'bare.nrrd'")
+    check(browser.run("document.getElementById('title').title") == "bare.nrrd", "the whole name is told where it is cut")
     told = browser.run("document.getElementById('message').textContent")
     check("bare.nrrd" in told and "little-endian is assumed" in told, f"of the file: {told}")
     rest(browser)

@@ -240,7 +240,7 @@ export function mount(element, channel, whole, { keyboard = element, reopen = ()
   };
   const update = () => {
     panels.forEach((panel) => panel.update());
-    find("title").textContent = store.title;
+    find("title").textContent = find("title").title = store.title; // where there is no room for all of it, the cursor shows it
     followHistory();
   };
   // Following the camera and the layout is little work, which is done for each movement of the hand.
