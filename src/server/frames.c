@@ -338,7 +338,6 @@ static hl_renderer **quick_renderer_of(server_page *page, const hl_scene *scene)
 static hl_status render(server *s, server_page *page, hl_renderer **renderer, const hl_scene *scene,
                         const frame_request *request, server_answer *answer, hl_error *error) {
   const hl_scene_description *d = hl_scene_describe(scene);
-  if (strcmp(request->format, "overlay") == 0) return write_overlay(s, scene, request, answer, error);
   hl_image *image = NULL;
   hl_render_statistics statistics = {.struct_size = sizeof statistics};
   const bool is_new = *renderer == NULL;
@@ -346,6 +345,8 @@ static hl_status render(server *s, server_page *page, hl_renderer **renderer, co
   hl_status status = is_new ? hl_renderer_create(s->options.context, renderer, error) : HL_OK;
   if (status == HL_OK && strcmp(request->format, "depth") == 0)
     return render_depth(page, scene, answer, error);
+  if (status == HL_OK && strcmp(request->format, "overlay") == 0)
+    return write_overlay(s, *renderer, scene, request, answer, error);
   if (status == HL_OK) status = check_overlay(s, scene, request, error);
   if (status == HL_OK) status = hl_image_create(s->options.context, d->width, d->height, &image, error);
   if (status == HL_OK)

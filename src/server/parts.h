@@ -277,9 +277,10 @@ hl_status render_depth(server_page *page, const hl_scene *scene, server_answer *
 /* Finds out, before the picture is made, whether the overlays that the request asks for can be drawn. */
 hl_status check_overlay(const server *s, const hl_scene *scene, const frame_request *request,
                         hl_error *error);
-/* Answers with the overlays alone, as a transparent PNG of the picture's size. */
-hl_status write_overlay(const server *s, const hl_scene *scene, const frame_request *request,
-                        server_answer *answer, hl_error *error);
+/* Answers with the overlays alone, as a transparent PNG of the picture's size. renderer: renders a small
+ * picture of the scene, which tells where the matter is. */
+hl_status write_overlay(const server *s, hl_renderer *renderer, const hl_scene *scene,
+                        const frame_request *request, server_answer *answer, hl_error *error);
 /* Answers with the image as a file of the request's format. */
 hl_status write_picture(const server *s, const hl_scene *scene, const hl_image *image,
                         const frame_request *request, server_answer *answer, hl_error *error);

@@ -1,5 +1,6 @@
 /* server/pictures.c - encodes rendered images as the files that a page requests, with their overlays. */
 #define _GNU_SOURCE
+#include <math.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -62,21 +63,41 @@ hl_status check_overlay(const server *s, const hl_scene *scene, const frame_requ
   return status;
 }
 
-hl_status write_overlay(const server *s, const hl_scene *scene, const frame_request *request,
-                        server_answer *answer, hl_error *error) {
+/* Renders a small picture of a scene. *image: owned by the caller, also after a failure; may be null. */
+static hl_status render_small(const server *s, hl_renderer *renderer, const hl_scene *scene, hl_image **image,
+                              hl_error *error) {
+  enum { MOST_PIXELS_ALONG = 256 };
+  hl_scene_description d = *hl_scene_describe(scene);
+  const double part = fmin(1, (double)MOST_PIXELS_ALONG / fmax(d.width, d.height));
+  d.width = (int)fmax(1, round(part * d.width));
+  d.height = (int)fmax(1, round(part * d.height));
+  hl_scene *small = NULL;
+  hl_status status = hl_scene_create(s->options.context, &d, &small, error);
+  if (status == HL_OK) status = hl_image_create(s->options.context, d.width, d.height, image, error);
+  if (status == HL_OK)
+    status = hl_renderer_render(renderer, small, hl_image_pixels(*image), 4 * (size_t)d.width, NULL, error);
+  hl_scene_release(small);
+  return status;
+}
+
+hl_status write_overlay(const server *s, hl_renderer *renderer, const hl_scene *scene,
+                        const frame_request *request, server_answer *answer, hl_error *error) {
   const hl_scene_description *d = hl_scene_describe(scene);
   hl_context *context = s->options.context;
-  hl_image *place = NULL;
+  hl_image *place = NULL, *matter = NULL;
   hl_status status = hl_image_create(context, d->width, d->height, &place, error);
+  if (status == HL_OK) status = render_small(s, renderer, scene, &matter, error);
   if (status == HL_OK) {
     hl_figure figure;
     hl_figure_panel panel;
     make_figure(place, scene, request, &figure, &panel);
     panel.image = NULL;
+    panel.matter = matter;
     figure.background_transparent = 1;
     status = hl_figure_encode(context, &figure, "png", NULL, &answer->bytes, &answer->length, error);
     answer->type = "image/png";
   }
+  hl_image_destroy(matter);
   hl_image_destroy(place);
   return status;
 }

@@ -301,6 +301,18 @@ def messages_cover_nothing(browser):
         set_control(browser, "Axes", "none", "change")
 
 
+def legends_without_room(browser):
+    """The message line says that a legend finds no room in the picture."""
+    resize(browser, 300, 200)
+    rest(browser)
+    browser.run("halflight.report('')")
+    browser.run("document.getElementById('legend').click()")
+    browser.wait("document.getElementById('message').textContent.includes('the legend finds no room in the picture')")
+    browser.run("document.getElementById('legend').click()")
+    resize(browser, 1280, 720)
+    rest(browser)
+
+
 def reach(browser):
     """On a phone, on a tablet and on a desk all buttons are in reach, and none is smaller than 24 pixels."""
     for size in ((390, 844), (820, 1180), (1280, 720)):
@@ -355,5 +367,6 @@ with tempfile.TemporaryDirectory() as folder:
             check(re.match(r"\d+ × \d+ × \d+ voxels of ([\d.]+) × \1 × \1 Å, ", facts), f"the size of voxels: {facts}")
             saved_with_bar(browser)
             messages_cover_nothing(browser)
+            legends_without_room(browser)
         check(browser.problems == [], f"the console has errors: {browser.problems}")
         print(f"{checks.count} checks passed; frames: {counts}")

@@ -11,6 +11,7 @@ import socket
 import subprocess
 import sys
 import tempfile
+import urllib.parse
 import threading
 import time
 
@@ -115,8 +116,8 @@ def levels(png):
 
 
 def lies_over(viewer, scene, drawn, asked):
-    """The overlay alone, laid over the picture without it, is the picture with it, up to the roundings of both to 8 bits, and but for the
-    ground that parts have over matter: the overlay alone does not know the picture."""
+    """The overlay alone, laid over the picture without it, is the picture with it, up to the roundings of both to 8 bits: it knows where the
+    picture shows matter."""
     query = "".join(f"&{key}={value}" for key, value in asked.items())
     status, _, body = request(viewer, "POST", f"overlay?page=test-overlay&number={next(numbers)}{query}", json.dumps(scene))
     check(status == 200, f"the overlay alone: {status}")
@@ -125,13 +126,16 @@ def lies_over(viewer, scene, drawn, asked):
     behind = plain[..., 3:] / 255 * (1 - part)
     laid = part * over[..., :3] + behind * plain[..., :3]
     change = both[..., 3:] / 255 * both[..., :3] - laid
-    ground = (abs(change) > 2).any(axis=2)
-    darkens, lightens = -change.min(), change.max()  # a ground is black or white
-    check(over.shape == both.shape and over[..., 3].max() > 0 and min(darkens, lightens) <= 2, f"{asked}: {darkens} and {lightens} levels")
-    rows, columns = numpy.nonzero(ground)
-    if rows.size > 0:  # a ground lies within the box of what it is behind, and the margin around it
-        shown = numpy.argwhere(over[..., 3] > 0)
-        check(ground.mean() < 0.35 and rows.min() >= shown[:, 0].min() - 16 and columns.min() >= shown[:, 1].min() - 16, f"{asked}: the ground")
+    check(over.shape == both.shape and over[..., 3].max() > 0 and abs(change).max() <= 3, f"{asked}: {abs(change).max()} levels")
+
+
+def overlays_without_room(viewer, scene):
+    """A legend that finds no room is left out of a picture and of its overlay, and both answers say so; one that has room says nothing."""
+    for side, told in ((20, True), (160, False)):
+        asked = small(scene, side)
+        for status, headers, _ in (frame(viewer, asked, legend=1), request(viewer, "POST", f"overlay?page=test-overlay&number={next(numbers)}&legend=1", json.dumps(asked))):
+            note = urllib.parse.unquote(headers.get("Halflight-Note") or "")
+            check(status == 200 and ("the legend finds no room" in note) == told and (note == "") == (not told), f"{side} pixels: {status} {note!r}")
 
 
 def complete_scenes(viewer, scene):
@@ -410,6 +414,7 @@ with tempfile.TemporaryDirectory() as folder:
         check(os.path.isabs(scene["volumes"][0]["file"]) and len(start["volumes"][0]["histogram"]) == 256, "start.json")
         exact_pictures(viewer, small(scene))
         drawn_over(viewer, small(scene))
+        overlays_without_room(viewer, scene)
         complete_scenes(viewer, scene)
         refusals(viewer, scene)
         film_scenes(viewer, scene)

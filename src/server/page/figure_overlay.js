@@ -40,8 +40,7 @@ export function figureOverlay({ store, start, channel, failed, report, find, atR
   function told() {
     const asked = over(), { scene } = store;
     if (!asked.scaleBar && !asked.legend && asked.axes === "none") return "";
-    const ofView = asked.scaleBar || asked.axes !== "none" ? scene.camera : null;
-    return JSON.stringify([asked, scene.image, scene.volumes, scene.meshes ?? null, ofView]);
+    return JSON.stringify([asked, scene.image, scene.volumes, scene.meshes ?? null, scene.camera]);
   }
 
   // The page's own axes and bar make room for those of the figure.
