@@ -232,6 +232,7 @@ static hl_status place_legend(const hl_ink *ink, hl_overlay_place *place, const 
   place->legend = (hl_legend_shape){place->picture.height - 2 * place->margin, 1e3 * ink->size,
                                     9 * ink->size};
   hl_status status = find_box(ink, place, part->draw, &whole, error);
+  place->rows_left_out = NULL;
   if (status != HL_OK) return status;
   const double heights[2] = {height_at(ink, place, whole, across), height_at(ink, place, whole, !across)};
   const bool turned = part->asked == HL_CORNER_FREE && left_out == 0 && heights[0] < whole.height &&

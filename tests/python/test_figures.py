@@ -34,6 +34,21 @@ def test_what_is_drawn_changes_pixels(image):
         assert image.annotate(**words).encode() != plain, words
 
 
+def test_corners_are_asked_for(image):
+    Pillow = pytest.importorskip("PIL.Image")
+    plain = np.asarray(Pillow.open(io.BytesIO(image.annotate().encode())).convert("RGB"))
+    for part, words in ("legend", dict(legend=True)), ("scale_bar", dict(scale_bar="1mm", unit="mm", depth="target")), ("axes", dict(axes="arrows")):
+        for corner in "upper left", "upper right", "lower left", "lower right":
+            drawn = np.asarray(Pillow.open(io.BytesIO(image.annotate(**words, font_size=3, places={part: corner}).encode())).convert("RGB"))
+            rows, columns = np.nonzero((drawn != plain).any(axis=2))
+            middle = [(place.min() + place.max()) / 2 / size for place, size in ((rows, plain.shape[0]), (columns, plain.shape[1]))]
+            assert [part < 0.5 for part in middle] == [corner.startswith("upper"), corner.endswith("left")], (part, corner, middle)
+    with pytest.raises(ValueError, match="did you mean 'legend'"):
+        image.annotate(legend=True, places={"legnd": "upper left"}).encode()
+    with pytest.raises(ValueError, match="places: legend: there is no 'top'"):
+        image.annotate(legend=True, places={"legend": "top"}).encode()
+
+
 def test_marks_of_a_scene_are_kept_and_drawn(image):
     marks = [{"kind": "ruler", "points": [(2, 2, 2), (20, 2, 2)], "text": "width"}, {"kind": "text", "points": [(12, 12, 12)], "text": "café"}]
     scene = image.scene.replace(marks=marks)
