@@ -163,6 +163,7 @@ static hl_search find_place(const hl_ink *ink, const hl_overlay_place *place, co
                 hl_rectangle_in_corner(box, place->picture, is_right(part->asked) != is_right(part->usual),
                                        is_lower(part->asked) != is_lower(part->usual)),
                 0);
+  search.taken = &place->taken;
   return search;
 }
 
@@ -188,13 +189,16 @@ static double height_at(const hl_ink *ink, const hl_overlay_place *place, hl_rec
   return hl_free_height(&place->taken, column) - 2 * rim * ink->size;
 }
 
-/* Finds the best of several shapes of the legend, all of one height, and its place: the shape that leaves out
+/* The shapes of legends, the usual one first: the greatest widths of their titles and rows, and the greatest
+ * heights of their strips; in units of the letters' size. */
+static const double widths[] = {1e3, 12, 9, 7}, strips[] = {9, 5.5};
+enum { WIDTHS = sizeof widths / sizeof *widths, STRIPS = sizeof strips / sizeof *strips };
+
+/* Finds the best of the shapes of the legend, all of one height, and its place: the shape that leaves out
  * the least rows, then the one that covers the least, then the first one. whole: the legend with all the
  * height of the picture. */
 static hl_status shape_legend(const hl_ink *ink, hl_overlay_place *place, const hl_cover *cover,
                               corner_part *part, hl_rectangle whole, double height, hl_error *error) {
-  static const double widths[] = {1e3, 12, 9, 7}, strips[] = {9, 5.5}; /* in units of the letters' size */
-  enum { WIDTHS = sizeof widths / sizeof *widths, STRIPS = sizeof strips / sizeof *strips };
   hl_legend_shape best_shape = {0};
   hl_search best = {0};
   size_t best_left_out = 0, left_out = 0, left_out_first = 0;
@@ -229,8 +233,8 @@ static hl_status place_legend(const hl_ink *ink, hl_overlay_place *place, const 
   hl_rectangle whole;
   size_t left_out = 0;
   place->rows_left_out = &left_out;
-  place->legend = (hl_legend_shape){place->picture.height - 2 * place->margin, 1e3 * ink->size,
-                                    9 * ink->size};
+  place->legend = (hl_legend_shape){place->picture.height - 2 * place->margin, widths[0] * ink->size,
+                                    strips[0] * ink->size};
   hl_status status = find_box(ink, place, part->draw, &whole, error);
   place->rows_left_out = NULL;
   if (status != HL_OK) return status;

@@ -11,9 +11,9 @@ import socket
 import subprocess
 import sys
 import tempfile
-import urllib.parse
 import threading
 import time
+import urllib.parse
 
 import numpy
 from PIL import Image
