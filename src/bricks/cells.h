@@ -14,10 +14,26 @@
 #include "bricks/build.h"
 #include "bricks/cell_shapes.h"
 
-/* Makes the field. Corners must be below point_count. Voxels are the lattice points of level 0. The finest
- * spacing is made coarser if bricks would need more than a quarter of the context's memory limit, or more
- * than 2^30 bytes. A warning then tells this. *bricks is empty on failure. subject: starts error lines. */
+/* The lattice goes beyond the mesh's box by this number of points at each end of an axis. */
+enum { HL_CELLS_MARGIN = 2 };
+
+/* The field without the mesh's walls, and the walls. */
+typedef struct hl_cells_wall {
+  hl_bricks bricks; /* the field, continued from each wall outwards by the values of the cell at the wall */
+  /* Owned; [z][y][x]; for each lattice point of level 0, the distance d to the nearest wall, in spacings of
+   * level 0, positive inside: 65535 (d + HL_WALL_OUTSIDE) / (HL_WALL_OUTSIDE + HL_WALL_INSIDE), clamped. Null
+   * if memory has no room for the walls; the field has no bricks then */
+  uint16_t *depth;
+} hl_cells_wall;
+
+enum { HL_WALL_OUTSIDE = 3, HL_WALL_INSIDE = 2 };
+
+/* Makes the field. Corners must be below point_count. Voxels are the lattice points of level 0 within the
+ * mesh's box. The finest spacing is made coarser if bricks would need more than a quarter of the context's
+ * memory limit, or more than 2^30 bytes. A warning then tells this. *bricks and *wall are empty on failure.
+ * subject: starts error lines. */
 hl_status hl_cells_build(hl_context *context, hl_pool *pool, const hl_cells *cells, const char *subject,
-                         hl_bricks *bricks, hl_cells_place *place, hl_error *error);
+                         hl_bricks *bricks, hl_cells_wall *wall, hl_cells_place *place, hl_error *error);
+void hl_cells_wall_release(hl_context *context, hl_cells_wall *wall);
 
 #endif

@@ -81,7 +81,8 @@ LANES_INLINE lanes mask_factor(const mask_lattice *lattice, lanes3 point, uint32
   lanes_int words = words_of_bricks(lattice, bricks_of_places(lattice, &p), 0);
   lanes steps = lanes_from_int(words & 0xffff);
   if ((lanes_bits((words & HL_MASK_EVEN) == 0) & active) != 0) steps = steps_between_points(lattice, &p);
-  return lanes_select(p.outside, lanes_set(lattice->rest), steps * (1.0f / 65535));
+  lanes factor = lanes_clamp(lanes_line(steps, lattice->scale, lattice->offset), 0, 1);
+  return lanes_select(p.outside, lanes_set(lattice->rest), factor);
 }
 
 /* Interpolates the slopes of the mask's factor linearly between the lattice's points. A slope is the change
@@ -112,7 +113,7 @@ LANES_INLINE lanes3 mask_slope(const mask_lattice *lattice, lanes3 point, uint32
   slopes_between_points(lattice, &p, sum);
   for (int a = 0; a < 3; a++)
     slope = add_scaled3(slope, set3(lattice->to_index[a]),
-                        lanes_select(p.outside, lanes_set(0), sum[a] * (1.0f / 254)));
+                        lanes_select(p.outside, lanes_set(0), sum[a] * lattice->slope_scale));
   return slope;
 }
 

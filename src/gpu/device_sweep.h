@@ -104,7 +104,7 @@ typedef struct plan_brick {
 /* A volume's mask: the members of mask_lattice (grid/mask_lattice.h). */
 typedef struct plan_mask {
   int last[3];
-  float to_index[3][4], rest;
+  float to_index[3][4], scale, offset, slope_scale, rest;
   int faces;                       /* normals are turned to the faces that the mask makes */
   int tints;                       /* the mask has colours */
   float decode[PLAN_CODES];        /* the linear values of the colours' codes */

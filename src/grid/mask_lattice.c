@@ -13,7 +13,10 @@ void hl_mask_lattice_set_up(mask_lattice *lattice, const hl_scene_volume *volume
   lattice->factors = mask->voxels;
   lattice->colors = mask->colors;
   lattice->slopes = mask->slopes;
+  lattice->slope_scale = (float)mask->slope_scale;
   lattice->bricks = (const uint32_t(*)[2])mask->mask_bricks;
+  lattice->scale = (float)mask->value_scale;
+  lattice->offset = (float)mask->value_offset;
   lattice->rest = (float)volume->mask.rest;
   int32_t step = 1, brick_step = 1;
   affine3_store(lattice->to_index, &to_index);
@@ -51,7 +54,7 @@ bool hl_mask_hides_box(const mask_lattice *lattice, vec3 middle, const vec3 half
       const uint16_t *row = lattice->factors + (size_t)k * (size_t)lattice->step[2] +
                             (size_t)j * (size_t)lattice->step[1];
       for (int32_t i = ends[0][0]; i <= ends[0][1]; i++)
-        if (row[i] != 0) return false;
+        if (lattice->scale * (float)row[i] + lattice->offset > 0) return false;
     }
   return true;
 }

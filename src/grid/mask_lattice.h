@@ -7,18 +7,23 @@
 #include "scene/scene.h"
 
 typedef struct mask_lattice {
-  /* [k][j][i]; the factor of extinction at each point; 65535 stands for 1; borrowed from the scene; null if
-   * there is no mask. One element more may be read */
+  /* [k][j][i]; numbers that stand for the factor of extinction at each point (`scale`); borrowed from the
+   * scene; null if there is no mask. One element more may be read */
   const uint16_t *factors;
   const unsigned char *colors; /* [k][j][i][4]; the colour at each point, as in label/mask.h; null if the
                                 * mask has no colours */
   const signed char *slopes;   /* [k][j][i][4]; the slope of the factor at each point, as in label/mask.h */
+  float slope_scale;           /* the slope for which a stored slope of 1 stands, per step of the lattice */
   const uint32_t (*bricks)[2]; /* the bricks of the lattice, as in label/mask.h */
   int32_t brick_step[3];       /* distance in `bricks` from a brick to the next one along i, j, k */
   int32_t last[3];             /* the greatest index along i, j, k */
   int32_t step[3];             /* distance in `factors` from a point to the next one along i, j, k */
   float to_index[3][4];        /* maps frame space to the lattice's index space */
-  float rest;                  /* the factor outside the lattice */
+  /* the factor at a place is its number, interpolated linearly between the points, times `scale`, plus
+   * `offset`, held between 0 and 1. For masks of labels 65535 stands for 1 and 0 for 0, so that nothing is
+   * held back */
+  float scale, offset;
+  float rest; /* the factor outside the lattice */
 } mask_lattice;
 
 /* Prepares the lattice of a volume's mask. volume: the volume in frame space. If the volume has no mask, the
@@ -68,7 +73,8 @@ static inline float hl_mask_factor(const mask_lattice *lattice, const float poin
     size_t at = hl_mask_corner(&cell, corner, &share);
     sum += share * (float)lattice->factors[at];
   }
-  return sum * (1.0f / 65535);
+  float factor = sum * lattice->scale + lattice->offset;
+  return factor < 0 ? 0 : factor > 1 ? 1 : factor;
 }
 
 /* Returns whether the mask's factor is 0 everywhere in a box of frame space: middle + t0 half[0] + t1 half[1]

@@ -25,15 +25,20 @@ static const float FAINT = 1e-3f;
  * rounding to bytes. */
 static const float LEAST = 1.0f / 16;
 
+/* Slopes fade while a mask's numbers go this far beyond the factor 1. */
+static const double FADING = 0.5;
+
 typedef struct mask_job {
   const hl_mask *mask;
-  hl_volume *const *occupancies; /* [label_count]; an element is null if no voxel has the label */
-  uint16_t *factors;             /* [k][j][i]; the factor of extinction at each point of the lattice */
-  unsigned char *colors;         /* [k][j][i][HL_COLOR_BYTES]; the colour at each point of the lattice;
-                                  * null if no label tints */
-  signed char *slopes;           /* [k][j][i][4]; the slopes of the factor, as in mask.h */
-  uint32_t (*bricks)[2];         /* [bk][bj][bi][2]; the bricks of the lattice, as in mask.h */
-  float *sums;                   /* [threads][slice floats]; the sums of each thread over the labels */
+  hl_volume *const *occupancies;    /* [label_count]; an element is null if no voxel has the label */
+  uint16_t *factors;                /* [k][j][i]; the factor of extinction at each point of the lattice */
+  unsigned char *colors;            /* [k][j][i][HL_COLOR_BYTES]; the colour at each point of the lattice;
+                                     * null if no label tints */
+  signed char *slopes;              /* [k][j][i][4]; the slopes of the factor, as in mask.h */
+  double slope_scale;               /* the slope for which a stored slope of 1 stands, per voxel */
+  uint32_t (*bricks)[2];            /* [bk][bj][bi][2]; the bricks of the lattice, as in mask.h */
+  double value_scale, value_offset; /* the factor at a point = value_scale * its number + value_offset */
+  float *sums;                      /* [threads][slice floats]; the sums of each thread over the labels */
   size_t slice_floats;
 } mask_job;
 
@@ -102,11 +107,16 @@ static void fill_slice(void *data, size_t k, int worker) {
   for (size_t at = 0; at < count; at++) store_voxel(job, sums, at, k * count + at);
 }
 
-/* The central difference of the factors along an axis, at the voxel `at`. Beyond the lattice's ends the
- * factors at the border repeat. */
-static signed char slope_at(const uint16_t *factors, size_t at, size_t place, size_t count, size_t step) {
+/* The slope along an axis, at the voxel `at`: the central difference. Beyond the lattice's ends the numbers
+ * at the border repeat. Where numbers go beyond the factor 1, as behind the wall of a mesh, the factor
+ * stays 1. The slope is 0 there, and fades before so that its direction does not depend on the lattice. */
+static signed char slope_at(const mask_job *job, size_t at, size_t place, size_t count, size_t step) {
+  const uint16_t *factors = job->factors;
   int before = factors[place > 0 ? at - step : at], after = factors[place + 1 < count ? at + step : at];
-  return (signed char)lround((after - before) * (HL_MASK_SLOPE_STEPS / 2 / HL_MASK_STEPS));
+  double slope = (after - before) / 2.0 * (job->value_scale / job->slope_scale),
+         factor = job->value_scale * factors[at] + job->value_offset;
+  if (factor > 1) slope *= fmax(1 - (factor - 1) / FADING, 0);
+  return (signed char)lround(fmin(fmax(slope, -INT8_MAX), INT8_MAX));
 }
 
 static void fill_slopes(void *data, size_t k, int worker) {
@@ -117,9 +127,9 @@ static void fill_slopes(void *data, size_t k, int worker) {
     for (size_t i = 0; i < n[0]; i++) {
       size_t at = k * slice + j * row + i;
       signed char *slope = job->slopes + 4 * at;
-      slope[0] = slope_at(job->factors, at, i, n[0], 1);
-      slope[1] = slope_at(job->factors, at, j, n[1], row);
-      slope[2] = slope_at(job->factors, at, k, n[2], slice);
+      slope[0] = slope_at(job, at, i, n[0], 1);
+      slope[1] = slope_at(job, at, j, n[1], row);
+      slope[2] = slope_at(job, at, k, n[2], slice);
       slope[3] = 0;
     }
 }
@@ -197,13 +207,15 @@ static hl_status adopt(hl_context *context, mask_job *job, hl_volume **made, hl_
     grid.dimensions[a] = map->dimension[a];
   }
   grid.type = HL_VOXEL_U16;
-  grid.value_scale = 1 / HL_MASK_STEPS;
+  grid.value_scale = job->value_scale;
+  grid.value_offset = job->value_offset;
   grid.space = map->space;
   hl_status status = hl_volume_adopt(context, &grid, "a mask", job->factors, made, error);
   job->factors = NULL;
   if (status != HL_OK) return status;
   (*made)->colors = job->colors;
   (*made)->slopes = job->slopes;
+  (*made)->slope_scale = job->slope_scale;
   (*made)->mask_bricks = job->bricks;
   job->colors = NULL;
   job->slopes = NULL;
@@ -265,11 +277,48 @@ hl_status hl_label_mask(hl_context *context, int threads, const hl_mask *mask, h
   if (status == HL_OK)
     status = hl_label_occupancies(context, threads, mask->volume, values, mask->label_count, NULL,
                                   occupancies, error);
-  mask_job job = {.mask = mask, .occupancies = occupancies};
+  mask_job job = {.mask = mask,
+                  .occupancies = occupancies,
+                  .slope_scale = 1 / HL_MASK_SLOPE_STEPS,
+                  .value_scale = 1 / HL_MASK_STEPS};
   if (status == HL_OK) status = fill(context, threads, &job, made, error);
   if (status == HL_OK && context->whole == mask->volume->context->whole) hl_mask_to_shelf(mask, *made);
   for (size_t n = 0; occupancies != NULL && n < mask->label_count; n++) hl_volume_release(occupancies[n]);
   hl_release(context, occupancies);
   hl_release(context, values);
+  return status;
+}
+
+hl_status hl_wall_mask(hl_context *context, int threads, hl_volume *wall, hl_volume **made, hl_error *error) {
+  hl_pool *pool = NULL;
+  const hl_mask mask = {.volume = wall};
+  const size_t count = hl_volume_voxel_count(wall);
+  size_t bricks[3];
+  mask_job job = {.mask = &mask,
+                  .value_scale = wall->value_scale,
+                  .value_offset = wall->value_offset,
+                  .slope_scale = wall->slope_scale};
+  *made = hl_mask_from_shelf(&mask);
+  if (*made != NULL) return HL_OK;
+  bricks_along(wall->dimension, bricks);
+  job.factors = hl_allocate(context, count + 1, sizeof *job.factors);
+  job.slopes = hl_allocate(context, count, 4);
+  job.bricks = hl_allocate(context, bricks[0] * bricks[1] * bricks[2], sizeof *job.bricks);
+  hl_status status = job.factors == NULL || job.slopes == NULL || job.bricks == NULL
+                         ? hl_fail_memory(error, count * 6, "a mask")
+                         : hl_pool_create(context, threads, &pool, error);
+  if (status == HL_OK) {
+    memcpy(job.factors, wall->voxels, count * sizeof *job.factors);
+    job.factors[count] = 0;
+    hl_pool_run(pool, wall->dimension[2], fill_slopes, &job);
+    hl_pool_run(pool, bricks[2], fill_bricks, &job);
+    status = hl_pool_check(pool, "making a mask", error);
+    if (status == HL_OK) status = adopt(context, &job, made, error);
+  }
+  if (status == HL_OK && context->whole == wall->context->whole) hl_mask_to_shelf(&mask, *made);
+  hl_pool_destroy(pool);
+  hl_release(context, job.factors);
+  hl_release(context, job.slopes);
+  hl_release(context, job.bricks);
   return status;
 }

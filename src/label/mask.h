@@ -39,4 +39,7 @@ enum {
 hl_status hl_label_mask(hl_context *context, int threads, const hl_mask *mask, hl_volume **made,
                         hl_error *error);
 
+/* Makes the lattice of the mask that ends a volume at the walls of its mesh. wall: hl_volume.wall. */
+hl_status hl_wall_mask(hl_context *context, int threads, hl_volume *wall, hl_volume **made, hl_error *error);
+
 #endif

@@ -36,11 +36,12 @@ static bool find_voxels(const reference_volume *volume, vec3 point, mask_voxels 
   return find_voxels_at(volume->described->mask.volume, (const double[3]){p.x, p.y, p.z}, found);
 }
 
+/* The factor is the lattice's value between the voxels, held between 0 and 1. */
 static double factor_of(const hl_volume *mask, const mask_voxels *found) {
   double sum = 0;
   for (int corner = 0; corner < 8; corner++)
     sum += found->share[corner] * ((const uint16_t *)mask->voxels)[found->voxel[corner]];
-  return sum * mask->value_scale;
+  return fmin(fmax(sum * mask->value_scale + mask->value_offset, 0), 1);
 }
 
 double hl_reference_mask_factor(const reference_volume *volume, vec3 point) {
@@ -51,26 +52,18 @@ double hl_reference_mask_factor(const reference_volume *volume, vec3 point) {
   return factor_of(mask->volume, &found);
 }
 
-/* The gradient of the mask's factor. At the lattice's points it is the difference of the two neighbouring
- * points along each axis; between the points it is interpolated linearly, like the factor itself. */
+/* The gradient of the mask's factor: linear between the slopes that are stored at the lattice's points. */
 vec3 hl_reference_mask_slope(const reference_volume *volume, vec3 point) {
-  const hl_mask *mask = &volume->described->mask;
-  double slope[3];
+  const hl_volume *mask = volume->described->mask.volume;
+  double slope[3] = {0, 0, 0};
   mask_voxels found;
-  if (mask->volume == NULL || volume->described->cut_shading != HL_CUT_SHADING_FACE ||
+  if (mask == NULL || volume->described->cut_shading != HL_CUT_SHADING_FACE ||
       !find_voxels(volume, point, &found))
     return (vec3){0, 0, 0};
-  vec3 in_mask = affine3_apply(volume->index_to_mask, point);
-  for (int axis = 0; axis < 3; axis++) {
-    double around[2];
-    for (int side = 0; side < 2; side++) {
-      double p[3] = {in_mask.x, in_mask.y, in_mask.z};
-      p[axis] += side ? 1 : -1;
-      (void)find_voxels_at(mask->volume, p, &found);
-      around[side] = factor_of(mask->volume, &found);
-    }
-    slope[axis] = (around[1] - around[0]) / 2;
-  }
+  for (int corner = 0; corner < 8; corner++)
+    for (int axis = 0; axis < 3; axis++)
+      slope[axis] += found.share[corner] * mask->slopes[4 * found.voxel[corner] + (size_t)axis] *
+                     mask->slope_scale;
   return mat3_apply(volume->gradient_to_world,
                     mat3_apply(mat3_transpose(volume->index_to_mask.linear), vec3_of(slope)));
 }

@@ -113,6 +113,9 @@ static void plan_mask_of(const shade_volume *shade, plan_mask *planned) {
   if (lattice->factors == NULL) return;
   memcpy(planned->last, lattice->last, sizeof planned->last);
   memcpy(planned->to_index, lattice->to_index, sizeof planned->to_index);
+  planned->scale = lattice->scale;
+  planned->offset = lattice->offset;
+  planned->slope_scale = lattice->slope_scale;
   planned->rest = lattice->rest;
   planned->faces = shade->mask_faces;
   planned->tints = shade->tints.voxels != NULL;

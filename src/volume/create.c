@@ -405,6 +405,8 @@ void hl_volume_release(hl_volume *volume) {
   hl_release(volume->context, volume->exact);
   hl_volume_release(volume->gathered);
   hl_volume_release(volume->unsmoothed);
+  hl_volume_release(volume->continued);
+  hl_volume_release(volume->wall);
   hl_pages_release(volume->pages);
   if (volume->bricks != NULL) hl_bricks_release(volume->context, volume->bricks);
   hl_release(volume->context, volume->bricks);

@@ -80,6 +80,8 @@ struct hl_volume {
                                * function */
   signed char *slopes;        /* owned; [k][j][i][4]; slopes of a mask's lattice (label/mask.h); null for
                                * other volumes */
+  double slope_scale;         /* for a mask's lattice: the slope for which a stored slope of 1 stands, per
+                               * voxel */
   uint32_t (*mask_bricks)[2]; /* owned; bricks of a mask's lattice (label/mask.h); null for other volumes */
   struct hl_pages *pages; /* owned (pages.h); for voxels in a scratch file or over ranks; null if voxels are
                            * in memory */
@@ -88,6 +90,11 @@ struct hl_volume {
   struct hl_bricks *bricks;   /* owned (bricks/bricks.h, in_bricks.h); the field, if it is in bricks; null if
                                * there are voxels. Values of voxels are computed from the field when they are
                                * needed */
+  struct hl_volume *continued; /* owned; for a mesh of cells: the field continued beyond the mesh's walls;
+                                * null for other volumes */
+  struct hl_volume *wall; /* owned; for a mesh of cells: how deep the points of the lattice of `continued`
+                           * lie behind the mesh's walls. The values, held between 0 and 1, are the
+                           * fraction of matter at a place */
   hl_volume_field_error field_error; /* for a field in bricks: the greatest difference between the field and
                                       * its source; `kind` is null if it is unknown */
   void *owned_voxels;                /* the block that is released with the volume; null if borrowed */

@@ -82,6 +82,8 @@ static mask_lattice lattice_of(const made_mask *made) {
                         .last = {X - 1, Y - 1, Z - 1},
                         .step = {1, X, X * Y},
                         .to_index = {{0.9f, 0.1f, -0.2f, 3}, {0, -0.8f, 0.3f, 2.5f}, {0.2f, 0.1f, 1.1f, 3}},
+                        .scale = 1.0f / 65535,
+                        .slope_scale = 1.0f / 254,
                         .rest = 0.3f};
 }
 
@@ -97,7 +99,13 @@ static void test_masks(void **state) {
                               .decode = decode,
                               .last = {X - 1, Y - 1, Z - 1},
                               .step_bytes = {4, 4 * X, 4 * X * Y}};
-  plan_mask plan = {.last = {X - 1, Y - 1, Z - 1}, .rest = lattice.rest, .faces = 1, .tints = 1};
+  plan_mask plan = {.last = {X - 1, Y - 1, Z - 1},
+                    .scale = lattice.scale,
+                    .offset = lattice.offset,
+                    .slope_scale = lattice.slope_scale,
+                    .rest = lattice.rest,
+                    .faces = 1,
+                    .tints = 1};
   memcpy(plan.to_index, lattice.to_index, sizeof plan.to_index);
   memcpy(plan.decode, decode, sizeof decode);
   plan.begin[MASK_FACTORS] = offsetof(made_mask, factors) / 16;

@@ -100,6 +100,7 @@ static void open_mask(void) {
                                           .brick_step = {1, 2, 6},
                                           .last = {7, 8, 9},
                                           .step = {1, 8, 72},
+                                          .scale = 1.0f / 65535,
                                           .rest = 0.5f};
   memcpy(masked_classifier.mask.to_index, to_index, sizeof to_index);
 }

@@ -77,7 +77,7 @@ DEVICE float mask_factor(const mask_data *mask, vector point) {
     }
     steps = fused(plane[1] - plane[0], place.part[2], plane[0]);
   }
-  return steps * (1.0f / 65535);
+  return limited(fused(steps, mask->plan->scale, mask->plan->offset), 0.0f, 1.0f);
 }
 
 /* The factor's slope at a point of frame space, per frame unit. */
@@ -94,7 +94,7 @@ DEVICE vector mask_slope(const mask_data *mask, vector point) {
     for (int a = 0; a < 3; a++) sum[a] = fused(share, (float)(own[a] < 128 ? own[a] : own[a] - 256), sum[a]);
   }
   for (int a = 0; a < 3; a++)
-    slope = add_scaled(slope, vector_at(mask->plan->to_index[a]), sum[a] * (1.0f / 254));
+    slope = add_scaled(slope, vector_at(mask->plan->to_index[a]), sum[a] * mask->plan->slope_scale);
   return slope;
 }
 

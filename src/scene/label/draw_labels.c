@@ -181,7 +181,13 @@ static hl_status draw_map(hl_context *context, hl_scene_description *placed, con
   return status == HL_OK ? draw_skins(context, placed, &whole, points, error) : status;
 }
 
-/* Adds a volume whose mask is replaced by its lattice. */
+/* Returns whether a mask ends the volume at the walls of its mesh of cells. */
+static bool has_wall(const hl_scene_description *placed, const hl_scene_volume *volume) {
+  return volume->volume->wall != NULL && volume->mask.volume == NULL && volume->iso_count == 0 &&
+         placed->render.compositing != HL_COMPOSITING_MAXIMUM;
+}
+
+/* Adds a volume whose mask is replaced by its lattice, or a mesh of cells whose walls become a lattice. */
 static hl_status draw_masked(hl_context *context, hl_scene_description *placed, const hl_scene_volume *volume,
                              hl_error *error) {
   hl_volume *lattice = NULL;
@@ -191,10 +197,15 @@ static hl_status draw_masked(hl_context *context, hl_scene_description *placed, 
     if (status == HL_OK) status = hl_label_mask(context, placed->render.threads, &whole, &lattice, error);
     if (status != HL_OK) return status;
   }
+  if (has_wall(placed, volume)) {
+    hl_status status = hl_wall_mask(context, placed->render.threads, volume->volume->wall, &lattice, error);
+    if (status != HL_OK) return status;
+  }
   hl_scene_volume *drawn = (hl_scene_volume *)&placed->volumes[placed->volume_count++];
   *drawn = *volume;
+  if (has_wall(placed, volume)) drawn->volume = volume->volume->continued;
   hl_volume_retain(drawn->volume);
-  drawn->mask = (hl_mask){.volume = lattice, .rest = volume->mask.rest};
+  drawn->mask = (hl_mask){.volume = lattice, .rest = has_wall(placed, volume) ? 0 : volume->mask.rest};
   return HL_OK;
 }
 
@@ -205,7 +216,7 @@ hl_status hl_labels_draw(hl_context *context, hl_scene_description *placed, draw
   const size_t volume_count = placed->volume_count;
   size_t count = 0, maps = 0;
   for (size_t v = 0; v < volume_count; v++) {
-    maps += volumes[v].label_count > 0 || volumes[v].mask.volume != NULL;
+    maps += volumes[v].label_count > 0 || volumes[v].mask.volume != NULL || has_wall(placed, &volumes[v]);
     count += count_drawn(&volumes[v]);
   }
   if (maps == 0) return HL_OK;

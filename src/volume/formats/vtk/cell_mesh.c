@@ -200,6 +200,9 @@ hl_status hl_cell_mesh_set_values(hl_cell_mesh *mesh, const double *values, size
 
 /* ---- the whole ---- */
 
+/* The fraction of matter rises from 0 to 1 over this distance across a wall; voxels. */
+static const double WALL_WIDTH = 1;
+
 static void tell(const hl_cell_mesh *mesh) {
   if (mesh->simplified > 0)
     hl_log(mesh->context, HL_LOG_WARNING, "%s: %zu cells with curved edges are read by their corners alone",
@@ -227,30 +230,59 @@ static void tell_difference(const hl_cell_mesh *mesh, double bound) {
            mesh->subject, mesh->cell_count, bound);
 }
 
+/* Keeps the field that is continued beyond the walls, and the walls, with the volume. grid: the volume's. */
+static hl_status keep_wall(const hl_cell_mesh *mesh, hl_cells_wall *wall, const hl_volume_description *grid,
+                           hl_volume *volume, hl_error *error) {
+  hl_volume_description wide = *grid;
+  if (wall->depth == NULL) return HL_OK;
+  for (int axis = 0; axis < 3; axis++) {
+    wide.dimensions[axis] += 2 * HL_CELLS_MARGIN;
+    wide.origin[axis] -= HL_CELLS_MARGIN * wide.axis[axis][axis];
+  }
+  hl_status status = hl_volume_take_bricks(mesh->context, &wall->bricks, &wide, mesh->subject,
+                                           &volume->continued, error);
+  if (status != HL_OK) return status;
+  wide.type = HL_VOXEL_U16;
+  wide.value_scale = (HL_WALL_OUTSIDE + HL_WALL_INSIDE) / WALL_WIDTH / UINT16_MAX;
+  wide.value_offset = 0.5 - HL_WALL_OUTSIDE / WALL_WIDTH;
+  uint16_t *depth = wall->depth;
+  wall->depth = NULL;
+  status = hl_volume_adopt(mesh->context, &wide, mesh->subject, depth, &volume->wall, error);
+  if (status == HL_OK) volume->wall->slope_scale = 1 / WALL_WIDTH / INT8_MAX;
+  return status;
+}
+
 hl_status hl_cell_mesh_finish(hl_cell_mesh *mesh, hl_volume **volume, hl_error *error) {
   const hl_cells cells = {mesh->points, mesh->values, mesh->point_count, mesh->cells, mesh->cell_count};
   hl_bricks bricks = {.shift = 0};
+  hl_cells_wall wall;
   hl_cells_place place;
   hl_volume_description grid;
   hl_pool *pool = NULL;
   tell(mesh);
   hl_status status = hl_pool_create(mesh->context, 0, &pool, error);
   if (status == HL_OK)
-    status = hl_cells_build(mesh->context, pool, &cells, mesh->subject, &bricks, &place, error);
+    status = hl_cells_build(mesh->context, pool, &cells, mesh->subject, &bricks, &wall, &place, error);
   hl_pool_destroy(pool);
   if (status != HL_OK) return status;
   hl_volume_description_defaults(&grid);
   grid.type = HL_VOXEL_F32;
   for (int axis = 0; axis < 3; axis++) {
-    grid.dimensions[axis] = bricks.dimension[axis];
-    grid.origin[axis] = place.origin[axis];
+    grid.dimensions[axis] = bricks.dimension[axis] - 2 * HL_CELLS_MARGIN;
+    grid.origin[axis] = place.origin[axis] + HL_CELLS_MARGIN * place.spacing[axis];
     grid.axis[axis][axis] = place.spacing[axis];
   }
   tell_difference(mesh, place.error);
   status = hl_volume_take_bricks(mesh->context, &bricks, &grid, mesh->subject, volume, error);
-  if (status == HL_OK)
-    hl_volume_set_field_error(*volume, place.error, "bound", "the values between the corners of the cells");
-  return status;
+  if (status == HL_OK) status = keep_wall(mesh, &wall, &grid, *volume, error);
+  hl_cells_wall_release(mesh->context, &wall);
+  if (status != HL_OK) {
+    hl_volume_release(*volume);
+    *volume = NULL;
+    return status;
+  }
+  hl_volume_set_field_error(*volume, place.error, "bound", "the values between the corners of the cells");
+  return HL_OK;
 }
 
 void hl_cell_mesh_release(hl_cell_mesh *mesh) {
