@@ -305,7 +305,8 @@ static void continue_slice(const cell_field *field, int level, const ptrdiff_t f
   }
 }
 
-/* Copies a box that is a brick of the field, if the field has data in all of it. */
+/* Copies a box that is a brick of the field. Its active coefficients are the source's own; the builder
+ * replaces the others anyway. Returns false if the box is no brick. */
 static bool copy_brick(const hl_bricks *bricks, int level, const ptrdiff_t first[3], const size_t count[3],
                        float *out) {
   int64_t block[3];
@@ -315,19 +316,16 @@ static bool copy_brick(const hl_bricks *bricks, int level, const ptrdiff_t first
     if ((size_t)block[axis] >= bricks->directory_size[axis]) return false;
   }
   const hl_brick_entry *entry = hl_bricks_entry(bricks, block);
-  if (entry->slot < 0 || entry->level != level) return false;
-  const float *pool = hl_brick_pool(bricks, entry->slot);
-  for (size_t n = 0; n < brick_points(SHIFT); n++)
-    if (!isfinite(pool[n])) return false;
-  memcpy(out, pool, brick_points(SHIFT) * sizeof *out);
+  if (entry->level != level) return false;
+  if (entry->slot >= 0) memcpy(out, hl_brick_pool(bricks, entry->slot), brick_points(SHIFT) * sizeof *out);
+  for (size_t n = 0; n < brick_points(SHIFT) && entry->slot < 0; n++) out[n] = entry->constant;
   return true;
 }
 
 static void fill_continued(void *data, int level, const ptrdiff_t first[3], const size_t count[3],
                            float *out) {
   const cell_field *field = data;
-  if (copy_brick(field->bricks, level, first, count, out)) return;
-  fill(data, level, first, count, out);
+  if (!copy_brick(field->bricks, level, first, count, out)) fill(data, level, first, count, out);
   for (size_t k = 0; k < count[2]; k++)
     continue_slice(data, level, (const ptrdiff_t[3]){first[0], first[1], first[2] + (ptrdiff_t)k},
                    (const size_t[3]){count[0], count[1], 1}, out + k * count[0] * count[1]);
