@@ -7,7 +7,7 @@
 #include "core/context.h"
 #include "core/memory.h"
 
-enum { FACES = 6, FACE_CORNERS = 4, NONE = UINT32_MAX };
+enum { FACES = 6, FACE_CORNERS = 4 };
 
 /* The corners of the faces of a hexahedron and of a tetrahedron. */
 static const int hexahedron_faces[FACES][FACE_CORNERS] = {{0, 3, 2, 1}, {4, 5, 6, 7}, {0, 1, 5, 4},
@@ -44,11 +44,11 @@ static cell_face face_of(const hl_cell *cell, int face) {
   return found;
 }
 
-/* The points of a face in rising order, NONE behind the last one. */
+/* The points of a face in rising order, UINT32_MAX behind the last one. */
 static void points_of_face(const hl_cell *cell, int face, uint32_t points[FACE_CORNERS]) {
   const cell_face corners = face_of(cell, face);
   for (int n = 0; n < FACE_CORNERS; n++) {
-    uint32_t point = n < corners.count ? cell->corner[corners.corner[n]] : NONE;
+    uint32_t point = n < corners.count ? cell->corner[corners.corner[n]] : UINT32_MAX;
     int place = n;
     for (; place > 0 && points[place - 1] > point; place--) points[place] = points[place - 1];
     points[place] = point;
