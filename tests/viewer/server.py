@@ -196,9 +196,12 @@ def film_scenes(viewer, scene):
     along = sum((m - t) * u for m, t, u in zip(middle, before["target"], up))
     away = [m - t - along * u for m, t, u in zip(middle, before["target"], up)]
     check(status == 200 and max(map(abs, away)) < 1e-6, "half a turn: the eye is opposite, about the axis that points up")
-    own = scene["volumes"][0]["transfer_function"]["color"]
-    paths = [f"volumes.0.transfer_function.color.{n}.{c}" for n in range(len(own)) for c in (1, 2, 3)]
+    own = scene["volumes"][0]["transfer_function"]
+    paths = [f"volumes.0.transfer_function.color.{n}.{c}" for n in range(len(own["color"])) for c in (1, 2, 3)]
+    paths += [f"volumes.0.transfer_function.opacity.{n}.1" for n in range(len(own["opacity"]))]
     paths += [f"{path}.{c}" for path in ("ambient", "image.background", "lights.0.color", "lights.1.color") for c in range(3)]
+    paths += [f"{path}.{c}" for path in ("camera.position", "camera.target", "sky.zenith", "sky.horizon", "sky.ground") for c in range(3)]
+    check(len(paths) > 32, f"enough numbers for the keys: {len(paths)}")
     keys = [f"&key{n}={path}=0:0.5" for n, path in enumerate(paths[:33])]
     check(at("frame=0&frames=9" + "".join(keys[:32])) == (200, width), "32 keys")
     for query in ("frame=-1", "frame=1e9", "frame=NaN", "frame=", "frame=100001", "frame=2147483648", "frame=18446744073709551616",
