@@ -51,13 +51,14 @@ typedef enum hl_compose_flag {
                            * HL_COMPOSE_BARE description is placed anew so that they fill the picture */
   HL_COMPOSE_CUT = 4, /* the caller cut the volume: the light of an HL_COMPOSE_BARE description is chosen for
                        * the part that is left */
-  HL_COMPOSE_CAMERA = 8,  /* the caller placed the camera: it is not moved */
-  HL_COMPOSE_LIGHTS = 16, /* the caller chose the lights: their strengths are not changed */
-  HL_COMPOSE_SKY = 32,    /* the caller chose the sky: it is not changed */
-  HL_COMPOSE_MESHES = 64, /* the caller added meshes: the camera of an HL_COMPOSE_BARE description shows the
-                           * meshes, too */
-  HL_COMPOSE_VALUES = 128 /* a label map of an HL_COMPOSE_BARE description is drawn by its values, even if no
-                           * option asks for this */
+  HL_COMPOSE_CAMERA = 8,   /* the caller placed the camera: it is not moved */
+  HL_COMPOSE_LIGHTS = 16,  /* the caller chose the lights: their strengths are not changed */
+  HL_COMPOSE_SKY = 32,     /* the caller chose the sky: it is not changed */
+  HL_COMPOSE_MESHES = 64,  /* the caller added meshes: the camera of an HL_COMPOSE_BARE description shows the
+                            * meshes, too */
+  HL_COMPOSE_VALUES = 128, /* a label map of an HL_COMPOSE_BARE description is drawn by its values, even if no
+                            * option asks for this */
+  HL_COMPOSE_FUNCTIONS = 256 /* the caller chose opacities: a channel that hides another one keeps its own */
 } hl_compose_flag;
 
 /* Makes a scene of a description and options. The options are applied in this fixed order, whatever their

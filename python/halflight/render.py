@@ -505,4 +505,7 @@ def _scene_of_channels(path: Any, channels: str | Sequence[int], place: Mapping[
     count = len(scene.volumes)
     projected = material.get("look") == "mip"
     volumes = [_look(one, projected, *_look_for(look, n, count)).replace(**shown) for n, one in enumerate(scene.volumes)]
-    return scene._changed(volumes if labels is None else [*volumes, _label_volume(labels)], settings, True)
+    chosen = [*(look.get(word) for word in ("clim", "opacity", "opacity_unit_distance", "tf")), shown.get("iso")]
+    is_own = material.get("look", "auto") != "auto" or any(one is not None for one in chosen)
+    return scene._changed(volumes if labels is None else [*volumes, _label_volume(labels)], settings, True,
+                          lib.HL_COMPOSE_FUNCTIONS if is_own else 0)

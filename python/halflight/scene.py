@@ -199,13 +199,13 @@ class Scene:
         given = self._volumes if volumes is None else volumes if isinstance(volumes, (list, tuple)) else [volumes]
         return self._changed(given, settings, False)
 
-    def _changed(self, volumes: Sequence[Any], settings: Mapping[str, Any], chosen: bool) -> Scene:
+    def _changed(self, volumes: Sequence[Any], settings: Mapping[str, Any], chosen: bool, flags: int = 0) -> Scene:
         """The scene with other volumes and settings. chosen: whether the scene's camera and light were chosen for its
-        volumes, so that they are chosen anew.
+        volumes, so that they are chosen anew. flags: further ones of hl_compose_flag.
         """
         other = Scene.__new__(Scene)
         other._volumes = tuple(as_volume(source) for source in volumes)
-        other._handle = _build(self._handle, other._volumes, settings, chosen)
+        other._handle = _build(self._handle, other._volumes, settings, chosen, flags)
         return other
 
     def save(self, path: str | os.PathLike[str], *, copy: bool = False) -> None:
@@ -554,12 +554,12 @@ def _flags(volumes: Sequence[Volume], settings: Mapping[str, Any]) -> int:
     return flags
 
 
-def _build(base: Any, volumes: Sequence[Volume], settings: Mapping[str, Any], chosen: bool) -> Any:
+def _build(base: Any, volumes: Sequence[Volume], settings: Mapping[str, Any], chosen: bool, flags: int = 0) -> Any:
     """An hl_scene: that of `base` with other volumes and settings. chosen: its camera was chosen for a volume."""
     keep: list[Any] = [base]
     pointer = ffi.new("hl_scene_description *", lib.hl_scene_describe(base)[0])
     struct = pointer[0]
-    flags = _flags(volumes, settings) if chosen else 0
+    flags |= _flags(volumes, settings) if chosen else 0
     array = ffi.new("hl_scene_volume[]", len(volumes)) if volumes else ffi.NULL
     for n, volume in enumerate(volumes):
         volume._fill(array[n], keep, f"volumes[{n}]: " if len(volumes) > 1 else "")

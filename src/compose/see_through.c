@@ -173,7 +173,8 @@ static hl_status thin_all(hl_context *context, channel_views *views, hl_scene_vo
 static bool has_chosen_channels(const hl_composer *composer, const hl_scene_description *scene) {
   const hl_asked *asked = composer->asked;
   const hl_scene_volume *first = scene->volumes;
-  if (!composer->bare || scene->volume_count < 2 || scene->volume_count > HL_CHANNELS_MOST ||
+  if (!composer->bare || (composer->flags & HL_COMPOSE_FUNCTIONS) != 0 || scene->volume_count < 2 ||
+      scene->volume_count > HL_CHANNELS_MOST ||
       (asked[HL_ASK_LOOK].given && asked[HL_ASK_LOOK].choice != HL_LOOK_AUTO) ||
       hl_is_maximum(composer, scene) || asked[HL_ASK_TF].given || asked[HL_ASK_RANGE].given ||
       asked[HL_ASK_THRESHOLD].given || asked[HL_ASK_ISO].given)
