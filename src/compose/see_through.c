@@ -17,9 +17,8 @@
 #define SEEN 0.05
 /* A volume is hidden if a smaller fraction of its places is seen. */
 #define ENOUGH 0.25
-/* A place is at the front of a volume if the volume itself lets this fraction of the light pass. */
-#define FRONT 0.3
-/* A volume hides another one if it lets a smaller fraction of the light pass from the middle place. */
+/* Matter hides what lies behind it if it lets a smaller fraction of the light pass: a volume's own matter the
+ * places that are not at its front, and another volume's matter the volume. */
 #define HIDES 0.3
 /* The fraction of the light that matter lets pass after it has become translucent. */
 #define THROUGH 0.65
@@ -91,7 +90,7 @@ static void find_places(channel_views *views, const hl_screen *screen) {
   for (uint64_t n = 0; n < looks; n++) {
     if (!find_matter(screen, hl_examined_voxel(n, all), most, &point) || met++ % (matter / TRIED + 1) != 0)
       continue;
-    if (hl_screen_passing(screen, point, towards_eye(views, point), FRONT) >= FRONT)
+    if (hl_screen_passing(screen, point, towards_eye(views, point), HIDES) >= HIDES)
       keep_place(views, &kept, point);
   }
 }
