@@ -222,7 +222,7 @@ def keys_beside_sliders(browser):
     press_named(browser, "Undo")
     check(browser.run("document.querySelectorAll('.track-name').length") == 6 and "clip" not in scene_of(browser)["volumes"][0], "one step takes the key back, and what it has named")
     missing = browser.run("[...document.querySelectorAll('aside input[type=range]')].filter((e) => e.closest('details').firstElementChild.textContent !== 'Slices' && !e.closest('.row')?.querySelector('.key-here')).map((e) => e.labels[0]?.textContent)")
-    check(missing == ["Sub-lights"], f"each slider of a number that can change from frame to frame has a key: {missing}")
+    check(missing == ["Sub-lights", "Smooth edges"], f"each slider of a number that can change from frame to frame has a key: {missing}")
     browser.run("document.querySelectorAll('details').forEach((d) => { d.open = false; })")
 
 
