@@ -356,11 +356,11 @@ static bool note_wall(void *data, uint32_t n) {
         double from[3];
         subtract(point, wall->corner[0], from);
         double above = dot(from, wall->normal);
-        if (above * above > near->distance + SAME) continue;
-        double distance = distance_to(wall, &edges, point, above, near->distance + SAME);
-        if (distance < near->distance - SAME ||
-            (distance < near->distance + SAME && fabs(above) > fabs(near->above)))
-          *near = (hl_wall_near){n, fmin(distance, near->distance), above};
+        if (above * above > near->squared + SAME) continue;
+        double squared = distance_to(wall, &edges, point, above, near->squared + SAME);
+        if (squared < near->squared - SAME ||
+            (squared < near->squared + SAME && fabs(above) > fabs(near->above)))
+          *near = (hl_wall_near){n, fmin(squared, near->squared), above};
       }
   return true;
 }

@@ -24,11 +24,11 @@ typedef struct hl_cell_walls {
 
 /* The wall nearest to a lattice point. */
 typedef struct hl_wall_near {
-  uint32_t wall;   /* index of the triangle; UINT32_MAX: no wall is within reach */
-  double distance; /* square of the distance to the triangle */
-  double above;    /* signed distance to the triangle's plane, positive outside of the cell. Where several
-                    * triangles meet in the nearest point, it is the greatest in magnitude: its sign tells
-                    * whether the lattice point lies inside the mesh */
+  uint32_t wall;  /* index of the triangle; UINT32_MAX: no wall is within reach */
+  double squared; /* square of the distance to the triangle */
+  double above;   /* signed distance to the triangle's plane, positive outside of the cell. Where several
+                   * triangles meet in the nearest point, it is the greatest in magnitude: its sign tells
+                   * whether the lattice point lies inside the mesh */
 } hl_wall_near;
 
 /* Returns whether a cell of the mesh holds a point. tree: of the mesh's cells. besides: a cell that does not
@@ -45,7 +45,7 @@ hl_status hl_cell_walls_find(hl_context *context, const hl_cells *cells, const h
 void hl_cell_walls_release(hl_context *context, hl_cell_walls *walls);
 
 /* Finds the wall nearest to each of the points first .. first + count - 1 of a level, [z][y][x], if it is
- * nearer than `distance` was before. reach: the greatest root of a `distance` before. */
+ * nearer than `squared` was before. reach: the greatest root of a `squared` before. */
 void hl_cell_walls_near(const hl_cell_walls *walls, int level, const ptrdiff_t first[3],
                         const size_t count[3], double reach, hl_wall_near *near);
 

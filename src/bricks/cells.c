@@ -353,7 +353,7 @@ static void fill_row(const depth_job *job, const hl_wall_near *near, ptrdiff_t j
   for (size_t i = 0; i < field->source.dimension[0]; i++) {
     const double point[3] = {(double)i, (double)j, (double)k};
     if (near[i].wall != UINT32_MAX)
-      out[i] = code_of(near[i].above > 0 ? -sqrt(near[i].distance) : sqrt(near[i].distance));
+      out[i] = code_of(near[i].above > 0 ? -sqrt(near[i].squared) : sqrt(near[i].squared));
     else if (i > 0 && near[i - 1].wall == UINT32_MAX) out[i] = out[i - 1];
     else out[i] = hl_cells_hold(field->cells, &field->tree, field->place, point, UINT32_MAX) ? UINT16_MAX : 0;
   }

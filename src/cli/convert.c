@@ -190,11 +190,7 @@ static int convert(cli_host *host, const cli_value *values, const char *in, cons
 
 /* ---- pictures ---- */
 
-static bool is_picture_name(const char *path) {
-  for (int n = 0; picture_extensions[n] != NULL; n++)
-    if (has_extension(path, picture_extensions[n])) return true;
-  return false;
-}
+static bool is_picture_name(const char *path) { return has_extension_among(path, picture_extensions); }
 
 /* Returns whether IN and OUT are pictures. NumPy's arrays may be pictures or volumes, so that IN decides. */
 static bool are_pictures(const char *in, const char *out) {
@@ -205,7 +201,7 @@ static bool are_pictures(const char *in, const char *out) {
 /* Refuses options that are for volumes if OUT is a picture, and options that are for pictures if it is none,
  * or if it keeps light as numbers. */
 static int check_kind_of_options(const cli_value *values, bool picture, const char *out) {
-  const bool coded = picture && !has_extension(out, ".exr") && !has_extension(out, ".npy");
+  const bool coded = picture && !output_is_linear(out);
   for (int row = 0; row < CONVERT_OPTION_COUNT; row++) {
     const bool of_picture = row >= CONVERT_BACKGROUND && row <= CONVERT_TONE,
                of_volume = row != CONVERT_OUTPUT && row < CONVERT_BACKGROUND;

@@ -90,6 +90,14 @@ hl_status output_scene_text(hl_context *context, const hl_scene *scene, const ch
   return status;
 }
 
+bool has_extension_among(const char *path, const char *const *extensions) {
+  for (int n = 0; extensions[n] != NULL; n++)
+    if (has_extension(path, extensions[n])) return true;
+  return false;
+}
+
+bool output_is_linear(const char *path) { return has_extension(path, ".exr") || has_extension(path, ".npy"); }
+
 char *output_default_name(const char *input, const char *extension) {
   char folder[PATH_MAX];
   char url[PATH_MAX];

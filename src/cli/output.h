@@ -14,6 +14,10 @@ const char *base_name(const char *path);
 /* Returns true if the path ends in the extension (".png"), in upper or lower case, and has at least one
  * character before it. */
 bool has_extension(const char *path, const char *extension);
+/* Whether a path ends in one of the extensions. extensions: ended by null. */
+bool has_extension_among(const char *path, const char *const *extensions);
+/* Whether a picture with this name holds linear light as numbers (.exr, .npy), and no coded colours. */
+bool output_is_linear(const char *path);
 
 /* The extensions that can be written; null after the last. */
 extern const char *const picture_extensions[], *const figure_extensions[], *const volume_extensions[];

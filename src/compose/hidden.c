@@ -15,8 +15,7 @@
 #include "text/stem.h"
 #include "volume/volume.h"
 
-/* SEEN: a place counts as seen if this fraction of its light reaches the eye, and a label if this fraction of
- * its places is seen. */
+/* A label counts as seen if this fraction of its places is seen. */
 #define SEEN 0.05
 
 enum { PLACES = 256, FEWEST_PLACES = 16, ALL_PLACES = 32768 };
@@ -102,10 +101,10 @@ static void try_voxel(const sought_map *sought, const sought_voxel *voxel) {
   const uint64_t all = sight->facing > 0 ? sight->facing : sight->voxels, every = all / sought->places + 1;
   if ((sight->facing > 0 && !voxel->facing) || sight->met++ % every != 0) return;
   double left = 1;
-  for (size_t s = 0; s < sought->screen_count && left >= SEEN; s++)
-    left *= hl_screen_passing(&sought->screens[s], voxel->point, voxel->towards, SEEN);
+  for (size_t s = 0; s < sought->screen_count && left >= HL_SCREEN_SEEN; s++)
+    left *= hl_screen_passing(&sought->screens[s], voxel->point, voxel->towards, HL_SCREEN_SEEN);
   sight->tried++;
-  sight->seen += left >= SEEN;
+  sight->seen += left >= HL_SCREEN_SEEN;
 }
 
 /* Looks for labels from one side. Afterwards `hidden` is set for those of them that are hardly seen. */

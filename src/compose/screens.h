@@ -11,6 +11,9 @@
 
 enum { HL_SCREEN_TABLE = 1024 };
 
+/* A place counts as seen if this fraction of its light reaches the eye. */
+#define HL_SCREEN_SEEN 0.05
+
 /* A volume whose matter may hide other things. */
 typedef struct hl_screen {
   const hl_scene_volume *volume; /* borrowed */

@@ -13,8 +13,6 @@
 #include "core/memory.h"
 #include "guess/sample.h"
 
-/* SEEN: a place counts as seen if this fraction of its light reaches the eye. */
-#define SEEN 0.05
 /* A volume is hidden if a smaller fraction of its places is seen. */
 #define ENOUGH 0.25
 /* Matter hides what lies behind it if it lets a smaller fraction of the light pass: a volume's own matter the
@@ -113,11 +111,11 @@ static double seen_part(const channel_views *views, size_t of) {
   size_t seen = 0;
   for (size_t p = 0; p < views->place_count; p++) {
     double left = 1;
-    for (size_t v = 0; v < views->count && left >= SEEN; v++)
+    for (size_t v = 0; v < views->count && left >= HL_SCREEN_SEEN; v++)
       if (v != of)
         left *= hl_screen_passing(&views->screens[v], views->places[p], towards_eye(views, views->places[p]),
-                                  SEEN);
-    seen += left >= SEEN;
+                                  HL_SCREEN_SEEN);
+    seen += left >= HL_SCREEN_SEEN;
   }
   return views->place_count > 0 ? (double)seen / (double)views->place_count : 1;
 }

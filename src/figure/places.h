@@ -34,8 +34,8 @@ bool hl_rectangles_meet(hl_rectangle a, hl_rectangle b);
 bool hl_rectangle_lies_in(hl_rectangle box, hl_rectangle picture);
 /* A rectangle with a rim around it. */
 hl_rectangle hl_rectangle_widened(hl_rectangle box, double rim);
-/* The rectangle as far from the opposite edges of the picture: of the left and right one, and of the upper
- * and lower one. */
+/* The rectangle mirrored at the middle of the picture. across: its distance from the left edge becomes its
+ * distance from the right edge. down: the same for the upper and the lower edge. */
 hl_rectangle hl_rectangle_in_corner(hl_rectangle box, hl_rectangle picture, bool across, bool down);
 
 /* ---- what is taken ---- */

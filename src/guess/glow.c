@@ -15,8 +15,11 @@
 
 #include "core/memory.h"
 
+/* LONGEST: the number of cells along the longest side of the box. SUBDIVIDED: the number of places along each
+ * side of a cell at which matter is looked up. SWEEPS: the number of times that all cells are relaxed. */
 enum { LONGEST = 24, SUBDIVIDED = 3, SWEEPS = 150 };
 
+/* Successive over-relaxation changes a cell by this multiple of the change that solves its own equation. */
 #define RELAXATION 1.7
 
 /* The grid while it is made. Each array is [count[2]][count[1]][count[0]]. */

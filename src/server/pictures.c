@@ -71,6 +71,7 @@ static hl_status render_small(const server *s, hl_renderer *renderer, const hl_s
   const double part = fmin(1, (double)MOST_PIXELS_ALONG / fmax(d.width, d.height));
   d.width = (int)fmax(1, round(part * d.width));
   d.height = (int)fmax(1, round(part * d.height));
+  d.render.pixel_samples = 0;
   hl_scene *small = NULL;
   hl_status status = hl_scene_create(s->options.context, &d, &small, error);
   if (status == HL_OK) status = hl_image_create(s->options.context, d.width, d.height, image, error);

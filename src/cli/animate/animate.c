@@ -118,11 +118,7 @@ typedef struct animate_job {
 
 /* ---- where the film goes ---- */
 
-static bool is_film(const char *path) {
-  for (int m = 0; movie_extensions[m] != NULL; m++)
-    if (has_extension(path, movie_extensions[m])) return true;
-  return false;
-}
+static bool is_film(const char *path) { return has_extension_among(path, movie_extensions); }
 
 /* The folder of a film's pictures: "turn-frames" for the film "turn.mp4"; for an output that is a folder,
  * the folder's own name without a slash at the end. */

@@ -102,8 +102,7 @@ int render_layers_check(const cli_value *values) {
   if (to_stdout && exr) return EXIT_CODE_OK;
   if (to_stdout) return fail(EXIT_CODE_USAGE, "--layers: standard output takes one file: add --format exr");
   if (!output->given && (exr || npy)) return EXIT_CODE_OK;
-  if (output->given && (has_extension(output->text, ".exr") || has_extension(output->text, ".npy")))
-    return EXIT_CODE_OK;
+  if (output->given && output_is_linear(output->text)) return EXIT_CODE_OK;
   if (output->given)
     return fail(EXIT_CODE_USAGE, "--layers: '%s' cannot hold layers: end OUT in .exr or .npy", output->text);
   return fail(EXIT_CODE_USAGE, "--layers needs a file that holds them: add -o NAME.exr or -o NAME.npy");

@@ -41,7 +41,7 @@ static int check_linear_output(const cli_value *values, bool named) {
   for (size_t n = 0; n < sizeof of_png / sizeof *of_png; n++) {
     const char *name = render_options[of_png[n]].name;
     if (!values[of_png[n]].given) continue;
-    if (named && (has_extension(output->text, ".exr") || has_extension(output->text, ".npy")))
+    if (named && output_is_linear(output->text))
       return fail(EXIT_CODE_USAGE,
                   "--%s is for .png pictures, not for '%s': .exr and .npy hold linear light as it is", name,
                   output->text);

@@ -150,15 +150,13 @@ int render_overlay_read(const cli_value *values, cli_overlay *overlay) {
 
 /* ---- what goes together ---- */
 
-static bool is_linear(const char *path) { return has_extension(path, ".exr") || has_extension(path, ".npy"); }
-
 int render_overlay_check_options(const cli_value *values, const char *path) {
   static const int drawn[] = {RENDER_SCALE_BAR, RENDER_LEGEND, RENDER_AXES, RENDER_MARKS, RENDER_ANNOTATE};
   cli_overlay overlay;
   int exit_code = render_overlay_read(values, &overlay);
   for (size_t n = 0; n < sizeof drawn / sizeof *drawn && exit_code == EXIT_CODE_OK; n++) {
     if (!values[drawn[n]].given) continue;
-    if (is_linear(path))
+    if (output_is_linear(path))
       exit_code = fail(
           EXIT_CODE_USAGE,
           "--%s is drawn over .png, .tif, .pdf and .svg pictures: '%s' holds linear light as it is",

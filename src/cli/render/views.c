@@ -86,7 +86,7 @@ static int check_options(views_job *job) {
                 "--views: give --output a name: SHEET.png, or NAME-%%s.png for a file of each side");
   job->output = output->text;
   job->files = output_has_name(job->output);
-  if (!job->files && (has_extension(job->output, ".exr") || has_extension(job->output, ".npy")))
+  if (!job->files && output_is_linear(job->output))
     return fail(EXIT_CODE_USAGE,
                 "--views: a sheet is a drawn picture, and '%s' would hold linear light: put %%s into its "
                 "name, for a file "

@@ -190,6 +190,7 @@ static bool has_wall(const hl_scene_description *placed, const hl_scene_volume *
 /* Adds a volume whose mask is replaced by its lattice, or a mesh of cells whose walls become a lattice. */
 static hl_status draw_masked(hl_context *context, hl_scene_description *placed, const hl_scene_volume *volume,
                              hl_error *error) {
+  const bool walled = has_wall(placed, volume);
   hl_volume *lattice = NULL;
   if (volume->mask.volume != NULL) {
     hl_mask whole = volume->mask;
@@ -197,15 +198,15 @@ static hl_status draw_masked(hl_context *context, hl_scene_description *placed, 
     if (status == HL_OK) status = hl_label_mask(context, placed->render.threads, &whole, &lattice, error);
     if (status != HL_OK) return status;
   }
-  if (has_wall(placed, volume)) {
+  if (walled) {
     hl_status status = hl_wall_mask(context, placed->render.threads, volume->volume->wall, &lattice, error);
     if (status != HL_OK) return status;
   }
   hl_scene_volume *drawn = (hl_scene_volume *)&placed->volumes[placed->volume_count++];
   *drawn = *volume;
-  if (has_wall(placed, volume)) drawn->volume = volume->volume->continued;
+  if (walled) drawn->volume = volume->volume->continued;
   hl_volume_retain(drawn->volume);
-  drawn->mask = (hl_mask){.volume = lattice, .rest = has_wall(placed, volume) ? 0 : volume->mask.rest};
+  drawn->mask = (hl_mask){.volume = lattice, .rest = walled ? 0 : volume->mask.rest};
   return HL_OK;
 }
 
