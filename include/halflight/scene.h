@@ -372,6 +372,13 @@ HL_API HL_WARN_UNUSED hl_status hl_scene_for_volume_look(hl_context *context, hl
 HL_API HL_WARN_UNUSED hl_status hl_scene_join(hl_context *context, hl_scene *const *scenes, size_t count,
                                               hl_scene **scene, hl_error *error);
 
+/* Returns the distance between sheets for a scene of several volumes, in units of its shortest voxel edge. It
+ * is the least distance that one of the volumes asks for, rounded to six decimals. hl_scene_join() takes this
+ * distance. spacings: [description->volume_count], the distance that each volume asks for, in units of its
+ * own shortest edge. If a volume's edge has no length, or there is no volume, the function returns the
+ * description's own distance. It returns 0 if an argument is null. */
+HL_API double hl_scene_joined_spacing(const hl_scene_description *description, const double *spacings);
+
 /* Makes a scene of several channels of a file, such as a microscope's. Each channel is a volume with the look
  * that hl_scene_for_volume_look() gives it, in the colour of hl_scene_channel_color(). The volume's name is
  * the channel's name in the file, or else "channel0" and so on. path, options: as for hl_volume_load_with();

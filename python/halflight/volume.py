@@ -11,7 +11,7 @@ from . import _settings, arrays, cuts, grids, isosurface, mask, neighbours, piec
 from ._library import call, choices_of, composed, context, ffi, lib, made, text_of
 from ._words import check_keywords, choice
 from .transfer import function_from
-from .volume_info import FileArray, FileChannel, FileSegment, FileSeries, Info, raw_info, read_info
+from .volume_info import FileArray, FileChannel, FileSegment, FileSeries, Info, read_info
 from .volume_look import Look, fill_look
 
 __all__ = ["FileArray", "FileChannel", "FileSegment", "FileSeries", "Info", "Look", "Volume", "info"]
@@ -388,10 +388,6 @@ class Volume:
     def info(self) -> Info:
         """Size, type, place and statistics."""
         return read_info(self._handle, self._file_text(), self._order)
-
-    def _smallest_edge(self) -> float:
-        raw = raw_info(self._handle)  # owns the array of spacings
-        return float(min(raw.spacing))
 
     def percentile(self, percent: float) -> float:
         """The data value below which `percent` percent of the finite voxels lie, as ``numpy.percentile`` computes it.

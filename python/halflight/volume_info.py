@@ -8,7 +8,7 @@ import numpy as np
 
 from ._library import call, ffi, lib, text_of
 
-__all__ = ["FieldError", "FileArray", "FileChannel", "FileSegment", "FileSeries", "Info", "raw_info", "read_info"]
+__all__ = ["FieldError", "FileArray", "FileChannel", "FileSegment", "FileSeries", "Info", "read_info"]
 
 
 @dataclass(frozen=True)
@@ -147,7 +147,7 @@ class Info:
     field_error: FieldError | None = None
 
 
-def raw_info(handle: Any) -> Any:
+def _raw_info(handle: Any) -> Any:
     """The hl_volume_info of an hl_volume."""
     raw = _sized("info")
     if lib.hl_volume_get_info(handle, raw) != lib.HL_OK:
@@ -166,7 +166,7 @@ def read_info(handle: Any, file: Any, order: Any) -> Info:
     order : 3 int or None
         The order of the voxels along x, y, z, if the library was given other axes than the array's.
     """
-    raw = raw_info(handle)
+    raw = _raw_info(handle)
     kind = ffi.new("const char **")
     call(lib.hl_volume_guess, handle, file, kind)
     dimensions = order or tuple(raw.dimensions)

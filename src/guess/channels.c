@@ -20,6 +20,7 @@ enum { NAME_BYTES = 256, MANY_SHEETS = 4096 };
 typedef struct joined_volumes {
   hl_scene_volume *volumes;  /* owned; [count] */
   char (*names)[NAME_BYTES]; /* owned; [count] */
+  double *spacings; /* owned; [count]: the distance of sheets, in units of the volume's shortest edge */
   size_t count;
 } joined_volumes;
 
@@ -45,6 +46,11 @@ static void name_volume(joined_volumes *joined, size_t index) {
   for (size_t copy = 2; is_taken(joined, index, name); copy++)
     snprintf(name, NAME_BYTES, "%.230s-%zu", stem, copy);
   joined->volumes[index].name = name;
+}
+
+/* The length of a volume's shortest voxel edge, in the world. */
+static double shortest_edge(const hl_scene_volume *volume) {
+  return mat3_shortest_column(hl_scene_volume_index_to_world(volume).linear);
 }
 
 /* The distance between a scene's sheets, in the world. */
@@ -78,21 +84,33 @@ static void tell_of_sheets(hl_scene *const *scenes, size_t count, const hl_scene
         sheets, edge, greatest, diagonal_of(joined) / edge);
 }
 
+double hl_scene_joined_spacing(const hl_scene_description *description, const double *spacings) {
+  HL_DOOR;
+  if (description == NULL || spacings == NULL) return 0;
+  double distance = INFINITY, shortest = INFINITY;
+  for (size_t n = 0; n < description->volume_count; n++) {
+    const double edge = shortest_edge(&description->volumes[n]);
+    distance = fmin(distance, spacings[n] * edge);
+    shortest = fmin(shortest, edge);
+  }
+  if (description->volume_count == 0 || !(shortest > 0)) return description->render.sheet_spacing;
+  return round(1e6 * distance / shortest) / 1e6;
+}
+
 static hl_status describe_joined(hl_scene *const *scenes, size_t count, joined_volumes *joined,
                                  hl_scene_description *description, hl_error *error) {
   hl_view view;
-  double distance = INFINITY;
   for (size_t n = 0; n < count; n++) {
     const hl_scene_description *own = &scenes[n]->description;
-    distance = fmin(distance, sheet_distance(own));
     for (size_t v = 0; v < own->volume_count; v++) {
       joined->volumes[joined->count] = own->volumes[v];
+      joined->spacings[joined->count] = sheet_distance(own) / shortest_edge(&own->volumes[v]);
       name_volume(joined, joined->count++);
     }
   }
   description->volumes = joined->volumes;
   description->volume_count = joined->count;
-  description->render.sheet_spacing = round(1e6 * distance / hl_scene_smallest_edge(description)) / 1e6;
+  description->render.sheet_spacing = hl_scene_joined_spacing(description, joined->spacings);
   tell_of_sheets(scenes, count, description);
   hl_status status = hl_view_choose(description, HL_SIDE_AUTOMATIC, NULL, &view, error);
   return status == HL_OK ? hl_camera_frame_view(description, &view, 1, &description->camera, error) : status;
@@ -111,14 +129,17 @@ hl_status hl_scene_join(hl_context *context, hl_scene *const *scenes, size_t cou
     total += scenes[n]->description.volume_count;
   }
   hl_scene_description description = scenes[0]->description;
-  joined_volumes joined = {hl_allocate(context, total, sizeof *joined.volumes),
-                           hl_allocate(context, total, NAME_BYTES), 0};
-  hl_status status = joined.volumes != NULL && joined.names != NULL
+  joined_volumes joined = {.volumes = hl_allocate(context, total, sizeof *joined.volumes),
+                           .names = hl_allocate(context, total, NAME_BYTES),
+                           .spacings = hl_allocate(context, total, sizeof *joined.spacings)};
+  const size_t bytes = sizeof *joined.volumes + NAME_BYTES + sizeof *joined.spacings;
+  hl_status status = joined.volumes != NULL && joined.names != NULL && joined.spacings != NULL
                          ? describe_joined(scenes, count, &joined, &description, error)
-                         : hl_fail_memory(error, total * (sizeof *joined.volumes + NAME_BYTES), "volumes");
+                         : hl_fail_memory(error, total * bytes, "volumes");
   if (status == HL_OK) status = hl_scene_create(context, &description, scene, error);
   hl_release(context, joined.volumes);
   hl_release(context, joined.names);
+  hl_release(context, joined.spacings);
   return status;
 }
 
