@@ -17,6 +17,7 @@
 #include "core/context.h"
 #include "field/field_planes.h"
 #include "field/harmonics.h"
+#include "field/open_light.h"
 #include "field/surface_links.h"
 #include "scene/light/sky.h"
 
@@ -354,6 +355,7 @@ static void make(hl_context *context, const sky_content *content, passing_arrays
   }
   if (arrays->share.with != NULL)
     hl_field_share_complete(&arrays->share, false, field, count[2], target.step[2] * sizeof *field);
+  if (!content->media) hl_open_light_spread(&content->lattice, content->channels, field, target.step, pool);
 }
 
 /* Finds the harmonics of the light where nothing hides the sky, and for each channel a bound of the harmonics

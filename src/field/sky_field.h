@@ -46,6 +46,7 @@ typedef struct sky_content {
   /* [number of matters]; for each volume, the relative extinction of red, green and blue light */
   const double (*colors)[3];
   field_lattice lattice;
+  bool media;   /* whether a visible volume is a medium without surfaces */
   int channels; /* number of channels: 3 if the light of the channels comes from different directions, or if
                  * matter attenuates the channels differently; else 1 */
   const light_exchange

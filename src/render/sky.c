@@ -14,6 +14,13 @@
 /* The most cells that a field has. */
 static const double MOST_CELLS = 1200000;
 
+/* Returns whether a visible volume is a medium without surfaces. */
+static bool has_media(const hl_scene_description *scene) {
+  for (size_t v = 0; v < scene->volume_count; v++)
+    if (scene->volumes[v].visible && scene->volumes[v].shading != HL_SHADING_PHONG) return true;
+  return false;
+}
+
 /* ---- the key ---- */
 
 static void add_volume(hl_key *key, const prepared_volume *prepared, const grid *grid) {
@@ -26,6 +33,7 @@ static void write_key(const void *data, hl_key *key) {
   const frame_sky *of = data;
   hl_sky_key_add(key, &of->scene->sky, of->mark);
   for (size_t v = 0; v < of->scene->volume_count; v++) add_volume(key, &of->volumes[v], &of->grids[v]);
+  hl_key_add_whole(key, has_media(of->scene));
   hl_surfaces_key_add(key, of->frame->surfaces);
 }
 
@@ -89,6 +97,7 @@ hl_status hl_frame_sky_update(hl_context *context, hl_pool *pool, const hot_func
       .colors = (const double(*)[3])colors,
       .lattice = hl_field_lattice(of->frame->content.points, of->frame->content.point_count,
                                   of->frame->content.voxel, MOST_CELLS),
+      .media = has_media(scene),
       .channels = channels_of(scene),
       .exchange = of->exchange};
   if (status == HL_OK) status = make(context, pool, hot, &content, room, field, error);
