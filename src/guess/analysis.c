@@ -126,8 +126,8 @@ static void measure_objects(const distances *d, hl_data_analysis *a) {
     sums[beyond_dense] += (double)d->values[n - 1];
   }
   a->dense_share = sure > 0 ? (double)dense / (double)sure : 1;
-  a->dense_ratio = dense > 0 && dense < sure ? sums[1] * (double)(sure - dense) / (sums[0] * (double)dense)
-                                             : 1;
+  a->light_mean = dense < sure ? sums[0] / (double)(sure - dense) : a->dense;
+  a->dense_mean = dense > 0 ? sums[1] / (double)dense : a->dense;
   double sum = 0;
   size_t beyond = 0;
   for (size_t n = d->count; n > 0 && (double)d->values[n - 1] > a->faint; n--, beyond++)
@@ -367,8 +367,9 @@ static hl_status analyse(const hl_volume *volume, hl_data_analysis *analysis, hl
   status = analyse_sample(volume, &sample, analysis, error);
   analysis->background = sample.low + sample.range * analysis->background;
   analysis->middle = sample.low + sample.range * analysis->middle;
-  double *distance[] = {&analysis->faint, &analysis->solid, &analysis->dense, &analysis->top,
-                        &analysis->mean,  &analysis->lower, &analysis->upper, &analysis->vessels};
+  double *distance[] = {&analysis->faint,      &analysis->solid,      &analysis->dense, &analysis->top,
+                        &analysis->light_mean, &analysis->dense_mean, &analysis->mean,  &analysis->lower,
+                        &analysis->upper,      &analysis->vessels};
   for (size_t n = 0; n < sizeof distance / sizeof *distance; n++) *distance[n] *= sample.range;
   hl_sample_release(&sample);
   if (status == HL_OK && analysis->kind == HL_DATA_SURFACES) hl_data_find_materials(volume, analysis);

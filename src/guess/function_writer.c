@@ -17,23 +17,21 @@
 #define SHELL        0.2  /* optical depth of the shell of a field, along a line that crosses the shell */
 /* The width of an object, in voxels, for which the opacities of solid matter were chosen. */
 #define FINE 96
-/* The part of the way between the distances solid and dense that flesh takes: in the CT of a head, from -50
- * to 170 Hounsfield units. */
-static const double flesh[] = {0.4, 0.65};
 
-/* The colours of a function at four distances from the background: faint, solid, dense and top. Linear RGB.
- */
-typedef struct palette {
-  double rim[3], surface[3], dense[3], top[3];
-} palette;
+/* The distances dense and top, in rising order beyond solid. */
+static double dense_of(const hl_data_analysis *a) { return fmax(a->dense, a->solid + 1e-6 * a->top); }
+static double top_of(const hl_data_analysis *a) { return fmax(a->top, dense_of(a) * 1.001); }
 
-/* Writes the function for solid matter. inside: the colour of flesh, which only the faces of cuts show; null
- * means that colours change evenly from solid to dense. In coarse grids fewer voxel edges lie between the rim
- * of an object and its inside, so that each edge absorbs more. */
-static void write_solid(hl_function_writer *w, const palette *colors, const double *inside) {
+/* The colour of matter at a distance from the background. Linear RGB. */
+typedef struct shade {
+  double distance, color[3];
+} shade;
+
+/* Writes the function for solid matter. shades: [count]; the colours at rising distances. In coarse grids
+ * fewer voxel edges lie between the rim of an object and its inside, so that each edge absorbs more. */
+static void write_solid(hl_function_writer *w, const shade *shades, size_t count) {
   const hl_data_analysis *a = w->analysis;
-  const double ramp = a->solid - a->faint, dense = fmax(a->dense, a->solid + 1e-6 * a->top),
-               top = fmax(a->top, dense * 1.001), edges = fmax(FINE / fmax(a->depth, 1), 1);
+  const double ramp = a->solid - a->faint, dense = dense_of(a), edges = fmax(FINE / fmax(a->depth, 1), 1);
   const double rows[][2] = {{a->faint, 0},
                             {a->faint + 0.35 * ramp, 0.08},
                             {a->faint + 0.7 * ramp, 0.28},
@@ -42,12 +40,7 @@ static void write_solid(hl_function_writer *w, const palette *colors, const doub
                             {dense, 0.97}};
   for (size_t n = 0; n < sizeof rows / sizeof *rows; n++)
     hl_add_opacity(w, rows[n][0], 1 - pow(1 - rows[n][1], edges));
-  hl_add_color(w, a->faint, colors->rim);
-  hl_add_color(w, a->solid, colors->surface);
-  for (size_t n = 0; inside != NULL && n < sizeof flesh / sizeof *flesh; n++)
-    hl_add_color(w, a->solid + flesh[n] * (dense - a->solid), inside);
-  hl_add_color(w, dense, colors->dense);
-  hl_add_color(w, top, colors->top);
+  for (size_t n = 0; n < count; n++) hl_add_color(w, shades[n].distance, shades[n].color);
 }
 
 /* Writes colours of several materials, from the lightest to the densest. Two materials are aluminium and
@@ -69,28 +62,51 @@ static void color_materials(hl_function_writer *w) {
   }
 }
 
+/* Writes ivory for one material, whose values differ by noise alone. Two tissues, such as the grey and the
+ * white matter of a head, are ivory in two shades, so that they differ on the faces of cuts. */
 void hl_write_matter(hl_function_writer *w) {
-  static const palette ivory = {
-      {0.60, 0.53, 0.41}, {0.76, 0.69, 0.56}, {0.78, 0.78, 0.75}, {0.74, 0.83, 0.92}};
-  write_solid(w, &ivory, NULL);
-  if (w->analysis->material_count > 1) color_materials(w);
+  const hl_data_analysis *a = w->analysis;
+  const shade one[] = {{a->faint, {0.60, 0.53, 0.41}},
+                       {a->solid, {0.76, 0.69, 0.56}},
+                       {dense_of(a), {0.78, 0.78, 0.75}},
+                       {top_of(a), {0.74, 0.83, 0.92}}};
+  const shade two[] = {{a->faint, {0.60, 0.53, 0.41}},
+                       {a->solid, {0.71, 0.64, 0.52}},
+                       {a->light_mean, {0.64, 0.57, 0.46}},
+                       {dense_of(a), {0.97, 0.96, 0.94}},
+                       {top_of(a), {0.97, 0.97, 0.97}}};
+  if (hl_data_is_one_material(a)) write_solid(w, one, sizeof one / sizeof *one);
+  else write_solid(w, two, sizeof two / sizeof *two);
+  if (a->material_count > 1) color_materials(w);
 }
 
-/* The colours of skin, with flesh and bone inside; the faces of cuts show the difference between flesh and
- * bone. */
+/* Writes the colours of skin, with flesh and bone inside. On the faces of cuts flesh has the shades of a
+ * slice: in CT from fluid, which has 0 Hounsfield units or a few less, to muscle, which has 60; in MR from
+ * dark to light tissue. */
 void hl_write_body(hl_function_writer *w) {
-  static const palette skin = {
-      {0.62, 0.36, 0.25}, {0.76, 0.50, 0.37}, {0.89, 0.80, 0.65}, {0.93, 0.91, 0.86}};
-  static const double red[3] = {0.64, 0.33, 0.23};
-  write_solid(w, &skin, red);
+  const hl_data_analysis *a = w->analysis;
+  const double fluid = -20 - a->background, muscle = 60 - a->background;
+  const shade ct[] = {{a->faint, {0.62, 0.36, 0.25}},    {a->solid, {0.76, 0.50, 0.37}},
+                      {fluid, {0.44, 0.20, 0.13}},       {muscle, {0.76, 0.44, 0.34}},
+                      {dense_of(a), {0.89, 0.80, 0.65}}, {top_of(a), {0.93, 0.91, 0.86}}};
+  const shade mr[] = {{a->faint, {0.62, 0.36, 0.25}},
+                      {a->light_mean, {0.70, 0.45, 0.34}},
+                      {dense_of(a), {0.95, 0.91, 0.85}},
+                      {top_of(a), {0.97, 0.95, 0.92}}};
+  if (w->hounsfield && a->solid < fluid && muscle < a->dense) write_solid(w, ct, sizeof ct / sizeof *ct);
+  else write_solid(w, mr, sizeof mr / sizeof *mr);
 }
 
-/* Grey matter has nearly the colour of the surface, and white matter is nearly white. So grey and white
- * matter differ on the faces of cuts. */
+/* Writes the colours of a brain. Grey matter has nearly the colour of the surface, and white matter is nearly
+ * white, so that the two differ on the faces of cuts. In MR weighted by T1 the lighter half of the values is
+ * grey matter, and the denser half is white matter. */
 void hl_write_brain(hl_function_writer *w) {
-  static const palette brain = {
-      {0.60, 0.40, 0.35}, {0.69, 0.49, 0.42}, {0.72, 0.54, 0.47}, {0.97, 0.94, 0.90}};
-  write_solid(w, &brain, NULL);
+  const hl_data_analysis *a = w->analysis;
+  const shade shades[] = {{a->faint, {0.60, 0.40, 0.35}},
+                          {a->solid, {0.66, 0.46, 0.39}},
+                          {a->light_mean, {0.66, 0.46, 0.39}},
+                          {a->dense_mean, {0.97, 0.94, 0.90}}};
+  write_solid(w, shades, sizeof shades / sizeof *shades);
 }
 
 /* Adds the opacities of a field on one side of its background (+1: above; -1: below): a clear shell, around
@@ -245,8 +261,9 @@ void hl_write_constant(hl_function_writer *w) {
 
 /* ---- points ---- */
 
-void hl_begin_function(hl_function_writer *w, const hl_data_analysis *analysis) {
-  *w = (hl_function_writer){.analysis = analysis, .direction = analysis->direction};
+void hl_begin_function(hl_function_writer *w, const hl_volume *volume, const hl_data_analysis *analysis) {
+  *w = (hl_function_writer){
+      .analysis = analysis, .hounsfield = hl_is_hounsfield(volume), .direction = analysis->direction};
 }
 
 void hl_add_opacity(hl_function_writer *w, double distance, double opacity) {

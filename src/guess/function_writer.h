@@ -7,14 +7,15 @@
 
 typedef struct hl_function_writer {
   const hl_data_analysis *analysis;
+  bool hounsfield;  /* whether values are Hounsfield units */
   double direction; /* data values at rising distances from the background rise (+1) or fall (-1) */
   hl_opacity_point opacity[4 * HL_FEW_LABELS];
   hl_color_point color[4 * HL_FEW_LABELS];
   size_t opacity_count, color_count;
 } hl_function_writer;
 
-/* Begins a function. The analysis must outlive the writer. */
-void hl_begin_function(hl_function_writer *w, const hl_data_analysis *analysis);
+/* Begins the function of a volume. The analysis must outlive the writer. */
+void hl_begin_function(hl_function_writer *w, const hl_volume *volume, const hl_data_analysis *analysis);
 
 /* These two functions add a point. Distances must rise; points beyond the arrays' ends are left out. */
 void hl_add_opacity(hl_function_writer *w, double distance, double opacity);

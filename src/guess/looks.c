@@ -125,7 +125,7 @@ hl_status hl_look_write(const hl_look *look, const hl_look *style, hl_context *c
                         const hl_volume *volume, const hl_data_analysis *analysis,
                         hl_transfer_function *function, hl_error *error) {
   hl_function_writer w;
-  hl_begin_function(&w, analysis);
+  hl_begin_function(&w, volume, analysis);
   if (style != NULL) hl_style_write(style, look, &w);
   else look->write(&w);
   if (volume->colors != NULL) keep_colors(&w, volume, style);
@@ -392,7 +392,7 @@ hl_status hl_transfer_function_preset(hl_context *context, const char *name, con
     hl_function_writer w;
     hl_status status = hl_data_analyse(volume, &analysis, error);
     if (status != HL_OK) return status;
-    hl_begin_function(&w, &analysis);
+    hl_begin_function(&w, volume, &analysis);
     if (analysis.kind == HL_DATA_CONSTANT) hl_write_constant(&w);
     else presets[p].write(&w, volume);
     return hl_finish_function(&w, context, volume, function, error);

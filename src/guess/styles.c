@@ -22,16 +22,6 @@ static void add_steps(hl_function_writer *w, const opacity_step *steps, int coun
   for (int n = 0; n < count; n++) hl_add_opacity(w, steps[n].distance, steps[n].opacity);
 }
 
-/* Derived: Otsu's threshold divides the values of one material with noise into halves, whose means differ by
- * 1.6 standard deviations. So one material with noise of up to a sixth of its distance has at most this ratio
- * between the halves. Two materials have more; eleven scans have 1.5 to 3.2 (measured). */
-#define ONE_MATERIAL 1.25
-
-/* Returns whether scanned objects are one material for the most part. */
-static bool is_one_material(const hl_data_analysis *a) {
-  return a->kind == HL_DATA_SURFACES && (a->dense_share > 0.5 || a->dense_ratio < ONE_MATERIAL);
-}
-
 /* The distance from which on matter is inner matter: the dense matter of an object. In an object that is
  * dense for the most part, all solid matter is inner matter. */
 static double inner_of(const hl_data_analysis *a) {
@@ -61,7 +51,7 @@ static void write_shells(hl_function_writer *w) {
 /* Writes thin outer matter around opaque inner matter. */
 static void write_translucent(hl_function_writer *w) {
   const hl_data_analysis *a = w->analysis;
-  if (is_one_material(a)) {
+  if (a->kind == HL_DATA_SURFACES && hl_data_is_one_material(a)) {
     write_shells(w);
     return;
   }

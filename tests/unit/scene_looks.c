@@ -1,6 +1,7 @@
 /* tests/unit/scene_looks.c - what volumes are taken for, and how they are then shown: colours and
  * labels. */
 #include "guess/looks.h"
+#include "image/srgb.h"
 #include "looks_volumes.h"
 #include "scene_parts.h"
 
@@ -282,6 +283,49 @@ static void cut_faces_tell_flesh_from_bone(void **state) {
   hl_context_destroy(context);
 }
 
+/* The brightness of a transfer function's colour for a value, as a number of 8 bits of a .png. */
+static double level_of(const hl_transfer_function *function, double value) {
+  double color[3];
+  hl_transfer_function_color(function, value, color);
+  return 255 * hl_srgb_encode_number(0.2126 * color[0] + 0.7152 * color[1] + 0.0722 * color[2]);
+}
+
+/* A head as in MR weighted by T1: grey matter of about 60, white matter of about 90, and bright fat around
+ * them, all noisy. */
+static double head_in_mr(int i, int j, int k) {
+  double r = distance(i, j, k, 24, 24, 24), grey = 60 / (1 + exp((r - 20) / 0.5)),
+         white = 30 / (1 + exp((r - 12) / 0.5)), fat = 60 * exp(-pow((r - 18) / 0.8, 2));
+  return grey + white + fat + (4 + 16 * (r < 20)) * noise(i, j, k);
+}
+
+/* The difference in brightness between two values, in the look that suits the volume. */
+static double contrast(hl_context *context, double (*each)(int, int, int), const char *file, double dark,
+                       double light) {
+  hl_data_analysis a;
+  hl_transfer_function f;
+  fill(each);
+  hl_volume *volume = make_volume(context, N, values);
+  assert_int_equal(hl_data_analyse(volume, &a, NULL), HL_OK);
+  assert_int_equal(hl_look_write(hl_look_for(volume, file, &a), NULL, context, volume, &a, &f, NULL), HL_OK);
+  double levels = level_of(&f, light) - level_of(&f, dark);
+  hl_transfer_function_release(context, &f);
+  hl_volume_release(volume);
+  return levels;
+}
+
+/* Two tissues differ on the faces of cuts, as grey and white matter differ in a slice: in a brain, in matter
+ * that may be a head, and in CT, where the fluid in a brain has about 0 and the brain about 30 Hounsfield
+ * units. */
+static void cut_faces_tell_tissues(void **state) {
+  (void)state;
+  hl_context *context = make_context();
+  assert_true(contrast(context, cut_out, "a.nii", 100, 140) > 40);
+  assert_true(contrast(context, head_in_mr, NULL, 60, 90) > 33);
+  assert_true(contrast(context, eight_bits, "a.nii", 1140 / 8.3, 2000 / 8.3) > 40);
+  assert_true(contrast(context, body, NULL, 0, 30) > 12);
+  hl_context_destroy(context);
+}
+
 /* The opacity of a ball of a noisy material where it surely is matter. */
 static double opacity_of_ball(hl_context *context, double radius) {
   hl_transfer_function f;
@@ -496,6 +540,7 @@ int main(void) {
       cmocka_unit_test(fields_show_a_core_through_a_shell),
       cmocka_unit_test(dark_skin_is_whole),
       cmocka_unit_test(cut_faces_tell_flesh_from_bone),
+      cmocka_unit_test(cut_faces_tell_tissues),
       cmocka_unit_test(coarse_matter_is_as_opaque),
       cmocka_unit_test(skin_is_for_bodies),
       cmocka_unit_test(labels_have_colors_of_their_own),

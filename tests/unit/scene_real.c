@@ -4,7 +4,9 @@
 #include <unistd.h>
 
 #include "guess/analysis.h"
+#include "guess/looks.h"
 #include "guess/sample.h"
+#include "image/srgb.h"
 #include "scene_parts.h"
 
 static const struct {
@@ -99,6 +101,62 @@ static void real_volumes(void **state) {
   hl_context_destroy(context);
 }
 
+/* The values of grey and of white matter in heads: the means of the middle and of the greatest of three
+ * groups of the brain's values, of which the least is fluid (k-means). */
+static const struct {
+  const char *set;
+  const char *file; /* the name that the look sees */
+  double grey, white;
+} BRAINS[] = {{"mrbrain/head256x256x109_uint8.raw.gz", NULL, 58.5, 85.8},
+              {"stroke_t1_nii/T1.nii.gz", "T1.nii.gz", 112.7, 165.5}};
+
+/* A percentile of the values beyond the distance at which objects may begin. */
+static double part_of_objects(const hl_sample *sample, const hl_data_analysis *a, double part) {
+  size_t first = 0;
+  while (first < sample->count &&
+         sample->low + sample->range * (double)sample->values[first] < a->background + a->faint)
+    first++;
+  const size_t at = first + (size_t)(part * (double)(sample->count - 1 - first));
+  return sample->low + sample->range * (double)sample->values[at];
+}
+
+static double level_of(const hl_transfer_function *function, double value) {
+  double color[3];
+  hl_transfer_function_color(function, value, color);
+  return hl_srgb_encode_number(0.2126 * color[0] + 0.7152 * color[1] + 0.0722 * color[2]);
+}
+
+/* Grey and white matter differ by at least .6 of what they differ by in a slice whose window reaches from the
+ * first to the last hundredth of the objects' values. */
+static void brains_are_like_slices(void **state) {
+  (void)state;
+  hl_context *context = make_context();
+  for (size_t n = 0; n < SET_COUNT; n++)
+    for (size_t b = 0; b < sizeof BRAINS / sizeof *BRAINS; b++) {
+      char path[500];
+      path_of(n, path);
+      if (strcmp(SETS[n].file, BRAINS[b].set) != 0 || access(path, R_OK) != 0) continue;
+      hl_volume *volume = NULL;
+      hl_data_analysis a;
+      hl_transfer_function f;
+      hl_sample sample;
+      assert_int_equal(hl_volume_load(context, path, &volume, NULL), HL_OK);
+      assert_int_equal(hl_data_analyse(volume, &a, NULL), HL_OK);
+      assert_int_equal(hl_sample_make(volume, &sample, NULL), HL_OK);
+      assert_int_equal(
+          hl_look_write(hl_look_for(volume, BRAINS[b].file, &a), NULL, context, volume, &a, &f, NULL), HL_OK);
+      const double window = part_of_objects(&sample, &a, 0.99) - part_of_objects(&sample, &a, 0.01),
+                   slice = (BRAINS[b].white - BRAINS[b].grey) / window,
+                   shown = level_of(&f, BRAINS[b].white) - level_of(&f, BRAINS[b].grey);
+      print_message("# %s: %.3f of the slice's contrast\n", SETS[n].file, shown / slice);
+      assert_true(shown > 0.6 * slice);
+      hl_transfer_function_release(context, &f);
+      hl_sample_release(&sample);
+      hl_volume_release(volume);
+    }
+  hl_context_destroy(context);
+}
+
 static size_t volumes_at_hand(void) {
   size_t count = 0;
   for (size_t n = 0; n < SET_COUNT; n++) {
@@ -110,7 +168,8 @@ static size_t volumes_at_hand(void) {
 }
 
 int main(void) {
-  const struct CMUnitTest tests[] = {cmocka_unit_test(real_volumes)};
+  const struct CMUnitTest tests[] = {cmocka_unit_test(real_volumes),
+                                     cmocka_unit_test(brains_are_like_slices)};
   if (named_folder() != NULL || volumes_at_hand() > 0) return cmocka_run_group_tests(tests, NULL, NULL);
   puts("1..0 # SKIP the real volumes are not there: name their folder in HALFLIGHT_DATA");
   return 0;
