@@ -21,6 +21,12 @@
 
 #define LIGHT_AZIMUTH   -40 /* key light from the upper left, degrees from the line of sight */
 #define LIGHT_ELEVATION 45
+/* Key light from the side, for media. Derived: a deep medium that scatters evenly sends m / (m + e) of the
+ * light to the eye, where m and e are the cosines of the light's and of the eye's directions to its border
+ * (Lommel and Seeliger). Light from the eye gives every place 1/2, and a ball looks like a disc. With light
+ * from the side, the border towards the light has 1 and the border away from it has 0. */
+#define ASIDE_AZIMUTH   -75
+#define ASIDE_ELEVATION 40
 #define FILL_AZIMUTH    0 /* fill light from the eye: it suits a key light from any direction */
 #define FILL_ELEVATION  0
 /* The memory that the memory limit must leave free beside a volume, so that the scene gets a sky. The sky's
@@ -64,6 +70,7 @@ hl_status hl_scene_frame(const hl_scene_description *description, hl_camera *cam
  * or 2. */
 static void choose_lights(const hl_look *look, hl_light lights[2], size_t *count) {
   hl_scene_key_light(&lights[0]);
+  if (look->aside) hl_light_direction_beside(ASIDE_AZIMUTH, ASIDE_ELEVATION, lights[0].direction);
   lights[0].intensity = look->key;
   *count = look->fill > 0 ? 2 : 1;
   hl_light_defaults(&lights[1]);

@@ -16,6 +16,7 @@ typedef struct hl_look {
                      * an exposure */
   bool on_black;    /* whether a bare volume gets a black background */
   const char *next; /* the name of the style to try next for such data */
+  bool aside;       /* whether the key light comes from the side, for media */
 } hl_look;
 
 #endif

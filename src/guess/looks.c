@@ -29,29 +29,29 @@ typedef enum subject {
   PARTICLES
 } subject;
 
-/* The columns: name, writer, shading, kernel; intensities of key, fill and sky; left; on_black; next. If
- * `left` is not 0, the exposure scales the intensities afterwards. */
+/* The columns: name, writer, shading, kernel; intensities of key, fill and sky; left; on_black; next; aside.
+ * If `left` is not 0, the exposure scales the intensities afterwards. */
 static const hl_look looks[] = {
     [BODY] = {"scanned body", hl_write_body, HL_SHADING_PHONG, HL_KERNEL_BSPLINE, 1.45, 0.06, 0.62, 0.75,
-              false, "translucent"},
+              false, "translucent", false},
     [BRAIN] = {"scanned brain", hl_write_brain, HL_SHADING_PHONG, HL_KERNEL_BSPLINE, 1.45, 0.06, 0.62, 0.7,
-               false, "translucent"},
+               false, "translucent", false},
     [MATTER] = {"scanned matter", hl_write_matter, HL_SHADING_PHONG, HL_KERNEL_BSPLINE, 1.30, 0.05, 0.56,
-                0.76, false, "translucent"},
+                0.76, false, "translucent", false},
     [LABELS] = {"labels", hl_write_labels, HL_SHADING_PHONG, HL_KERNEL_LINEAR, 0.90, 0.12, 0.44, 0, false,
-                "surface"},
+                "surface", false},
     [FIELD] = {"field", hl_write_field, HL_SHADING_PHONG, HL_KERNEL_BSPLINE, 1.40, 0.20, 0.56, 0.65, false,
-               "surface"},
+               "surface", false},
     [FLOW] = {"flow", hl_write_flow, HL_SHADING_PHONG, HL_KERNEL_BSPLINE, 1.20, 0.20, 0.50, 0.9, false,
-              "translucent"},
+              "translucent", false},
     [SIGNED] = {"signed field", hl_write_signed, HL_SHADING_PHONG, HL_KERNEL_BSPLINE, 1.05, 0.15, 0.44, 0.8,
-                false, "translucent"},
-    [MEDIUM] = {"smoke or cloud", hl_write_medium, HL_SHADING_NONE, HL_KERNEL_BSPLINE, 1.15, 0, 0.45, 0,
-                false, "surface"},
+                false, "translucent", false},
+    [MEDIUM] = {"smoke or cloud", hl_write_medium, HL_SHADING_NONE, HL_KERNEL_BSPLINE, 1.35, 0, 0.45, 0,
+                false, "surface", true},
     [CONSTANT] = {"one value", hl_write_constant, HL_SHADING_PHONG, HL_KERNEL_BSPLINE, 1.20, 0.10, 0.44, 0,
-                  false, "surface"},
+                  false, "surface", false},
     [PARTICLES] = {"particles", hl_write_particles, HL_SHADING_NONE, HL_KERNEL_BSPLINE, 1.15, 0.35, 0.45,
-                   0.85, true, "xray"},
+                   0.85, true, "xray", false},
 };
 
 static bool ends_with(const char *text, const char *end) {

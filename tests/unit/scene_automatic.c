@@ -137,7 +137,16 @@ static void signed_fields_show_both_lobes(void **state) {
   hl_context_destroy(context);
 }
 
-/* A field that falls off smoothly, and rough smoke that does, are told apart; smoke is lit as a medium. */
+/* The light on the lit border of an even ball, relative to the light on its middle, for light that is
+ * scattered once: m / (m + e), with the cosines m and e of the light's and the eye's directions to the border
+ * (Lommel and Seeliger). At the border e is 0, and in the middle it is 1. */
+static double depth_of_ball(const hl_light *light) {
+  const double to_light = -light->direction[2], middle = to_light / (to_light + 1);
+  return 1 / fmax(middle, 1e-9);
+}
+
+/* A field that falls off smoothly, and rough smoke that does, are told apart; smoke is lit as a medium: from
+ * the side, so that the borders of round smoke stand out. */
 static void tells_fields_from_smoke(void **state) {
   (void)state;
   static float values[N * N * N];
@@ -158,6 +167,7 @@ static void tells_fields_from_smoke(void **state) {
     assert_int_equal(hl_scene_for_volume(context, volume, NULL, &scene, NULL), HL_OK);
     assert_int_equal(hl_scene_describe(scene)->volumes[0].shading,
                      rough ? HL_SHADING_NONE : HL_SHADING_PHONG);
+    if (rough) assert_true(depth_of_ball(&hl_scene_describe(scene)->lights[0]) > 5);
     hl_scene_release(scene);
     hl_volume_release(volume);
   }

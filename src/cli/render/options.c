@@ -404,7 +404,7 @@ const cli_option render_options[RENDER_OPTION_COUNT] = {
                       .kind = OPTION_NUMBERS,
                       .argument = "AZ,EL",
                       .help = "direction of the first light, seen from the\ncamera: 0,0 is a headlight, "
-                              "-40,40 upper left\n(default -40,45)",
+                              "-40,40 upper left\n(default -40,45; for bare smoke -75,40)",
                       .count = 2,
                       .separator = ',',
                       .low = -360,
