@@ -132,7 +132,7 @@ static bool parse_choice(const cli_option *option, const char **text, cli_value 
 }
 
 static bool parse_numbers(const cli_option *option, const char *text, cli_value *value) {
-  const char *at = text;
+  const char *equals = option->named ? strchr(text, '=') : NULL, *at = equals != NULL ? equals + 1 : text;
   for (int i = 0; i < option->count; i++) {
     size_t length = strspn(at, option->whole ? "0123456789" : "0123456789+-.eE");
     char *end;

@@ -53,9 +53,10 @@ typedef struct cli_option {
   hl_setting_kind setting_kind;
   const char *if_picture; /* OPTION_COLOR: the advice for a user who gives a picture's file; null if there is
                            * none */
+  bool named;             /* for OPTION_NUMBERS: whether NAME= may stand before the numbers */
   bool optional;   /* for OPTION_NUMBERS: whether the numbers may be left out; they are then 0, and `count` is
                     * 0 */
-  bool repeatable; /* for OPTION_TEXT: whether the option may be given several times; every text is kept */
+  bool repeatable; /* whether the option may be given several times; every text is kept */
   bool reserved;   /* whether this version does not have the option yet: it is not shown in help, and is
                     * refused if it is given */
   bool joins;      /* whether processes of an MPI launcher wait for each other if they are given this

@@ -33,6 +33,7 @@ static const hl_setting_choice range_scales[] = {
 
 /* clang-format off */
 #define NUMBER(row, n)       [row] = {.name = (n), .kind = HL_OPTION_NUMBERS, .count = 1}
+#define NAMED(row, n, c, ...) [row] = {.name = (n), .kind = HL_OPTION_NUMBERS, .count = (c), .named = true, .repeats = true, __VA_ARGS__}
 #define TEXTS(row, n)        [row] = {.name = (n), .kind = HL_OPTION_TEXT, .repeats = true}
 #define TEXT(row, n)         [row] = {.name = (n), .kind = HL_OPTION_TEXT}
 #define SWITCH(row, n)       [row] = {.name = (n), .kind = HL_OPTION_SWITCH}
@@ -58,9 +59,9 @@ const hl_option_row hl_option_rows[HL_ASK_COUNT] = {
     CHOICE(HL_ASK_LOOK, "look", .choices = looks),
     TEXTS(HL_ASK_TF, "tf"),
     TEXTS(HL_ASK_COLORMAP, "colormap"),
-    [HL_ASK_RANGE] = {.name = "range", .kind = HL_OPTION_NUMBERS, .count = 2, .separator = ',', .percent = true},
+    NAMED(HL_ASK_RANGE, "range", 2, .separator = ',', .percent = true),
     CHOICE(HL_ASK_RANGE_SCALE, "range-scale", .choices = range_scales),
-    NUMBER(HL_ASK_THRESHOLD, "threshold"),
+    NAMED(HL_ASK_THRESHOLD, "threshold", 1, .separator = ','),
     TEXTS(HL_ASK_ISO, "iso"),
     TEXTS(HL_ASK_CLIP, "clip"),
     TEXTS(HL_ASK_CUT_PLANE, "cut-plane"),
@@ -136,7 +137,12 @@ static bool read_choice(const hl_option_row *row, const char **text, hl_asked *a
   return false;
 }
 
-static bool read_numbers(const hl_option_row *row, const char *text, hl_asked *asked) {
+const char *hl_after_name(const char *text) {
+  const char *equals = strchr(text, '=');
+  return equals != NULL ? equals + 1 : text;
+}
+
+bool hl_row_numbers(const hl_option_row *row, const char *text, hl_asked *asked) {
   for (int n = 0; n < row->count; n++) {
     char *end;
     asked->number[n] = hl_plain_number(text, &end);
@@ -164,7 +170,9 @@ static bool read_value(const hl_option_row *row, const char **text, hl_asked *as
     case HL_OPTION_SWITCH: return true;
     case HL_OPTION_TEXT: return (*text)[0] != '\0';
     case HL_OPTION_CHOICE: return read_choice(row, text, asked);
-    case HL_OPTION_NUMBERS: return read_choice(row, text, asked) || read_numbers(row, *text, asked);
+    case HL_OPTION_NUMBERS:
+      return read_choice(row, text, asked) ||
+             hl_row_numbers(row, row->named ? hl_after_name(*text) : *text, asked);
     case HL_OPTION_COLOR: return read_color(row, text, asked);
   }
   return false;

@@ -84,8 +84,8 @@ typedef struct hl_asked {
   int count;
   bool chosen; /* whether one of the choices was given; if so, `choice` is its value */
   int choice;
-  double number[3];
-  bool percent[3]; /* whether each number is a percentile */
+  double number[3]; /* for an option that was given several times, the last value's numbers */
+  bool percent[3];  /* whether each number is a percentile */
 } hl_asked;
 
 /* A row of the table of options. */
@@ -97,6 +97,7 @@ typedef struct hl_option_row {
   bool percent;   /* whether each number may be a percentile */
   bool even;      /* whether a single number stands for all numbers */
   bool repeats;
+  bool named;                       /* for HL_OPTION_NUMBERS: whether NAME= may stand before the numbers */
   const hl_setting_choice *choices; /* the choices of the option; if null, the option has the choices of the
                                      * setting, if there are any */
   hl_setting_kind setting_kind;
@@ -107,6 +108,12 @@ extern const hl_option_row hl_option_rows[HL_ASK_COUNT];
 
 /* Reads options into asked: [HL_ASK_COUNT]. The texts in it are borrowed from the options. */
 hl_status hl_options_read(const hl_option *options, size_t count, hl_asked *asked, hl_error *error);
+
+/* Reads the numbers of a text, without NAME=, as the numbers of a row's option. */
+bool hl_row_numbers(const hl_option_row *row, const char *text, hl_asked *asked);
+
+/* The text after NAME= of an option's value that may begin with it; the whole text if it has no name. */
+const char *hl_after_name(const char *text);
 
 /* The choices of a row's option. If the row has no choices of its own, they are the choices of the row's
  * setting. Null if the setting has no choices either. */

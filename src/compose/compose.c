@@ -161,17 +161,36 @@ static void change_release(hl_context *context, scene_change *change) {
   hl_release(context, change->lights);
 }
 
-/* Refuses options whose values make no sense, and options that exclude each other. */
-static hl_status check(const hl_asked *asked, hl_error *error) {
-  const hl_asked *range = &asked[HL_ASK_RANGE];
-  if (range->given && range->percent[0] == range->percent[1] && range->number[0] >= range->number[1])
-    return hl_fail(error, HL_ERROR_ARGUMENT, "--range: '%.200s': LO must be below HI", range->text);
+/* Returns whether two values that may begin with NAME= can be for one volume: they have the same name, or one
+ * of them has none. */
+static bool may_meet(const char *a, const char *b) {
+  const size_t name = (size_t)(hl_after_name(a) - a), other = (size_t)(hl_after_name(b) - b);
+  return name == 0 || other == 0 || (name == other && memcmp(a, b, name) == 0);
+}
+
+/* Refuses values of "range" that are no range, and values beside "range" that leave it nothing to do. */
+static hl_status check_ranges(const hl_asked *asked, hl_error *error) {
+  const hl_asked *range = &asked[HL_ASK_RANGE], *threshold = &asked[HL_ASK_THRESHOLD];
   if (asked[HL_ASK_RANGE_SCALE].given && !range->given)
     return hl_fail(error, HL_ERROR_ARGUMENT,
                    "--range-scale says how --range spreads: give --range LO,HI, too");
-  if (asked[HL_ASK_THRESHOLD].given && range->given && !asked[HL_ASK_COLORMAP].given)
-    return hl_fail(error, HL_ERROR_ARGUMENT,
-                   "--threshold says what is opaque: --range beside it needs --colormap, to spread");
+  for (int n = 0; n < range->count; n++) {
+    hl_asked ends;
+    if (hl_row_numbers(&hl_option_rows[HL_ASK_RANGE], hl_after_name(range->texts[n]), &ends) &&
+        ends.percent[0] == ends.percent[1] && ends.number[0] >= ends.number[1])
+      return hl_fail(error, HL_ERROR_ARGUMENT, "--range: '%.200s': LO must be below HI", range->texts[n]);
+    for (int t = 0; t < threshold->count && !asked[HL_ASK_COLORMAP].given; t++)
+      if (may_meet(range->texts[n], threshold->texts[t]))
+        return hl_fail(error, HL_ERROR_ARGUMENT,
+                       "--threshold says what is opaque: --range beside it needs --colormap, to spread");
+  }
+  return HL_OK;
+}
+
+/* Refuses options whose values make no sense, and options that exclude each other. */
+static hl_status check(const hl_asked *asked, hl_error *error) {
+  hl_status status = check_ranges(asked, error);
+  if (status != HL_OK) return status;
   if (asked[HL_ASK_ORTHO].given && asked[HL_ASK_FOVY].given)
     return hl_fail(error, HL_ERROR_ARGUMENT, "--ortho and --fovy exclude each other: give one of them");
   if (asked[HL_ASK_LIGHT].given && asked[HL_ASK_LIGHT_RIG].given)
@@ -183,7 +202,7 @@ static hl_status check(const hl_asked *asked, hl_error *error) {
     if (!(asked[HL_ASK_SIZE].number[n] >= 1 && asked[HL_ASK_SIZE].number[n] <= 65536))
       return hl_fail(error, HL_ERROR_ARGUMENT, "--size: '%.200s': give WxH in pixels, each from 1 to 65536",
                      asked[HL_ASK_SIZE].text);
-  hl_status status = hl_check_clip(&asked[HL_ASK_CLIP], error);
+  status = hl_check_clip(&asked[HL_ASK_CLIP], error);
   if (status == HL_OK) status = hl_check_cuts(asked, error);
   if (status == HL_OK) status = hl_check_isosurfaces(&asked[HL_ASK_ISO], error);
   return status == HL_OK ? hl_check_sky(&asked[HL_ASK_SKY], error) : status;

@@ -32,7 +32,7 @@ bool hl_asks_for_functions(const hl_asked *asked);
 hl_status hl_compose_function(const hl_composer *composer, const hl_scene_description *description,
                               size_t index, const char *color, hl_transfer_function *function);
 
-/* Refuses "tf", "colormap" and "iso" with a NAME= that no volume has. */
+/* Refuses "tf", "colormap", "range", "threshold" and "iso" with a NAME= that no volume has. */
 hl_status hl_check_volume_names(const hl_composer *composer, const hl_scene_description *description);
 
 /* Returns whether an option's value, which may begin with NAME=, is for volume number `index`. *rest: the

@@ -229,6 +229,8 @@ static hl_status check_names(const hl_composer *composer, hl_ask option, bool ma
 hl_status hl_check_volume_names(const hl_composer *composer, const hl_scene_description *description) {
   hl_status status = check_names(composer, HL_ASK_TF, false, description);
   if (status == HL_OK) status = check_names(composer, HL_ASK_COLORMAP, false, description);
+  if (status == HL_OK) status = check_names(composer, HL_ASK_RANGE, false, description);
+  if (status == HL_OK) status = check_names(composer, HL_ASK_THRESHOLD, false, description);
   return status == HL_OK ? check_names(composer, HL_ASK_ISO, true, description) : status;
 }
 
@@ -266,7 +268,7 @@ const char *hl_text_for(const hl_composer *composer, hl_ask option, const hl_sce
 }
 
 bool hl_is_left_out(const hl_composer *composer, const hl_scene_description *description, size_t index) {
-  static const hl_ask named[] = {HL_ASK_TF, HL_ASK_COLORMAP, HL_ASK_ISO};
+  static const hl_ask named[] = {HL_ASK_TF, HL_ASK_COLORMAP, HL_ASK_RANGE, HL_ASK_THRESHOLD, HL_ASK_ISO};
   const hl_scene_volume *volume = &description->volumes[index];
   bool values = false;
   for (size_t v = 0; v < description->volume_count; v++) values |= description->volumes[v].label_count == 0;
@@ -383,21 +385,25 @@ typedef struct value_range {
   hl_range_scale scale;
 } value_range;
 
-static hl_status find_range(const hl_composer *composer, const hl_volume *volume, value_range *range) {
-  const hl_asked *said = &composer->asked[HL_ASK_RANGE], *scale = &composer->asked[HL_ASK_RANGE_SCALE];
-  *range = (value_range){.given = said->given};
+/* text: the value of "range" for the volume, without NAME=; null if there is none. */
+static hl_status find_range(const hl_composer *composer, const hl_volume *volume, const char *text,
+                            value_range *range) {
+  const hl_asked *scale = &composer->asked[HL_ASK_RANGE_SCALE];
+  hl_asked said;
+  *range = (value_range){.given = text != NULL};
   if (scale->given) range->scale = (hl_range_scale)scale->choice;
-  for (int n = 0; said->given && n < 2; n++) {
-    range->ends[n] = said->number[n];
-    hl_status status = said->percent[n] ? hl_volume_percentiles(volume, &said->number[n], 1, &range->ends[n],
-                                                                composer->error)
-                                        : HL_OK;
+  if (text == NULL || !hl_row_numbers(&hl_option_rows[HL_ASK_RANGE], text, &said)) return HL_OK;
+  for (int n = 0; n < 2; n++) {
+    range->ends[n] = said.number[n];
+    hl_status status = said.percent[n] ? hl_volume_percentiles(volume, &said.number[n], 1, &range->ends[n],
+                                                               composer->error)
+                                       : HL_OK;
     if (status != HL_OK) return hl_blame_options(status);
   }
-  if (said->given && !(range->ends[0] < range->ends[1]))
+  if (!(range->ends[0] < range->ends[1]))
     return hl_fail(composer->error, HL_ERROR_INPUT,
-                   "--range: '%s': these values of the volume are %.9g and %.9g: LO must be below HI",
-                   said->text, range->ends[0], range->ends[1]);
+                   "--range: '%s': these values of the volume are %.9g and %.9g: LO must be below HI", text,
+                   range->ends[0], range->ends[1]);
   return HL_OK;
 }
 
@@ -449,18 +455,27 @@ bool hl_asks_for_functions(const hl_asked *asked) {
          asked[HL_ASK_THRESHOLD].given;
 }
 
+/* The values of options that change one volume's transfer function, without NAME=; each is null if no value
+ * is for the volume. */
+typedef struct function_changes {
+  const char *range, *threshold, *colormap;
+} function_changes;
+
 /* Applies "range", "threshold" and "colormap", in this order. */
-static hl_status change_function(const hl_composer *composer, const hl_volume *volume, const char *colormap,
-                                 bool maximum, hl_transfer_function *function) {
-  const hl_asked *threshold = &composer->asked[HL_ASK_THRESHOLD];
+static hl_status change_function(const hl_composer *composer, const hl_volume *volume,
+                                 const function_changes *changes, bool maximum,
+                                 hl_transfer_function *function) {
+  const char *colormap = changes->colormap;
   const bool mapped = colormap != NULL && find_colormap(colormap) != NULL;
   const hl_spread_use use = maximum ? HL_SPREAD_PROJECTION : mapped ? HL_SPREAD_COLORMAP : HL_SPREAD_ALONE;
   value_range range;
-  hl_status status = find_range(composer, volume, &range);
-  if (status == HL_OK && range.given && !threshold->given)
+  hl_asked threshold;
+  hl_status status = find_range(composer, volume, changes->range, &range);
+  if (status == HL_OK && range.given && changes->threshold == NULL)
     status = spread(composer, volume, &range, use, function);
-  if (status == HL_OK && threshold->given)
-    status = make_opaque_from(composer, volume, threshold->number[0], function);
+  if (status == HL_OK && changes->threshold != NULL &&
+      hl_row_numbers(&hl_option_rows[HL_ASK_THRESHOLD], changes->threshold, &threshold))
+    status = make_opaque_from(composer, volume, threshold.number[0], function);
   if (status == HL_OK && colormap != NULL)
     status = color_by_name(composer, colormap, volume, range, maximum, function);
   return status;
@@ -471,14 +486,16 @@ hl_status hl_compose_function(const hl_composer *composer, const hl_scene_descri
   const hl_asked *asked = composer->asked;
   const hl_scene_volume *volume = &description->volumes[index];
   const char *named = hl_text_for(composer, HL_ASK_TF, volume, index);
-  const char *colormap = hl_text_for(composer, HL_ASK_COLORMAP, volume, index);
+  function_changes changes = {hl_text_for(composer, HL_ASK_RANGE, volume, index),
+                              hl_text_for(composer, HL_ASK_THRESHOLD, volume, index),
+                              hl_text_for(composer, HL_ASK_COLORMAP, volume, index)};
   char item[256];
   hl_status status = HL_OK;
   if (is_list(composer, &asked[HL_ASK_COLORMAP])) {
-    status = copy_item(composer, description, colormap, index, item, sizeof item);
-    colormap = item;
+    status = copy_item(composer, description, changes.colormap, index, item, sizeof item);
+    changes.colormap = item;
   }
-  if (colormap == NULL) colormap = color;
+  if (changes.colormap == NULL) changes.colormap = color;
   if (status == HL_OK)
     status = hl_transfer_function_copy(composer->context, &volume->transfer_function, function,
                                        composer->error);
@@ -490,9 +507,9 @@ hl_status hl_compose_function(const hl_composer *composer, const hl_scene_descri
   }
   if (status != HL_OK) return status;
   if (function->plane.second == HL_SECOND_NONE)
-    return change_function(composer, volume->volume, colormap, hl_is_maximum(composer, description),
+    return change_function(composer, volume->volume, &changes, hl_is_maximum(composer, description),
                            function);
-  if (!asked[HL_ASK_RANGE].given && !asked[HL_ASK_THRESHOLD].given && colormap == NULL) return HL_OK;
+  if (changes.range == NULL && changes.threshold == NULL && changes.colormap == NULL) return HL_OK;
   return hl_fail(composer->error, HL_ERROR_ARGUMENT,
                  "--range, --threshold and --colormap change functions of the value alone: "
                  "change the boxes, polygons or image of this one");

@@ -11,13 +11,12 @@
 /* Returns whether options concern the look of values, or ask for a mask, which only volumes of values can
  * have. */
 static bool asks_for_values(const hl_composer *composer, const hl_scene_volume *volume, size_t index) {
-  static const hl_ask named[] = {HL_ASK_TF, HL_ASK_COLORMAP, HL_ASK_ISO};
+  static const hl_ask named[] = {HL_ASK_TF, HL_ASK_COLORMAP, HL_ASK_RANGE, HL_ASK_THRESHOLD, HL_ASK_ISO};
   const hl_asked *asked = composer->asked;
   if ((composer->flags & HL_COMPOSE_VALUES) != 0) return true;
   for (size_t n = 0; n < sizeof named / sizeof *named; n++)
     if (hl_text_for(composer, named[n], volume, index) != NULL) return true;
-  return asked[HL_ASK_RANGE].given || asked[HL_ASK_THRESHOLD].given || asked[HL_ASK_MASK].given ||
-         (asked[HL_ASK_LOOK].given && asked[HL_ASK_LOOK].choice == HL_LOOK_MIP);
+  return asked[HL_ASK_MASK].given || (asked[HL_ASK_LOOK].given && asked[HL_ASK_LOOK].choice == HL_LOOK_MIP);
 }
 
 /* Makes volumes of values of the label maps whose values options ask for: removes their labels, and gives

@@ -116,7 +116,7 @@ static int add_value(const page_reading *reading, figure_panel *panel, int which
 }
 
 /* Reads an option from JSON. Its value is true, a value, or a list of values if the option may be given
- * several times. */
+ * several times. A list of numbers is one value. */
 static int add_json_option(const page_reading *reading, figure_panel *panel, const char *key,
                            const json_t *value) {
   char name[MOST_KEY];
@@ -138,7 +138,9 @@ static int add_json_option(const page_reading *reading, figure_panel *panel, con
     return add_option(panel, name, NULL);
   if (json_is_null(value) || json_is_false(value))
     return EXIT_CODE_OK; /* `null` or `false` switches off an option that the shared options set */
-  if (!json_is_array(value) || !render_options[which].repeatable)
+  const bool numbers = render_options[which].kind == OPTION_NUMBERS &&
+                       json_is_number(json_array_get(value, 0));
+  if (!json_is_array(value) || !render_options[which].repeatable || numbers)
     return add_value(reading, panel, which, value);
   size_t index;
   json_t *one;

@@ -256,16 +256,21 @@ const cli_option render_options[RENDER_OPTION_COUNT] = {
                  "(a COLOR); or one for "
                  "each volume or\nchannel, in order (magma,viridis)",
          .repeatable = true},
-    [RENDER_RANGE] = {.name = "range",
-                      .kind = OPTION_NUMBERS,
-                      .argument = "LO,HI",
-                      .help = "values over which opacity and colours spread (what is\nclear stays clear, "
-                              "with --colormap); or percentiles of\nthe data (1%,99.5%)",
-                      .count = 2,
-                      .separator = ',',
-                      .percent = true,
-                      .low = -INFINITY,
-                      .high = INFINITY},
+    [RENDER_RANGE] =
+        {.name = "range",
+         .kind = OPTION_NUMBERS,
+         .argument = "[NAME=]LO,HI",
+         .help =
+             "values over which opacity and colours spread (what is\nclear stays clear, "
+             "with --colormap); or percentiles of\nthe data (1%,99.5%); give it again for other volumes or\n"
+             "channels: NAME= as for --tf",
+         .count = 2,
+         .separator = ',',
+         .percent = true,
+         .named = true,
+         .repeatable = true,
+         .low = -INFINITY,
+         .high = INFINITY},
     [RENDER_RANGE_SCALE] = {.name = "range-scale",
                             .kind = OPTION_CHOICE,
                             .help = "linear: opacity and colours spread evenly over --range;\nlog: over the "
@@ -276,9 +281,13 @@ const cli_option render_options[RENDER_OPTION_COUNT] = {
                                      "of all files (default: the first\nfile's look)"},
     [RENDER_THRESHOLD] = {.name = "threshold",
                           .kind = OPTION_NUMBERS,
-                          .argument = "V",
-                          .help = "opaque from the value V on, clear below",
+                          .argument = "[NAME=]V",
+                          .help = "opaque from the value V on, clear below; give it again for\nother volumes "
+                                  "or channels: NAME= as "
+                                  "for --tf",
                           .count = 1,
+                          .named = true,
+                          .repeatable = true,
                           .low = -INFINITY,
                           .high = INFINITY},
     [RENDER_ISO] =

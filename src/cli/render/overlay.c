@@ -135,7 +135,8 @@ int render_overlay_read(const cli_value *values, cli_overlay *overlay) {
   overlay->overlay.legend = legend->given;
   if (legend->given && strcmp(legend->text, "auto") != 0) overlay->overlay.legend_title = legend->text;
   const cli_value *range = &values[RENDER_RANGE];
-  for (int n = 0; n < 2 && range->given && !range->percent[0] && !range->percent[1]; n++)
+  const bool for_all = range->count > 0 && strchr(range->text, '=') == NULL;
+  for (int n = 0; n < 2 && for_all && !range->percent[0] && !range->percent[1]; n++)
     overlay->overlay.legend_range[n] = range->number[n];
   overlay->drawn = values[RENDER_SCALE_BAR].given || legend->given || values[RENDER_AXES].given ||
                    values[RENDER_MARKS].given || values[RENDER_ANNOTATE].given;

@@ -1,5 +1,5 @@
 # A channel that would hide another one is translucent, whatever the order of the channels, and a line says so. Channels beside each other, and
-# channels whose opacities are asked for or that are cut open, stay as they are.
+# channels whose opacities are asked for or that are cut open, stay as they are. A range of values asks for no opacities.
 "$PYTHON" - <<'END'
 import json, math, os
 def write(name, *channels):
@@ -31,6 +31,7 @@ told within.zarr --look surface
 told within.zarr --look mip
 told within.zarr --look auto
 told within.zarr --threshold 100
+told within.zarr --range 1%,99%
 told within.zarr --colormap cyan,magenta
 told within.zarr --cut-box z=0.5: --view top
 # The core is seen in the picture: pixels in its colour, magenta, over the skin's green.
