@@ -194,6 +194,26 @@ static void print_arrays(const hl_volume *volume) {
   }
 }
 
+/* The percentiles that are printed. Between them lie the values that a range of percentiles would show. */
+static const double percents[] = {1, 50, 99, 99.9};
+enum { PERCENTS = sizeof percents / sizeof *percents };
+
+static void print_json_percentiles(json_writer *json, const double percentiles[PERCENTS]) {
+  json_open_object(json, "percentiles");
+  for (int n = 0; n < PERCENTS; n++) {
+    char name[16];
+    snprintf(name, sizeof name, "%g%%", percents[n]);
+    json_number(json, name, percentiles[n]);
+  }
+  json_close(json);
+}
+
+static void print_percentiles(const double percentiles[PERCENTS]) {
+  printf("  percentiles ");
+  for (int n = 0; n < PERCENTS; n++) printf("%s%g%% %.6g", n > 0 ? ", " : "", percents[n], percentiles[n]);
+  printf("\n");
+}
+
 enum { RANGE_BYTES = 2 * HL_NUMBER_TEXT_BYTES + 8 };
 
 /* Prints the range of data values as JSON, with all digits. */
@@ -224,7 +244,8 @@ static void print_field_error(const hl_volume *volume) {
 }
 
 static void print_json(json_writer *json, const char *path, const hl_volume *volume,
-                       const hl_volume_info *info, const char *kind, const char *next) {
+                       const hl_volume_info *info, const double percentiles[PERCENTS], const char *kind,
+                       const char *next) {
   uint64_t dimensions[3] = {info->dimensions[0], info->dimensions[1], info->dimensions[2]};
   json_open_object(json, NULL);
   json_text(json, "file", path);
@@ -245,6 +266,7 @@ static void print_json(json_writer *json, const char *path, const hl_volume *vol
   json_text(json, "unit", hl_volume_unit(volume));
   print_json_range(json, volume);
   json_number(json, "mean", info->mean);
+  print_json_percentiles(json, percentiles);
   json_whole_number(json, "nonfinite_count", info->nonfinite_count);
   print_json_field_error(json, volume);
   print_json_arrays(json, volume);
@@ -292,7 +314,7 @@ static const char *value_text(const hl_volume *volume, int end, double value,
 }
 
 static void print_text(const char *path, const hl_volume *volume, const hl_volume_info *info,
-                       const char *kind, const char *next) {
+                       const double percentiles[PERCENTS], const char *kind, const char *next) {
   const double(*d)[3] = info->direction;
   uint64_t voxels = (uint64_t)info->dimensions[0] * info->dimensions[1] * info->dimensions[2];
   printf("%s\n", path);
@@ -320,6 +342,7 @@ static void print_text(const char *path, const hl_volume *volume, const hl_volum
   char least[HL_NUMBER_TEXT_BYTES], greatest[HL_NUMBER_TEXT_BYTES];
   printf("  range       %s to %s, mean %.9g\n", value_text(volume, 0, info->range[0], least),
          value_text(volume, 1, info->range[1], greatest), info->mean);
+  print_percentiles(percentiles);
   if (info->nonfinite_count > 0)
     printf("  not finite  %" PRIu64 " voxels, rendered as transparent\n", info->nonfinite_count);
   print_field_error(volume);
@@ -332,12 +355,14 @@ int info_tell_volume(cli_host *host, json_writer *json, const char *path, hl_vol
   const char *kind = NULL, *next = NULL;
   hl_volume_info info = {.struct_size = sizeof info};
   hl_error error = {0};
+  double percentiles[PERCENTS];
   if (hl_volume_get_info(volume, &info) != HL_OK)
     return fail(EXIT_CODE_FAILURE, "%s: the library does not tell what it read", path);
   hl_status status = hl_volume_guess(volume, path, &kind, &error);
   if (status == HL_OK) status = hl_volume_next_look(volume, path, &next, &error);
+  if (status == HL_OK) status = hl_volume_percentiles(volume, percents, PERCENTS, percentiles, &error);
   if (status != HL_OK) return host_fail(host, PHASE_RUN, status, &error);
-  if (json != NULL) print_json(json, path, volume, &info, kind, next);
-  else print_text(path, volume, &info, kind, next);
+  if (json != NULL) print_json(json, path, volume, &info, percentiles, kind, next);
+  else print_text(path, volume, &info, percentiles, kind, next);
   return EXIT_CODE_OK;
 }

@@ -108,6 +108,23 @@ static hl_status choose_step(const char *path, const char *kind, int wanted, siz
   return HL_OK;
 }
 
+/* Tells which time step and which channel were taken where the caller chose none of several. */
+static void tell_of_steps(hl_load_request *request, const char *path) {
+  const hl_selection *selection = &request->selection;
+  char counts[2][40] = {"", ""};
+  const bool time = selection->times > 1 && request->time<0, channel = selection->channels> 1 &&
+                    request->channel < 0,
+             both = time && channel;
+  if (!time && !channel) return;
+  if (time) snprintf(counts[0], sizeof counts[0], "%zu time steps", selection->times);
+  if (channel) snprintf(counts[1], sizeof counts[1], "%zu channels", selection->channels);
+  snprintf(request->selection_told, sizeof request->selection_told,
+           "%.200s: %s%s%s: %s%s%s %s taken: choose by %s%s%s", path, counts[0], both ? " and " : "",
+           counts[1], time ? "time 0" : "", both ? " and " : "", channel ? "channel 0" : "",
+           both ? "are" : "is", time ? "\"time\" (--time)" : "", both ? " and " : "",
+           channel ? "\"channel\" (--channel)" : "");
+}
+
 hl_status hl_steps_choose(hl_load_request *request, const char *path, size_t times, size_t channels,
                           hl_error *error) {
   hl_selection *selection = &request->selection;
@@ -116,14 +133,7 @@ hl_status hl_steps_choose(hl_load_request *request, const char *path, size_t tim
   hl_status status = choose_step(path, "time", request->time, times, &selection->time, error);
   if (status == HL_OK)
     status = choose_step(path, "channel", request->channel, channels, &selection->channel, error);
-  bool time = times > 1 && request->time<0, channel = channels> 1 && request->channel < 0;
-  if (status == HL_OK && (time || channel))
-    snprintf(request->selection_told, sizeof request->selection_told,
-             "%.200s: %zu time step%s and %zu channel%s: %s%s%s %s taken: choose by %s%s%s", path, times,
-             times > 1 ? "s" : "", channels, channels > 1 ? "s" : "", time ? "time 0" : "",
-             time && channel ? " and " : "", channel ? "channel 0" : "", time && channel ? "are" : "is",
-             time ? "\"time\" (--time)" : "", time && channel ? " and " : "",
-             channel ? "\"channel\" (--channel)" : "");
+  if (status == HL_OK) tell_of_steps(request, path);
   return status;
 }
 
