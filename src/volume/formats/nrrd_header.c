@@ -214,27 +214,44 @@ static hl_status read_space(nrrd_header *header, const char *value, hl_error *er
   return HL_OK;
 }
 
-/* Reads units such as "mm" "mm" "mm". The unit is kept only if all axes have the same known unit of
- * length. */
-static hl_status read_space_units(nrrd_header *header, const char *value, hl_error *error) {
-  (void)error;
+/* The unit of length that a word names, in quotes; null if it names none. */
+static const char *find_unit(const char *word) {
   static const struct {
     const char *words, *unit;
   } units[] = {{"\"m\"|\"meter\"|\"metre\"", "metre"},
                {"\"mm\"|\"millimeter\"|\"millimetre\"", "millimetre"},
                {"\"um\"|\"micron\"|\"microns\"|\"micrometer\"|\"micrometre\"", "micrometre"},
                {"\"A\"|\"angstrom\"|\"angstroms\"", "angstrom"}};
+  for (size_t n = 0; n < sizeof units / sizeof *units; n++)
+    if (hl_text_is_one_of(word, units[n].words)) return units[n].unit;
+  return NULL;
+}
+
+/* Reads units such as "mm" "mm" "mm", or "" "mm" "mm" "mm" where an axis has components. Returns the unit
+ * that three axes have; null if there is no such unit, or if another axis has another unit of length. */
+static const char *scan_units(const char *text) {
   char word[NRRD_KIND_BYTES];
   const char *told = NULL;
-  for (int axis = 0; axis < 3; axis++) {
-    const char *unit = NULL;
-    if (!hl_text_word(&value, word, sizeof word)) return HL_OK;
-    for (size_t n = 0; n < sizeof units / sizeof *units; n++)
-      if (hl_text_is_one_of(word, units[n].words)) unit = units[n].unit;
-    if (unit == NULL || (told != NULL && unit != told)) return HL_OK;
-    told = unit;
+  int axes = 0;
+  while (hl_text_word(&text, word, sizeof word)) {
+    const char *unit = find_unit(word);
+    if (unit != NULL && told != NULL && unit != told) return NULL;
+    if (unit != NULL) told = unit, axes++;
   }
-  header->space.unit = told;
+  return axes == 3 ? told : NULL;
+}
+
+static hl_status read_space_units(nrrd_header *header, const char *value, hl_error *error) {
+  (void)error;
+  header->space.unit = scan_units(value);
+  header->space.has_units = true;
+  return HL_OK;
+}
+
+/* Reads the units of a header without a space. */
+static hl_status read_units(nrrd_header *header, const char *value, hl_error *error) {
+  (void)error;
+  if (!header->space.has_units) header->space.unit = scan_units(value);
   return HL_OK;
 }
 
@@ -289,8 +306,9 @@ static field_function *find_field(const char *name) {
                 {"byte skip|byteskip", read_byte_skip},
                 {"space", read_space},
                 {"space units", read_space_units},
+                {"units", read_units},
                 {"space dimension|measurement frame|content|number|block size|blocksize|min|max|"
-                 "old min|oldmin|old max|oldmax|thicknesses|labels|units|sample units|sampleunits",
+                 "old min|oldmin|old max|oldmax|thicknesses|labels|sample units|sampleunits",
                  pass_over}};
   for (size_t n = 0; n < sizeof fields / sizeof *fields; n++)
     if (hl_text_is_one_of(name, fields[n].names)) return fields[n].read;

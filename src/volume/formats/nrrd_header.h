@@ -32,6 +32,7 @@ typedef struct nrrd_header {
     hl_space kind;
     double origin[3];
     bool has_origin, has_directions;
+    bool has_units;   /* whether the field "space units" was read, which goes before "units" */
     const char *unit; /* unit of the axes, static; null if there is no unit, an unknown one, or not the same
                        * for all axes */
   } space;

@@ -85,7 +85,7 @@ static hl_status load(hl_stream **stream, hl_load_request *request, hl_volume **
         error, HL_ERROR_INPUT,
         "%s: raw voxels need their size and type in the file's name, as in name_256x256x128_uint8.raw "
         "(uint8, int8, uint16, ... int64, float32 or float64; _be after the type for "
-        "big-endian; .raw or .raw.gz)",
+        "big-endian; .raw or .raw.gz), or a header .nhdr that states them and names the file",
         (*stream)->path);
   hl_status status = hl_component_only(request, (*stream)->path, false, &payload, error);
   return status == HL_OK ? hl_payload_read(*stream, &payload, request->spacing, volume, error) : status;
