@@ -263,6 +263,10 @@ static int refuse_unknown(const cli_command *command, const char *argument) {
   size_t length = name_in(argument, name, sizeof name);
   const char *meant = length > 0 ? hl_nearest_candidate(name, option_name, command) : NULL;
   const char *does = synonym_of(name, option_name, command);
+  char json[160];
+  if (does == NULL && strcmp(command->name, "render") == 0 && scene_setting_of(name, json, sizeof json))
+    return fail(EXIT_CODE_USAGE,
+                "unknown option '--%s' of render: a scene says %s; --print-scene writes a scene", name, json);
   const bool differ = does != NULL && meant != NULL && strncmp(does, meant, strcspn(does, " ")) != 0;
   if (differ)
     return fail(EXIT_CODE_USAGE, "unknown option '--%s' of %s: did you mean --%s, or --%s?", name,
@@ -271,10 +275,6 @@ static int refuse_unknown(const cli_command *command, const char *argument) {
   if (meant != NULL)
     return fail(EXIT_CODE_USAGE, "unknown option '--%s' of %s: did you mean --%s?", name, command->name,
                 meant);
-  const char *json = strcmp(command->name, "render") == 0 ? scene_setting_of(name) : NULL;
-  if (json != NULL)
-    return fail(EXIT_CODE_USAGE,
-                "unknown option '--%s' of render: a scene says %s; --print-scene writes a scene", name, json);
   return fail(EXIT_CODE_USAGE, "unknown option '%s' of %s: see 'halflight help %s'", argument, command->name,
               command->name);
 }

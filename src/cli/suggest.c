@@ -3,7 +3,10 @@
 #include "suggest.h"
 
 #include <stdbool.h>
+#include <stdio.h>
 #include <string.h>
+
+#include <halflight/settings.h>
 
 /* words: separated by blanks, in lower case */
 static const struct {
@@ -64,7 +67,7 @@ static const struct {
     {"show", "label region regions organ roi-name structure"},
     {"whole", "keep-table show-table no-cut no-crop uncut"},
     {"device", "gpu cuda opencl backend use-gpu"},
-    {"scattering", "multiple-scattering sss subsurface subsurface-scattering bounces"},
+    {"scattering", "multiple-scattering sss subsurface subsurface-scattering bounces albedo"},
     {"floor", "ground plate shadow-catcher table"},
     {"light",
      "light-direction light-dir light-position light-pos light-azimuth light-elevation sun key-light lamp "
@@ -132,21 +135,59 @@ static const struct {
 } settings[] = {
     {"\"material\": { \"emission\": 1 } in a volume", "emission emissive glow luminance self-illumination"},
     {"\"material\": { \"specular\": 0 } in a volume", "specular specularity gloss highlights"},
-    {"\"material\": { \"diffuse\": 0.7 } in a volume", "diffuse albedo"},
+    {"\"material\": { \"diffuse\": 0.7 } in a volume", "diffuse"},
     {"\"material\": { \"shininess\": 32 } in a volume", "shininess roughness specular-power"},
     {"\"unit_distance\": 1 in a transfer function",
      "unit-distance opacity-unit-distance opacity-scale density density-scale extinction"},
     {"\"color\": [1, 0.5, 0.2] in a light", "light-color light-colour"},
     {"\"intensity\": 1 in a light", "light-intensity light-strength energy"},
+    {"\"scattering\": { \"anisotropy\": 0.7 } in a volume",
+     "phase-function henyey-greenstein forward-scattering g"},
     {"\"seed\": 7 in the hypertexture of a shape", "seed random-seed rng-seed"},
     {"\"target\" in \"camera\"", "target look-at lookat focal-point center centre"},
     {"\"position\" in \"camera\"", "eye eye-position position"},
 };
 
-const char *scene_setting_of(const char *word) {
+/* Returns whether a word is the name of a key in an option's spelling: "opening-angle" of
+ * "opening_angle_deg". */
+static bool spells_key(const char *word, const char *key) {
+  static const char unit[] = "_deg";
+  size_t n = 0;
+  while (key[n] != '\0' && word[n] == (key[n] == '_' ? '-' : key[n])) n++;
+  return word[n] == '\0' && (key[n] == '\0' || strcmp(key + n, unit) == 0);
+}
+
+/* Finds the key of a scene that a word spells, and writes where it stands. */
+static bool write_key(const char *word, char *text, size_t size) {
+  static const struct {
+    hl_setting_kind kind;
+    const char *place;
+  } places[] = {
+      {HL_SETTINGS_VOLUME, "in a volume"},   {HL_SETTINGS_MATERIAL, "in the \"material\" of a volume"},
+      {HL_SETTINGS_LIGHT, "in a light"},     {HL_SETTINGS_SKY, "in \"sky\""},
+      {HL_SETTINGS_CAMERA, "in \"camera\""}, {HL_SETTINGS_MESH, "in a mesh"},
+      {HL_SETTINGS_RENDER, "in \"render\""}, {HL_SETTINGS_CUT, "in one of the \"cuts\" of a volume"}};
+  const hl_setting *setting;
+  for (size_t p = 0; p < sizeof places / sizeof *places; p++)
+    for (size_t n = 0; (setting = hl_setting_get(places[p].kind, n)) != NULL; n++) {
+      const char *slash = strrchr(setting->key, '/'), *key = slash != NULL ? slash + 1 : setting->key;
+      if (!spells_key(word, key)) continue;
+      if (slash == NULL) snprintf(text, size, "\"%s\": ... %s", key, places[p].place);
+      else
+        snprintf(text, size, "\"%.*s\": { \"%s\": ... } %s", (int)(slash - setting->key), setting->key, key,
+                 places[p].place);
+      return true;
+    }
+  return false;
+}
+
+bool scene_setting_of(const char *word, char *text, size_t size) {
   for (size_t n = 0; n < sizeof settings / sizeof *settings; n++)
-    if (has_word(settings[n].words, word)) return settings[n].json;
-  return NULL;
+    if (has_word(settings[n].words, word)) {
+      snprintf(text, size, "%s", settings[n].json);
+      return true;
+    }
+  return write_key(word, text, size);
 }
 
 /* words: separated by blanks, in lower case */

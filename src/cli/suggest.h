@@ -2,6 +2,7 @@
 #ifndef HL_CLI_SUGGEST_H
 #define HL_CLI_SUGGEST_H
 
+#include <stdbool.h>
 #include <stddef.h>
 
 /* The option that a word of other programs means ("rotate" means "azimuth"). The result may have a value
@@ -10,9 +11,10 @@
 const char *synonym_of(const char *word, const char *(*option)(const void *data, size_t index),
                        const void *data);
 
-/* Returns the JSON text that sets the setting of this name, for settings that only scene files have:
- * "diffuse" gives "\"material\": { \"diffuse\": 0.7 } in a volume"; null if no such setting is known. */
-const char *scene_setting_of(const char *word);
+/* Writes the JSON text that sets what a word means, for settings that only scene files have: "diffuse" gives
+ * "\"material\": { \"diffuse\": 0.7 } in a volume". The word may be the key of any setting of a scene,
+ * spelled as an option. Returns false if no such setting is known. */
+bool scene_setting_of(const char *word, char *text, size_t size);
 
 /* The value that a word of other programs means for an option (for "view", "anterior" means "front"); null if
  * none is known. */

@@ -1,5 +1,5 @@
 # A word for what only a scene says leads to the scene's key.
-for word in emission specular light-color seed; do
+for word in emission specular light-color seed anisotropy henyey-greenstein opening-angle casts-shadow zenith falloff albedo; do
   halflight render --$word 1 x.nrrd 2>>told || true
 done
 sed 's/.*unknown option //' told
