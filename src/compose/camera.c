@@ -41,29 +41,56 @@ static void change_projection(const hl_asked *asked, hl_camera *camera) {
   camera->fovy_deg = asked[HL_ASK_FOVY].number[0];
 }
 
-/* If "view" asks for a side of a body whose file does not tell where the body's front is, logs which side
- * this is: the file's front may be the body's back. */
-static hl_status tell_of_side(const hl_composer *composer, const hl_scene_description *description) {
-  static const char *const places[] = {[HL_SIDE_FRONT] = "y is least",
-                                       [HL_SIDE_BACK] = "y is greatest",
-                                       [HL_SIDE_LEFT] = "x is least",
-                                       [HL_SIDE_RIGHT] = "x is greatest"};
+/* The axis of the world that a direction is nearest to: 2 times the axis, and 1 more where the direction
+ * points to the axis' lower end. */
+static int nearest_axis(vec3 direction) {
+  const double along[3] = {direction.x, direction.y, direction.z};
+  int axis = 0;
+  for (int a = 1; a < 3; a++)
+    if (fabs(along[a]) > fabs(along[axis])) axis = a;
+  return 2 * axis + (along[axis] < 0);
+}
+
+/* The direction from the volumes to the eye. */
+static vec3 towards_eye(const hl_view *view) {
+  const vec3 up = vec3_of(view->up), front = vec3_of(view->front), right = vec3_cross(up, front);
+  const double azimuth = view->azimuth_deg * degree, elevation = view->elevation_deg * degree;
+  const vec3 level = vec3_add(vec3_scale(front, cos(azimuth)), vec3_scale(right, sin(azimuth)));
+  return vec3_add(vec3_scale(level, cos(elevation)), vec3_scale(up, sin(elevation)));
+}
+
+/* If "view" asks for a side of a volume whose file does not tell the directions, logs which side this is in
+ * two cases: if another axis than +z was taken for up, and for bodies, whose file's front may be their back.
+ */
+static hl_status tell_of_side(const hl_composer *composer, const hl_scene_description *description,
+                              const hl_view *view) {
+  static const char *const axes[] = {"+x", "-x", "+y", "-y", "+z", "-z"};
+  static const char *const places[] = {"x is greatest", "x is least",    "y is greatest",
+                                       "y is least",    "z is greatest", "z is least"};
   static const char *const others[] = {
       [HL_SIDE_FRONT] = "back", [HL_SIDE_BACK] = "front", [HL_SIDE_LEFT] = "right", [HL_SIDE_RIGHT] = "left"};
-  const hl_asked *view = &composer->asked[HL_ASK_VIEW];
+  const hl_asked *side = &composer->asked[HL_ASK_VIEW];
   const hl_scene_volume *first = description->volume_count > 0 ? &description->volumes[0] : NULL;
-  if (!composer->bare || !view->given || first == NULL || first->volume == NULL ||
-      view->choice < HL_SIDE_FRONT || view->choice > HL_SIDE_RIGHT || composer->asked[HL_ASK_UP].given ||
+  if (!composer->bare || !side->given || first == NULL || first->volume == NULL ||
+      side->choice < HL_SIDE_FRONT || side->choice > HL_SIDE_BOTTOM || composer->asked[HL_ASK_UP].given ||
       composer->asked[HL_ASK_AZIMUTH].given || hl_scene_space(description) != HL_SPACE_UNKNOWN)
     return HL_OK;
+  const char *place = places[nearest_axis(towards_eye(view))], *up = axes[nearest_axis(vec3_of(view->up))];
   hl_data_analysis analysis;
   hl_status status = hl_data_analyse(first->volume, &analysis, composer->error);
-  if (status == HL_OK && hl_is_body(first->volume, first->file, &analysis))
+  if (status != HL_OK) return status;
+  if (side->choice <= HL_SIDE_RIGHT && hl_is_body(first->volume, first->file, &analysis))
     hl_log(composer->context, HL_LOG_INFO,
            "the file does not tell the body's directions: --view %s is the side where %s; if it is the "
            "wrong one, give --view %s",
-           view->text, places[view->choice], others[view->choice]);
-  return status;
+           side->text, place, others[side->choice]);
+  else if (strcmp(up, "+z") != 0)
+    hl_log(
+        composer->context, HL_LOG_INFO,
+        "the file does not tell which way is up: %s is taken, and --view %s is the side where %s; if it is "
+        "the wrong one, give --up, as --up +z",
+        up, side->text, place);
+  return HL_OK;
 }
 
 /* Finds the view to change. It is the view that "view" and "up" ask for. Without these options it is the view
@@ -84,10 +111,9 @@ static hl_status choose_view(const hl_composer *composer, const hl_scene_descrip
     return hl_fail(composer->error, HL_ERROR_ARGUMENT,
                    "--up: '%.200s' has no direction: give an axis, as +z, or a vector that is not 0",
                    up->text);
-  hl_status status = tell_of_side(composer, description);
-  if (status != HL_OK) return status;
-  return hl_blame_options(
+  hl_status status = hl_blame_options(
       hl_view_choose(description, side, up->given ? vector : NULL, view, composer->error));
+  return status == HL_OK ? tell_of_side(composer, description, view) : status;
 }
 
 /* Sets the angles that options give. Returns false if the options do not change the view. */
