@@ -3,6 +3,7 @@
 #include "ranks.h"
 
 #include <pthread.h>
+#include <stdatomic.h>
 #include <stdlib.h>
 #include <string.h>
 #include <time.h>
@@ -33,6 +34,56 @@ hl_mpi launcher_mpi(void) {
   return launcher_of_process(&found) ? found.mpi : HL_MPI_AUTO;
 }
 
+/* ---- waiting for the others to join ---- */
+
+/* A process waits in hl_ranks_join() until all processes of its launcher have come. One that never comes, as
+ * its command line lacks the option, would hold up the others without end: MPICH's launcher does not miss it.
+ * A thread therefore ends the process when the wait is too long. */
+static struct {
+  long seconds;
+  int exit_code;
+  const char *option; /* for a line of error, or null if an error was told before */
+  atomic_bool over;   /* whether the wait is over */
+} join_wait;
+
+/* Sets the longest wait: HALFLIGHT_JOIN_SECONDS, or else five minutes. Returns false if the variable is no
+ * number of seconds; the wait is five minutes then, too. */
+static bool limit_wait(void) {
+  enum { SECONDS = 300 };
+  const char *named = getenv("HALFLIGHT_JOIN_SECONDS");
+  char *end = NULL;
+  join_wait.seconds = SECONDS;
+  if (named == NULL || named[0] == '\0') return true;
+  long seconds = strtol(named, &end, 10);
+  if (*end != '\0' || seconds <= 0) return false;
+  join_wait.seconds = seconds;
+  return true;
+}
+
+static void *stop_waiting(void *unused) {
+  struct timespec left = {.tv_sec = join_wait.seconds};
+  while (nanosleep(&left, &left) != 0) continue; /* signals wake it early */
+  if (atomic_load(&join_wait.over)) return unused;
+  if (join_wait.option != NULL)
+    fail(join_wait.exit_code, "--%s: not all processes have joined within %ld seconds: give all of them --%s",
+         join_wait.option, join_wait.seconds, join_wait.option);
+  _exit(join_wait.exit_code);
+}
+
+/* Joins the other processes. Ends this process if they do not all join in time. If the system starts no
+ * thread, the wait has no limit. option: for a line of error, or null. */
+static hl_status join_in_time(hl_context *context, const char *option, int exit_code, hl_ranks **ranks,
+                              hl_error *error) {
+  pthread_t clock;
+  join_wait.option = option;
+  join_wait.exit_code = exit_code;
+  atomic_store(&join_wait.over, false);
+  if (pthread_create(&clock, NULL, stop_waiting, NULL) == 0) pthread_detach(clock);
+  hl_status status = hl_ranks_join(context, NULL, ranks, error);
+  atomic_store(&join_wait.over, true);
+  return status;
+}
+
 static bool joined; /* whether ranks_begin() has joined the other processes */
 
 int ranks_begin(cli_host *host, const char *option, hl_ranks **ranks) {
@@ -40,7 +91,9 @@ int ranks_begin(cli_host *host, const char *option, hl_ranks **ranks) {
   launcher found;
   if (!launcher_of_process(&found) || found.mpi == HL_MPI_AUTO)
     return fail(EXIT_CODE_USAGE, "--%s: mpirun has not started this process: start it so", option);
-  if (hl_ranks_join(host->context, NULL, ranks, &error) != HL_OK)
+  if (!limit_wait())
+    return fail(EXIT_CODE_USAGE, "HALFLIGHT_JOIN_SECONDS must be a whole number of seconds above 0");
+  if (join_in_time(host->context, option, EXIT_CODE_FAILURE, ranks, &error) != HL_OK)
     return fail(EXIT_CODE_FAILURE, "--%s: %s", option, error.message);
   joined = true;
   if (atoi(found.size) != hl_ranks_size(*ranks))
@@ -125,25 +178,18 @@ void ranks_check(hl_ranks *ranks, int exit_code) {
 
 /* ---- failing before the ranks have joined ---- */
 
-/* Ends this process after some time, because the other processes may be no ranks, and may never join. */
-static void *stop_waiting(void *exit_code) {
-  nanosleep(&(struct timespec){.tv_sec = 60}, NULL);
-  _exit(*(const int *)exit_code);
-}
-
+/* The other processes may be no ranks, and may never join: this process waits for them no longer than they
+ * would wait for it. */
 void ranks_end_others(int exit_code) {
-  static int code; /* this variable must exist as long as the thread */
-  pthread_t clock;
   hl_context_options options;
   hl_context *context = NULL;
   hl_ranks *ranks = NULL;
   if (joined || launcher_mpi() == HL_MPI_AUTO) return;
+  limit_wait();
   hl_context_options_defaults(&options);
   options.mpi = launcher_mpi();
-  code = exit_code;
-  if (pthread_create(&clock, NULL, stop_waiting, &code) == 0 &&
-      hl_context_create(&options, &context, NULL) == HL_OK &&
-      hl_ranks_join(context, NULL, &ranks, NULL) == HL_OK)
+  if (hl_context_create(&options, &context, NULL) == HL_OK &&
+      join_in_time(context, NULL, exit_code, &ranks, NULL) == HL_OK)
     ranks_check(ranks, exit_code);
   hl_ranks_leave(ranks);
   hl_context_destroy(context);

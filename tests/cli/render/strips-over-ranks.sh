@@ -53,6 +53,18 @@ for wrong in "--shadows nonsense" --strip-over-ranks --layers "--max-memory 1"; 
   ! run 3 timeout 60 sh wrong.sh
   grep -o -m 1 "rank 1 of 3 has failed and ends them all" mpirun.txt || { echo "$wrong"; cat mpirun.txt; }
 done
+# A rank that lacks the option never joins; the others wait for it no longer than the variable says.
+cat >lacking.sh <<'END'
+case "${OMPI_COMM_WORLD_RANK-$PMI_RANK}" in 1) more="-o alone.npy" ;; *) more="--strips-over-ranks -o shared.npy" ;; esac
+exec "$HALFLIGHT" render rings.nrrd --size 60x100 --sheet-spacing 2 --quiet $more
+END
+export HALFLIGHT_JOIN_SECONDS=2
+! run 3 timeout 60 sh lacking.sh
+grep -o -m 1 "not all processes have joined within 2 seconds: give all of them --strips-over-ranks" mpirun.txt || cat mpirun.txt
+HALFLIGHT_JOIN_SECONDS=soon
+! run 1 "$HALFLIGHT" render rings.nrrd --quiet --strips-over-ranks -o shared.npy
+grep -o -m 1 "HALFLIGHT_JOIN_SECONDS must be a whole number of seconds above 0" mpirun.txt
+unset HALFLIGHT_JOIN_SECONDS
 ! run 4 sh failing.sh
 grep -o -m 1 "rank 2 of 4 has failed and ends them all" mpirun.txt
 ! run 4 sh killed.sh
