@@ -24,6 +24,7 @@ from viewer import Viewer, need_viewer
 
 PROGRAM = os.path.abspath(sys.argv[1])
 PARAVIEW_STATE = os.path.join(os.path.dirname(os.path.abspath(__file__)), "../unit/paraview-points.pvsm")
+PLOTFILE = os.path.join(os.path.dirname(os.path.abspath(__file__)), "../fuzz/corpus/amrex/double.zip")
 VOLUME = "_8x8x8_uint8.raw"  # how names of bare voxels end
 
 
@@ -113,6 +114,10 @@ def with_voxels(**more):
     return volume_scene("own" + VOLUME, **more)
 
 
+def plane(name):
+    return {"second": "gradient", "image": {"file": name, "value": [0, 255], "second": [0, 50]}}
+
+
 def light(**more):
     return scene(lights=[{"type": "point", "position": [0, 0, 99], **more}])
 
@@ -139,7 +144,7 @@ CARRIERS = [
     ("function.json", lambda name: with_voxels(transfer_function={"file": name}), ".tf.json"),
     ("slicer.json", lambda name: with_voxels(transfer_function={"file": name}), ".vp"),
     ("paraview.json", lambda name: with_voxels(transfer_function={"file": name}), ".pvsm"),
-    ("plane.json", lambda name: with_voxels(transfer_function={"second": "gradient", "image": {"file": name, "value": [0, 255], "second": [0, 50]}}), ".png"),
+    ("plane.json", lambda name: with_voxels(transfer_function=plane(name)), ".png"),
     ("mesh.json", lambda name: scene(meshes=[{"file": name}]), ".ply"),
     ("sky.json", lambda name: scene(sky={"type": "image", "file": name}), ".png"),
     ("texture.json", lambda name: light(texture={"file": name, "screen": SCREEN}), ".png"),
@@ -154,6 +159,7 @@ NESTED = [
     ("descriptor.dat", lambda name: f"ObjectFileName: {name}\nResolution: 8 8 8\nFormat: UCHAR\n".encode(), VOLUME, lambda own: volume_scene(own)),
     ("buffers.gltf", lambda name: gltf(name), ".bin", lambda own: scene(meshes=[{"file": own}])),
     ("nested.nhdr", detached_nrrd, VOLUME, lambda own: volume_scene(own)),
+    ("plane.tf.json", lambda name: json.dumps(plane(name)).encode(), ".png", lambda own: with_voxels(transfer_function={"file": own})),
 ]
 
 POINTS = struct.pack("<9f", 0, 0, 0, 9, 0, 0, 0, 9, 9)
@@ -295,10 +301,52 @@ def links_of_known_names(viewer):
             {"path": path, "coordinateTransformations": [{"type": "scale", "scale": [1, 1, 1]}]}]}]}).encode())
         write("group.zarr/.zgroup", b'{"zarr_format": 2}')
         check(request(viewer, "open", file="group.zarr")[0] == 400, f"an image of OME-Zarr at {path}")
+        for images in ({"plate": {"wells": [{"path": path}]}}, {"well": {"images": [{"path": path}]}}):
+            write("group.zarr/.zattrs", json.dumps(images).encode())
+            check(request(viewer, "open", file="group.zarr")[0] == 400, f"an image of a plate or a well at {path}")
     os.mkdir("linked")
     for n in range(3):
         os.symlink(f"../../outside/secret.slices/s{n}.png", f"linked/s{n}.png")
     check(request(viewer, "open", file="linked")[0] == 400, "slices are no links that lead out")
+
+
+def patches_of_a_plotfile(viewer, outside):
+    """The lists of patches in a plotfile of AMReX name the files of their cells."""
+    with zipfile.ZipFile(PLOTFILE) as archive:
+        archive.extractall("plot")
+    shutil.copy("plot/Level_0/Cell_D_00000", f"{outside}/secret.fab")
+    for name in ("secret", "absent"):
+        os.symlink(f"../../../outside/{name}.fab", f"plot/Level_0/{'leak' if name == 'secret' else 'dangling'}.fab")
+    with open("plot/Level_0/Cell_H", "rb") as file:
+        patches = file.read()
+    def opened(viewer, name):
+        write("plot/Level_0/Cell_H", patches.replace(b"Cell_D_00000", name.encode()))
+        return request(viewer, "open", file="plot")
+    tell_nothing(viewer, "plotfile", opened, ".fab", outside)
+    check(opened(viewer, "Cell_D_00000")[0] == 200, "a plotfile's own patches are read")
+
+
+def libraries_of_materials(viewer, outside):
+    """An OBJ mesh is shown without the colours of a library that it may not read, and nothing tells whether there is one."""
+    mesh = "v 0 0 0\nv 9 0 0\nv 0 9 9\nusemtl red\nf 1 2 3\n"
+    for place in (outside, ".", "inner"):
+        write(f"{place}/secret.mtl", b"newmtl red\nKd 1 0 0\n")
+    for n, name in enumerate(("secret", "absent")):
+        os.symlink(f"../outside/{name}.mtl", ("leak.mtl", "dangling.mtl")[n])
+    def opened(name):
+        write("mesh.obj", f"mtllib {name}\n{mesh}".encode())
+        write("mesh.json", scene(meshes=[{"file": "mesh.obj"}]))
+        status, text = request(viewer, "open", file="mesh.json")
+        if status != 200:
+            return status, text
+        start = json.loads(text)
+        picture = request(viewer, "frame", json.dumps(start["scene"]), page="m", format="png", opened=start["opened"], number=next(numbers))
+        return status, masked(json.dumps({key: value for key, value in start.items() if key != "opened"}), name), picture
+    numbers = iter(range(1, 10**6))
+    for there, absent in spellings(".mtl", outside):
+        check(opened(there) == opened(absent), f"mesh.obj: {there} and {absent} have the same answer: {opened(there)[:2]} {opened(absent)[:2]}")
+    red, grey = opened("secret.mtl")[2], opened("absent.mtl")[2]
+    check(red[0] == grey[0] == 200 and red != grey, "a library beside the mesh colours it")
 
 
 def pages_scenes(viewer, outside):
@@ -377,6 +425,8 @@ with tempfile.TemporaryDirectory() as folder:
     with Viewer(PROGRAM, f"own{VOLUME}", "--data", outside) as viewer:
         every_format(viewer, outside)
         links_of_known_names(viewer)
+        patches_of_a_plotfile(viewer, outside)
+        libraries_of_materials(viewer, outside)
         pages_scenes(viewer, outside)
         kinds_of_vtk_files(viewer)
         odd_files(viewer)
