@@ -114,7 +114,8 @@ long faulty_fail_each(faulty *f, faulty_work *work, faulty_work *after, void *da
     for (int for_good = 0; for_good < 2; for_good++) {
       atomic_store(&f->for_good, for_good != 0);
       atomic_store(&f->allocations_left, n);
-      if (!run(f, work, after, data, HL_ERROR_MEMORY, f->may_recover && !for_good)) return n;
+      bool recovers = for_good ? f->may_do_without : f->may_recover;
+      if (!run(f, work, after, data, HL_ERROR_MEMORY, recovers)) return n;
     }
 }
 

@@ -14,7 +14,8 @@ typedef struct faulty {
   atomic_bool for_good;         /* all later ones fail too */
   atomic_long questions_left; /* before one is answered with "stop", which it is only once; negative: never */
   atomic_bool struck;         /* something failed, or was stopped */
-  bool may_recover; /* work may do without one failing allocation; it then checks its result itself */
+  bool may_recover;    /* work may do without one failing allocation; it then checks its result itself */
+  bool may_do_without; /* the same where all later ones fail, too */
 } faulty;
 
 /* True where the system's allocator is to fail: faulty_system.c asks. Its failures count like the context's,

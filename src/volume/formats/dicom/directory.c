@@ -12,12 +12,13 @@
 
 enum { REFERENCED_FILE = 0x00041500, NAME_BYTES = 512 };
 
-/* Returns whether the bundle's folder has a file of this name. */
-static bool is_there(const hl_bundle *bundle, const char *name) {
+/* Sets *there to whether the bundle's folder has a file of this name. */
+static hl_status look_for(const hl_bundle *bundle, const char *name, bool *there, hl_error *error) {
   char *path = hl_path_join(bundle->context, bundle->path, name);
-  bool there = path != NULL && hl_file_kind(bundle->context, path) != 0;
+  if (path == NULL) return hl_fail_memory(error, strlen(name), bundle->path);
+  *there = hl_file_kind(bundle->context, path) != 0;
   hl_release(bundle->context, path);
-  return there;
+  return HL_OK;
 }
 
 /* Adds a file. The name DICOM\IM0001 becomes DICOM/IM0001, or dicom/im0001 if the disc was copied with names
@@ -25,15 +26,18 @@ static bool is_there(const hl_bundle *bundle, const char *name) {
 static hl_status add_file(hl_bundle *bundle, char *name, hl_error *error) {
   for (char *c = name; *c != 0; c++)
     if (*c == '\\') *c = '/';
-  bool inside = name[0] != '/' && strstr(name, "..") == NULL;
+  bool inside = name[0] != '/' && strstr(name, "..") == NULL, there = false;
+  hl_status status = HL_OK;
   if (name[0] == 0) return HL_OK;
-  if (inside && !is_there(bundle, name))
+  if (inside) status = look_for(bundle, name, &there, error);
+  if (status == HL_OK && inside && !there) {
     for (char *c = name; *c != 0; c++)
       if (*c >= 'A' && *c <= 'Z') *c = (char)(*c - 'A' + 'a');
-  if (!inside || !is_there(bundle, name)) {
-    bundle->links_passed++;
-    return HL_OK;
+    status = look_for(bundle, name, &there, error);
   }
+  if (status != HL_OK) return status;
+  bundle->links_passed += !there;
+  if (!there) return HL_OK;
   return hl_bundle_add(bundle, (hl_bundle_entry){.name = name}, error);
 }
 

@@ -32,7 +32,10 @@ static void on_error(png_structp png, png_const_charp message) {
 static void on_warning(png_structp png, png_const_charp message) { (void)png, (void)message; }
 
 static png_voidp on_allocate(png_structp png, png_alloc_size_t size) {
-  return hl_allocate(((png_slice *)png_get_mem_ptr(png))->file->context, size, 1);
+  png_slice *s = png_get_mem_ptr(png);
+  void *memory = hl_allocate(s->file->context, size, 1);
+  if (memory == NULL) s->status = hl_fail_memory(s->error, size, s->file->path);
+  return memory;
 }
 
 static void on_release(png_structp png, png_voidp memory) {

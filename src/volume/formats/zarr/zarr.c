@@ -158,7 +158,8 @@ static hl_status load_array(const hl_bundle *bundle, const hl_zarr_array *array,
   return status;
 }
 
-/* Adds the array `name` of a group to the request's list, if it exists and can hold a volume. */
+/* Adds the array `name` of a group to the request's list, if it exists and can hold a volume. An array that
+ * is damaged, or of an unknown kind, is listed without a type. */
 static hl_status list_array(const hl_bundle *bundle, const char *folder, const char *name,
                             hl_load_request *request, hl_error *error) {
   char path[HL_ZARR_PATH_BYTES];
@@ -167,6 +168,7 @@ static hl_status list_array(const hl_bundle *bundle, const char *folder, const c
   bool found = false;
   if (!hl_zarr_join(path, folder, name)) return HL_OK;
   hl_status status = hl_zarr_array_read(bundle, path, &array, &found, &unread);
+  if (status == HL_ERROR_MEMORY) return hl_fail(error, status, "%s", unread.message);
   if (!found || (status == HL_OK && array.rank < 2)) return HL_OK;
   return hl_arrays_add(request, name, 1, status == HL_OK ? array.type : 0, false, error);
 }
