@@ -68,28 +68,34 @@ static json_t *step_into(json_t *at, const char *name) {
   return json_array_get(at, strtoul(name, NULL, 10));
 }
 
-/* Makes a JSON number of a key's value. If the scene's own number is whole, the value is rounded to a whole
- * number. */
-static json_t *number_like(const json_t *before, double value) {
-  return json_is_integer(before) ? json_integer(llround(value)) : json_real(value);
-}
-
-/* Returns whether a scene has a setting with this name that is a colour. */
-static bool is_color(const char *name) {
+/* Returns whether a scene has a setting with this name and type. */
+static bool is_setting(const char *name, hl_setting_type type) {
   const hl_setting *setting;
   for (int kind = 0; (setting = hl_setting_get((hl_setting_kind)kind, 0)) != NULL; kind++) {
     setting = hl_setting_find((hl_setting_kind)kind, name);
-    if (setting != NULL && setting->type == HL_SETTING_COLOR) return true;
+    if (setting != NULL && setting->type == type) return true;
   }
   return false;
 }
 
-/* Makes the value of a key at a frame as JSON: a number like the scene's own, or the three numbers of a
- * colour. */
-static json_t *value_at(const film_key *key, int frame, const json_t *before) {
-  return key->components == 1 ? number_like(before, film_key_value(key, frame, 0))
-                              : json_pack("[f, f, f]", film_key_value(key, frame, 0),
-                                          film_key_value(key, frame, 1), film_key_value(key, frame, 2));
+/* Returns whether a scene takes only whole numbers for this name. The text of the scene does not tell it,
+ * because it has 7 for a size of 7.0 degrees, too. */
+static bool is_whole(const char *name) {
+  /* The names that are no settings: parts of a volume's file, and numbers of shapes. */
+  static const char *const others[] = {"component", "time", "channel", "level", "octaves",
+                                       "seed",      "n",    "l",       "m"};
+  for (size_t o = 0; o < sizeof others / sizeof *others; o++)
+    if (strcmp(name, others[o]) == 0) return true;
+  return is_setting(name, HL_SETTING_WHOLE);
+}
+
+/* Makes the value of a key at a frame as JSON: a number, which is rounded where only whole numbers are taken,
+ * or the three numbers of a colour. name: the last part of the key's path. */
+static json_t *value_at(const film_key *key, int frame, const char *name) {
+  const double value = film_key_value(key, frame, 0);
+  if (key->components == 3)
+    return json_pack("[f, f, f]", value, film_key_value(key, frame, 1), film_key_value(key, frame, 2));
+  return is_whole(name) ? json_integer(llround(value)) : json_real(value);
 }
 
 /* Writes a key's value at its path. A key that is absent from its object is added, because the scene has the
@@ -101,12 +107,12 @@ static hl_status write_value(json_t *root, const film_key *key, int frame, hl_er
   json_t *at = root;
   while ((name = strsep(&rest, ".")) != NULL && rest != NULL && at != NULL) at = step_into(at, name);
   json_t *before = at != NULL ? step_into(at, name) : NULL;
-  bool good = color            ? json_is_object(at) && is_color(name)
+  bool good = color            ? json_is_object(at) && is_setting(name, HL_SETTING_COLOR)
               : before != NULL ? json_is_number(before)
                                : json_is_object(at) && name[0] != '\0';
   int written = -1;
-  if (good && json_is_object(at)) written = json_object_set_new(at, name, value_at(key, frame, before));
-  else if (good) written = json_array_set_new(at, strtoul(name, NULL, 10), value_at(key, frame, before));
+  if (good && json_is_object(at)) written = json_object_set_new(at, name, value_at(key, frame, name));
+  else if (good) written = json_array_set_new(at, strtoul(name, NULL, 10), value_at(key, frame, name));
   if (!good)
     snprintf(error->message, sizeof error->message,
              "%s: the scene has no %s there: `halflight render SCENE --print-scene` shows its keys",

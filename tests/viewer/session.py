@@ -282,9 +282,9 @@ def film_after_reload(browser):
 
 
 def film_is_undone(browser):
-    """Keys that are set, moved and removed, and a film's length, are steps of the history; to go to a frame is none."""
+    """Keys that are set, moved and removed, and a film's length and format, are steps of the history; to go to a frame is none."""
     def tracks():
-        return browser.run("JSON.stringify([halflight.store.page.film?.frames ?? 120, (halflight.store.page.film?.tracks ?? []).map(({ path, points }) => [path, points.map(([frame]) => frame)])])")
+        return browser.run("JSON.stringify([halflight.store.page.film?.frames ?? 120, halflight.store.page.film?.format ?? 'mp4', (halflight.store.page.film?.tracks ?? []).map(({ path, points }) => [path, points.map(([frame]) => frame)])])")
 
     def seek(frame):
         browser.run(f"(() => {{ const s = document.querySelector('[aria-label=Frame]'); s.value = {frame}; s.dispatchEvent(new Event('input')); }})()")
@@ -309,6 +309,7 @@ def film_is_undone(browser):
     step(lambda: press_named(browser, "Add a key of Intensity"))
     step(lambda: drag_key(6, 80))
     step(lambda: browser.run("(() => { const n = document.querySelector('[aria-label=\"Frames of the film\"]'); n.value = 81; n.dispatchEvent(new Event('change')); })()"))
+    step(lambda: set_control(browser, "Format", "gif", "change", section="Film"))
     browser.run("document.querySelector('.timeline .key').focus()")
     step(lambda: browser.key("Delete"))
     for before in reversed(states[:-1]):
@@ -319,7 +320,7 @@ def film_is_undone(browser):
         browser.run("halflight.store.redo()")
         check(tracks() == after, f"one step on: {tracks()}, not {after}")
     shown = browser.run(KEYS)
-    check(shown == [[path, frame] for path, frames in json.loads(states[-1])[1] for frame in frames], f"the strip follows: {shown}")
+    check(shown == [[path, frame] for path, frames in json.loads(states[-1])[2] for frame in frames], f"the strip follows: {shown}")
     for _ in states[1:]:
         browser.run("halflight.store.undo()")
     check(tracks() == states[0], "the film is as it was")
@@ -337,6 +338,93 @@ def film_is_undone(browser):
     browser.run("halflight.store.undo()")
     open_section(browser, "Session")
     browser.wait("document.querySelector('.timeline').hidden")
+    rest(browser)
+
+
+def film_is_shown(browser):
+    """The picture is that of the film's frame, also after undo and redo, and after keys were moved and removed."""
+    def seek(frame):
+        browser.run(f"(() => {{ const s = document.querySelector('[aria-label=Frame]'); s.value = {frame}; s.dispatchEvent(new Event('input')); }})()")
+
+    def has(value, what):
+        now = "halflight.store.scene.lights[0].intensity"
+        browser.wait(f"Math.abs({now} - {value}) < 1e-9", timeout=60)
+        rest(browser)
+        check(abs(browser.run(now) - value) < 1e-9, f"{what}: {browser.run(now)}, not {value}")
+
+    open_section(browser, "Film")
+    first, steps = scene_of(browser)["lights"][0]["intensity"], browser.run("halflight.store.history[0].length")
+    browser.run("(() => { const n = document.querySelector('[aria-label=\"Frames of the film\"]'); n.value = 120; n.dispatchEvent(new Event('change')); })()")
+    seek(0)
+    set_control(browser, "Intensity", 1)
+    press_named(browser, "Add a key of Intensity")
+    seek(100)
+    set_control(browser, "Intensity", 3)
+    press_named(browser, "Add a key of Intensity")
+    seek(20)
+    has(1.4, "between the keys")
+    browser.run("halflight.store.changeRender('shadows', 'off')")
+    seek(40)
+    has(1.8, "further on")
+    undo(browser)
+    check(scene_of(browser)["render"]["shadows"] == "hard", "a step of another frame is undone")
+    has(1.8, "the picture stays that of its frame")
+    seek(60)
+    press_named(browser, "Redo")
+    check(scene_of(browser)["render"]["shadows"] == "off", "and comes again")
+    has(2.2, "at the frame now")
+    undo(browser)
+    browser.run("document.querySelector('.timeline .key[data-frame=\"100\"]').focus()")
+    for _ in range(2):
+        browser.key("ArrowLeft", modifiers=8)
+    has(2.5, "a key that was moved to frame 80")
+    undo(browser)
+    undo(browser)
+    has(2.2, "and back")
+    browser.run("document.querySelector('.timeline .key[data-frame=\"0\"]').focus()")
+    browser.key("Delete")
+    has(3, "one key is left")
+    undo(browser)
+    has(2.2, "and there are two again")
+    camera = scene_of(browser)["camera"]["position"]
+    away = f"Math.hypot(...halflight.store.scene.camera.position.map((x, k) => x - {json.dumps(camera)}[k]))"
+    turn = "(() => { const t = [...document.querySelectorAll('label')].find((l) => l.textContent === 'Whole turn'); document.getElementById(t.htmlFor).click(); })()"
+    for act, is_turned in ((lambda: browser.run(turn), True), (lambda: browser.run(turn), False), (lambda: undo(browser), True), (lambda: undo(browser), False)):
+        act()
+        browser.wait(f"{away} > 0.1" if is_turned else f"{away} < 1e-6", timeout=60)
+        rest(browser)
+    while browser.run("halflight.store.history[0].length") > steps:
+        undo(browser)
+    check(scene_of(browser)["lights"][0]["intensity"] == first, "all is as it was")
+    open_section(browser, "Session")
+    browser.wait("document.querySelector('.timeline').hidden")
+    rest(browser)
+
+
+def choices_are_undone(browser):
+    """The light that is chosen is a choice like others: it is undone, and comes back with the lights."""
+    def chosen():
+        return browser.run("[...document.querySelectorAll('[aria-label=Lights] [role=tab]')].findIndex((tab) => tab.ariaSelected === 'true')"), browser.run("document.querySelector('.light.chosen').dataset.light")
+
+    def tab(number):
+        browser.run(f"document.querySelectorAll('[aria-label=Lights] [role=tab]')[{number}].click()")
+
+    open_section(browser, "Lights")
+    count = len(scene_of(browser)["lights"])
+    press_named(browser, "Add: light")
+    check(chosen() == (count, str(count)), f"a new light is chosen: {chosen()}")
+    tab(0)
+    check(chosen() == (0, "0"), f"the first one: {chosen()}")
+    undo(browser)
+    check(chosen() == (count, str(count)), f"undone: the new one: {chosen()}")
+    press_named(browser, "Remove this light")
+    check(chosen() == (count - 1, str(count - 1)) and len(scene_of(browser)["lights"]) == count, f"the one before: {chosen()}")
+    undo(browser)
+    check(chosen() == (count, str(count)) and len(scene_of(browser)["lights"]) == count + 1, f"one step brings the light back, and chosen: {chosen()}")
+    reload(browser)
+    check(chosen() == (count, str(count)), f"after a reload, too: {chosen()}")
+    undo(browser)
+    check(chosen()[0] == 0 and len(scene_of(browser)["lights"]) == count, f"as it was: {chosen()}")
     rest(browser)
 
 
@@ -517,6 +605,8 @@ with tempfile.TemporaryDirectory() as place:
         after_reload(page)
         film_after_reload(page)
         film_is_undone(page)
+        film_is_shown(page)
+        choices_are_undone(page)
         check(page.problems == [], f"the console has errors: {page.problems}")
         after_restart(page, first, arguments)
     private_tokens("runtime")

@@ -45,7 +45,7 @@ class Film {
   constructor(viewer) {
     this.#viewer = viewer;
     this.#take();
-    viewer.store.listen((scene, name) => this.#follow(scene, name));
+    viewer.store.listen((...change) => this.#follow(...change));
   }
 
   // Takes the film of the page's state. A film that turns starts from another camera than the one of the frame that is shown.
@@ -64,8 +64,14 @@ class Film {
     else this.#viewer.store.setPage({ film: this.#kept });
   }
 
+  get #isEmpty() { return this.tracks.length === 0 && !this.turns; }
+
   // A turn starts from the camera that a person has chosen, not from the place where the turn has taken it.
-  #follow(scene, name) {
+  #follow(scene, name, frame) {
+    if (frame !== undefined) {
+      this.#followHistory(scene, frame);
+      return;
+    }
     if (this.#viewer.store.page.film !== this.#kept) {
       this.#edits++;
       this.#take();
@@ -81,6 +87,21 @@ class Film {
     this.changed();
   }
 
+  // Follows a step of the history, whose scene is that of a frame of the film. The history has no cameras: a turn starts where it did before
+  // the step.
+  #followHistory(scene, frame) {
+    const { turns, scene: { camera } } = this, isOther = this.#viewer.store.page.film !== this.#kept;
+    this.#edits++;
+    this.playing = false;
+    if (isOther) this.#take();
+    else this.scene = scene;
+    if (turns || this.turns) this.scene = { ...this.scene, camera };
+    if (isOther && this.turns) this.#keep(false);
+    if (isOther) this.taken();
+    else this.changed();
+    if (turns !== this.turns || (frame !== this.frame && !this.#isEmpty)) this.#showScene();
+  }
+
   get wanted() {
     const { frames, fps, format } = this;
     return { turntable: this.turns ? frames : 0, frames, fps, format, keys: keyTexts(this.tracks, this.scene.camera.type) };
@@ -93,17 +114,29 @@ class Film {
       this.tracks = stretched(this.tracks, before, this.frames);
       this.frame = Math.round((this.frame * (this.frames - 1)) / (before - 1));
     }
-    const edits = ["tracks", "frames", "fps", "turns"].some((key) => key in part);
+    const edits = ["tracks", "frames", "fps", "turns", "format"].some((key) => key in part);
     if (edits || !this.playing) this.#keep(edits); // the frames that playing passes are no work of a person's
     this.changed();
   }
 
-  // Shows a frame. Of frames that are asked for meanwhile, only the last one is shown.
+  // Changes what the film shows at its frame.
+  edit(part) {
+    const wasEmpty = this.#isEmpty;
+    this.set(part);
+    if (!wasEmpty || !this.#isEmpty) this.#showScene();
+  }
+
+  // Goes to a frame.
   async show(frame) {
     this.set({ frame });
+    if (!this.#isEmpty) await this.#showScene();
+  }
+
+  // Shows the scene of the film's frame. Of frames that are asked for meanwhile, only the last one is shown.
+  async #showScene() {
     this.#again = true;
     const { channel, store, report } = this.#viewer;
-    if (this.#asking || !channel.sceneAt || (this.tracks.length === 0 && !this.turns)) return;
+    if (this.#asking || !channel.sceneAt) return;
     this.#asking = true;
     while (this.#again) {
       this.#again = false;
@@ -169,16 +202,16 @@ export function filmPanel(viewer) {
   const { element, body } = section("Film", false);
   const number = (label, key, low, high) => make("input", {
     type: "number", min: low, max: high, step: 1, value: film[key], "aria-label": label,
-    onchange: (event) => film.set({ [key]: Math.min(Math.max(Math.round(+event.target.value) || film[key], low), high) }),
+    onchange: (event) => film[key === "frames" ? "edit" : "set"]({ [key]: Math.min(Math.max(Math.round(+event.target.value) || film[key], low), high) }),
   });
   const lengths = [number("Frames of the film", "frames", 2, MOST_FRAMES), number("Frames a second", "fps", 1, MOST_FPS)];
   const names = make("datalist", { id: "film-paths" });
   const path = make("input", { type: "text", list: "film-paths", "aria-label": "A number of the scene", placeholder: "lights.0.intensity" });
-  const turn = toggle({ label: "Whole turn", get: () => film.turns, set: (turns) => film.set({ turns }) });
+  const turn = toggle({ label: "Whole turn", get: () => film.turns, set: (turns) => film.edit({ turns }) });
   const kind = select({
     label: "Format", choices: FORMATS, get: () => film.format, set: (format) => film.set({ format }),
   });
-  const strip = timelineStrip({ get: () => film, setTracks: (tracks) => film.set({ tracks }), show: (frame) => film.show(frame), play: () => film.play(), canShow: channel.sceneAt !== undefined });
+  const strip = timelineStrip({ get: () => film, setTracks: (tracks) => film.edit({ tracks }), show: (frame) => film.show(frame), play: () => film.play(), canShow: channel.sceneAt !== undefined });
 
   const addKey = (name, value) => film.set({ tracks: withKey(film.tracks, name, film.frame, value) });
   // A button beside a slider (controls.js).

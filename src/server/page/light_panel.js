@@ -28,15 +28,10 @@ const placesOf = (light, index) => ["direction", "position"].filter((key) => lig
 export function lightPanel(viewer) {
   const { store, current, overlay } = viewer;
   const { element, body } = section("Lights");
+  let told = 0; // the light of which the panel is
   const light = () => store.scene.lights[current.light];
   const change = (name, set) => store.changeLight(current.light, name, set);
-  const choose = (index) => {
-    current.light = index;
-    overlay.chosenLight = index;
-    update();
-    overlay.draw();
-  };
-  overlay.onChooseLight = choose;
+  const choose = (index) => { current.light = index; };
   const add = () => {
     store.change("add light", (scene) => ({ ...scene, lights: [...scene.lights, newLight()] }));
     choose(store.scene.lights.length - 1);
@@ -84,7 +79,7 @@ export function lightPanel(viewer) {
   element.addEventListener("toggle", rigs.atRest);
   body.append(rigs.element, viewer.comparison.compareButton(), list.element, handles.element, own, ambient.element);
   function update() {
-    current.light = Math.min(current.light, Math.max(store.scene.lights.length - 1, 0));
+    told = current.light;
     list.update();
     handles.update();
     ambient.update();
@@ -93,7 +88,7 @@ export function lightPanel(viewer) {
     if (light() !== undefined) rows.forEach((r) => r.update());
   }
   update();
-  return { element, update };
+  return { element, update, updateView: () => { if (current.light !== told) update(); } };
 }
 
 export function shadowPanel(viewer) {

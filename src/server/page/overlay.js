@@ -47,15 +47,15 @@ export class Overlay {
   #clip;
   #cuts = [];
   #sky;
+  #current;
   #width = 1;
   #height = 1;
   #showBox = false;
   #showSky = false;
-  chosenLight = 0;
-  onChooseLight = () => {};
 
   constructor(svg, viewer) {
-    const { store, start } = viewer;
+    const { store, start, current } = viewer;
+    this.#current = current;
     this.#svg = svg;
     this.#store = store;
     this.#start = start;
@@ -171,8 +171,8 @@ export class Overlay {
     const [ring, dot] = handle.children;
     handle.setAttribute("transform", `translate(${sphere.x + right * sphere.radius} ${sphere.y - up * sphere.radius})`);
     // The handle of a fill light from the eye would be in the way of the hand that turns the picture.
-    handle.toggleAttribute("hidden", light.shadows === "off" && l !== this.chosenLight);
-    handle.setAttribute("class", `light${towards < 0 ? " behind" : ""}${l === this.chosenLight ? " chosen" : ""}`);
+    handle.toggleAttribute("hidden", light.shadows === "off" && l !== this.#current.light);
+    handle.setAttribute("class", `light${towards < 0 ? " behind" : ""}${l === this.#current.light ? " chosen" : ""}`);
     handle.setAttribute("aria-valuetext",
       `${Math.round((Math.atan2(right, towards) * 180) / Math.PI)} degrees right, ` +
       `${Math.round((Math.asin(Math.min(Math.max(up, -1), 1)) * 180) / Math.PI)} degrees up, ` +
@@ -192,10 +192,7 @@ export class Overlay {
   }
 
   #choose(l) {
-    if (this.chosenLight === l) return;
-    this.chosenLight = l;
-    this.onChooseLight(l);
-    this.draw();
+    if (this.#current.light !== l) this.#current.light = l;
   }
 
   // Drags the dot over the sphere; beyond its rim the light goes behind. Or drags the ring, which is the

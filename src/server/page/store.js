@@ -10,21 +10,24 @@ const MOST_STEPS = 100; // the most steps that can be undone, for each history
 const UNREMEMBERED = ["camera", "size", "time", "page"]; // changes that are no steps of the main history
 
 // The settings of the page that are undone besides the film. The crosshair and which sections are unfolded are left as they are.
-const KEPT = ["layout", "plane", "oblique", "windows", "thickness", "blend", "showLabels", "showIsolines", "bookmarks", "over", "unit"];
+const KEPT = ["volume", "light", "layout", "plane", "oblique", "windows", "thickness", "blend", "showLabels", "showIsolines", "bookmarks", "over", "unit"];
 
 const keptOf = (page) => Object.fromEntries(KEPT.map((key) => [key, page[key]]));
 
-// What is undone: everything of the scene but the camera and the picture's size, the marks, the film's keys and length, settings of the
-// page, and what the scene's files are called and were opened by.
+// What is undone: everything of the scene but the camera and the picture's size, the marks, the film's keys, length and format, settings of
+// the page, and what the scene's files are called and were opened by.
 function lasting({ scene: { camera, image: { width, height, ...image }, ...rest }, marks, page, source, title }) {
   return { rest, image, marks, film: page.film, shown: keptOf(page), source, title };
 }
 
-// Whether two films have the same keys and length. They may show other frames, and turn from other views.
-const isSameFilm = (a, b) => ["tracks", "frames", "fps", "turns"].every((key) => a?.[key] === b?.[key]);
+// Whether two films have the same keys, length and format. They may show other frames, and turn from other views.
+const isSameFilm = (a, b) => ["tracks", "frames", "fps", "turns", "format"].every((key) => a?.[key] === b?.[key]);
+
+// The number of the frame that a film shows.
+const frameOf = (film) => film?.frame ?? 0;
 
 // A film of the history, at the frame and with the panel of the film now.
-const filmAgain = (film, now) => ({ ...film, frame: Math.min(now?.frame ?? 0, (film?.frames ?? 1) - 1), open: now?.open ?? false, format: now?.format });
+const filmAgain = (film, now) => ({ ...film, frame: film ? Math.min(frameOf(now), film.frames - 1) : 0, open: now?.open ?? false });
 
 const isSame = (a, b) => Object.keys({ ...a, ...b }).every((key) => a[key] === b[key]);
 
@@ -58,7 +61,8 @@ export class Store {
     return this.marks.length > 0 ? { ...this.scene, marks: this.marks } : this.scene;
   }
 
-  // listener(scene, name) is called after every change.
+  // listener(scene, name, frame) is called after every change. frame: after a step of undo or redo, the frame of the film of whose scene the
+  // step is; the film itself stays where it is.
   listen(listener) {
     this.#listeners.push(listener);
   }
@@ -95,7 +99,7 @@ export class Store {
     this.#tell("marks");
   }
 
-  // Changes the film's keys or its length.
+  // Changes the film's keys, its length or its format.
   setFilm(film) {
     if (!isAlike(film, this.page.film)) this.#remember("film");
     this.setPage({ film });
@@ -210,7 +214,7 @@ export class Store {
       const { camera, image: { width, height } } = this.scene;
       this.scene = { ...rest, camera, image: { ...image, width, height } };
     }
-    this.#tell("history");
+    this.#tell("history", frameOf(film));
   }
 
   #stepCamera(from, to) {
@@ -222,7 +226,7 @@ export class Store {
     this.#tell("camera");
   }
 
-  #tell(name) {
-    for (const listener of this.#listeners) listener(this.scene, name);
+  #tell(name, frame) {
+    for (const listener of this.#listeners) listener(this.scene, name, frame);
   }
 }

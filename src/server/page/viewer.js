@@ -5,6 +5,7 @@ import { worldBox } from "./boxes.js";
 import { reshaped } from "./camera.js";
 import { make } from "./controls.js";
 import { comparison } from "./comparison.js";
+import { Current } from "./current.js";
 import { cutPanel, cutSwitch, sceneCutPanel } from "./cut_panel.js";
 import { copier, exportPanel } from "./export.js";
 import { filmPanel } from "./film_panel.js";
@@ -216,7 +217,7 @@ export function mount(element, channel, whole, { keyboard = element, reopen = ()
   const ended = new AbortController();
   const start = startOf(kept?.scene ?? whole.scene, whole);
   const store = new Store(kept?.scene ?? start.scene, { ...kept, source: kept?.own ?? source, title: kept?.title ?? whole.title }), report = messageBox(find("message"));
-  const viewer = { store, start, channel, smallPicture: smallPictures(channel), report, reopen, root, find, source, startAfresh, choose, copy: copier(report, store), current: { volume: 0, light: 0 }, address, atRest: [], frames: () => frames, waits: (promise) => status.wait(promise) };
+  const viewer = { store, start, channel, smallPicture: smallPictures(channel), report, reopen, root, find, source, startAfresh, choose, copy: copier(report, store), current: new Current(store), address, atRest: [], frames: () => frames, waits: (promise) => status.wait(promise) };
   const connection = watchConnection(root.querySelector("main"), channel, report, { onBack: () => { frames.move(); viewer.slices.update(); }, save: () => viewer.saveSession() });
   viewer.failed = connection.failed;
   if (restore !== null) viewer.openSession = (file) => openSession(file, restore, viewer);
@@ -227,11 +228,6 @@ export function mount(element, channel, whole, { keyboard = element, reopen = ()
   viewer.atRest.push(viewer.comparison.atRest);
   viewer.firstView = () => store.setCamera(reshaped(start.scene.camera, start.scene.image, store.scene.image));
   viewer.frameEverything = () => frameEverything(viewer);
-  viewer.chooseVolume = (index) => {
-    viewer.current.volume = index;
-    panels.forEach((panel) => panel.rebuild?.());
-    viewer.slices.update();
-  };
   const parts = Object.entries(PARTS).map(([name, files]) => [name, files.map((panel) => panel(viewer))]), panels = parts.flatMap(([, made]) => made);
   find("panels").append(...parts.map(([name, made]) => make("section", { class: "part", "aria-label": name }, make("h2", {}, name), ...made.map((panel) => panel.element))));
   const followHistory = () => {
@@ -244,7 +240,12 @@ export function mount(element, channel, whole, { keyboard = element, reopen = ()
     followHistory();
   };
   // Following the camera and the layout is little work, which is done for each movement of the hand.
+  let shown = viewer.current.volume; // the one of which the panels are
   store.listen((_, name) => {
+    if (viewer.current.volume !== shown) {
+      shown = viewer.current.volume;
+      panels.forEach((panel) => panel.rebuild?.());
+    }
     if (name !== "camera" && name !== "page") update();
     else panels.forEach((panel) => panel.updateView?.());
     followHistory(); // changes of the page may be steps, too

@@ -34,10 +34,10 @@ function clipRow(axis, box, get, set, paths) {
 }
 
 // The list above all panels, where there are several volumes: it chooses the volume of the panels.
-export function volumeChooser({ store, current, chooseVolume }) {
+export function volumeChooser({ store, current }) {
   const { element, update } = select({
     label: "Volume", choices: store.scene.volumes.map((v, n) => [String(n), v.name ?? (v.file ?? "shapes").split("/").pop()]),
-    get: () => String(current.volume), set: (n) => chooseVolume(+n),
+    get: () => String(current.volume), set: (n) => { current.volume = +n; },
   });
   return { element: make("div", { class: "chooser", hidden: store.scene.volumes.length < 2 }, element), update, rebuild: update };
 }

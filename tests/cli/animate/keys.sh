@@ -8,6 +8,10 @@ for frame in 0 1 2 3 4; do
   tool json frame.json '[d["lights"][0]["intensity"], d["lights"][0]["angular_diameter_deg"], d["image"].get("exposure", 0),
     d["render"]["light_samples"], d["volumes"][0]["material"]["diffuse"]]'
 done
+# A size of 7 degrees, which the scene has as a whole number, is none. A number that must be whole is one also where the scene does not have it yet.
+halflight animate scene.json --key lights.0.angular_diameter_deg=0:7,2:8 --key render.pixel_samples=0:1,2:4 --quiet -o between
+tool png-scene between/0001.png >frame.json
+tool json frame.json '[d["lights"][0]["angular_diameter_deg"], d["render"]["pixel_samples"]]'
 # A time in seconds is the frame that is nearest to it; fractions of seconds and frames may stand in one key.
 halflight animate scene.json --key lights.0.intensity=0s:1,0.5s:2,6:4 --fps 4 --quiet -o seconds
 ls seconds
