@@ -354,6 +354,8 @@ def film_is_shown(browser):
 
     open_section(browser, "Film")
     first, steps = scene_of(browser)["lights"][0]["intensity"], browser.run("halflight.store.history[0].length")
+    while browser.run("document.querySelectorAll('.timeline .key').length") > 0:
+        browser.run("document.querySelector('[aria-label^=\"Remove the keys\"]').click()")
     browser.run("(() => { const n = document.querySelector('[aria-label=\"Frames of the film\"]'); n.value = 120; n.dispatchEvent(new Event('change')); })()")
     seek(0)
     set_control(browser, "Intensity", 1)
@@ -383,6 +385,7 @@ def film_is_shown(browser):
     has(2.2, "and back")
     browser.run("document.querySelector('.timeline .key[data-frame=\"0\"]').focus()")
     browser.key("Delete")
+    check(browser.run("document.activeElement.dataset.frame") == "100", "the focus lies on the key that is left")
     has(3, "one key is left")
     undo(browser)
     has(2.2, "and there are two again")

@@ -134,9 +134,10 @@ class Film {
 
   // Shows the scene of the film's frame. Of frames that are asked for meanwhile, only the last one is shown.
   async #showScene() {
-    this.#again = true;
     const { channel, store, report } = this.#viewer;
-    if (this.#asking || !channel.sceneAt) return;
+    if (!channel.sceneAt) return;
+    this.#again = store.isDue = true;
+    if (this.#asking) return;
     this.#asking = true;
     while (this.#again) {
       this.#again = false;
@@ -149,7 +150,7 @@ class Film {
         report(error.message);
       }
     }
-    this.#asking = false;
+    this.#asking = store.isDue = false;
     this.changed();
   }
 

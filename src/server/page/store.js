@@ -14,17 +14,18 @@ const KEPT = ["volume", "light", "layout", "plane", "oblique", "windows", "thick
 
 const keptOf = (page) => Object.fromEntries(KEPT.map((key) => [key, page[key]]));
 
+// The number of the frame that a film shows.
+const frameOf = (film) => film?.frame ?? 0;
+const NO_FRAME = -1; // of a scene that is not the one of the film's frame
+
 // What is undone: everything of the scene but the camera and the picture's size, the marks, the film's keys, length and format, settings of
 // the page, and what the scene's files are called and were opened by.
-function lasting({ scene: { camera, image: { width, height, ...image }, ...rest }, marks, page, source, title }) {
-  return { rest, image, marks, film: page.film, shown: keptOf(page), source, title };
+function lasting({ scene: { camera, image: { width, height, ...image }, ...rest }, marks, page, source, title, isDue }) {
+  return { rest, image, marks, film: page.film, frame: isDue ? NO_FRAME : frameOf(page.film), shown: keptOf(page), source, title };
 }
 
 // Whether two films have the same keys, length and format. They may show other frames, and turn from other views.
 const isSameFilm = (a, b) => ["tracks", "frames", "fps", "turns", "format"].every((key) => a?.[key] === b?.[key]);
-
-// The number of the frame that a film shows.
-const frameOf = (film) => film?.frame ?? 0;
 
 // A film of the history, at the frame and with the panel of the film now.
 const filmAgain = (film, now) => ({ ...film, frame: film ? Math.min(frameOf(now), film.frames - 1) : 0, open: now?.open ?? false });
@@ -44,6 +45,7 @@ export class Store {
   #holds = false; // a gesture is under way
   #last = { name: "", gesture: -1 };
   #lastCamera = -1; // number of the gesture in which the camera was last moved
+  isDue = false; // the scene of the film's frame is still to come
 
   // scene: a scene file, which may have marks. marks: a person's measures and texts (marks.js) in place of those of the file. page: settings that are no part of pictures: layout,
   // crosshair, bookmarks, film. source: by which the scene's files are opened (http_channel.js, open()), or null. title: what they are called.
@@ -61,8 +63,8 @@ export class Store {
     return this.marks.length > 0 ? { ...this.scene, marks: this.marks } : this.scene;
   }
 
-  // listener(scene, name, frame) is called after every change. frame: after a step of undo or redo, the frame of the film of whose scene the
-  // step is; the film itself stays where it is.
+  // listener(scene, name, frame) is called after every change. frame: after undo or redo, the frame of the film whose scene this is; the film
+  // itself stays where it is.
   listen(listener) {
     this.#listeners.push(listener);
   }
@@ -202,7 +204,7 @@ export class Store {
 
   #step(from, to) {
     if (from.length === 0) return;
-    const now = lasting(this), { rest, image, marks, film, shown = now.shown, source, title } = from.pop();
+    const now = lasting(this), { rest, image, marks, film, frame = frameOf(film), shown = now.shown, source, title } = from.pop();
     to.push(now);
     this.marks = marks;
     this.page = { ...this.page, ...keptOf(shown), ...(isSameFilm(film, now.film) ? {} : { film: filmAgain(film, now.film) }) };
@@ -214,7 +216,7 @@ export class Store {
       const { camera, image: { width, height } } = this.scene;
       this.scene = { ...rest, camera, image: { ...image, width, height } };
     }
-    this.#tell("history", frameOf(film));
+    this.#tell("history", frame);
   }
 
   #stepCamera(from, to) {

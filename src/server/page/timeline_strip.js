@@ -34,8 +34,10 @@ export function timelineStrip({ get, setTracks, show, play, canShow }) {
   function onKey(event, path, frame) {
     const step = { ArrowLeft: -1, ArrowRight: 1 }[event.key] * (event.shiftKey ? 10 : 1);
     const to = Math.min(Math.max(frame + step, 0), get().frames - 1);
-    if (event.key === "Delete" || event.key === "Backspace") setTracks(withoutKey(get().tracks, path, frame));
-    else if (step) {
+    if (event.key === "Delete" || event.key === "Backspace") {
+      setTracks(withoutKey(get().tracks, path, frame));
+      (rows.querySelector(`[data-path="${CSS.escape(path)}"]`) ?? slider).focus(); // the keys are drawn anew
+    } else if (step) {
       if (to !== frame) setTracks(withMovedKey(get().tracks, path, frame, to));
       rows.querySelector(`[data-path="${CSS.escape(path)}"][data-frame="${to}"]`)?.focus();
     } else return;
