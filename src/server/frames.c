@@ -99,6 +99,7 @@ void pages_end(server *s) {
   for (int p = 0; p < MOST_PAGES; p++) {
     forget_renderers(&s->pages[p]);
     base_forget(&s->pages[p]);
+    matter_forget(&s->pages[p]);
     pthread_mutex_destroy(&s->pages[p].rendering);
   }
   pthread_mutex_destroy(&s->pages_lock);
@@ -123,6 +124,7 @@ static void release_page(server *s, server_page *page) {
   if (count_renderers(page) > 0) atomic_store(&s->released, true);
   forget_renderers(page);
   base_forget(page);
+  matter_forget(page);
   page->name[0] = '\0';
   /* The value 0 lets the next new page take this place, and not the place of an idle page. */
   page->last_use = 0;
@@ -334,6 +336,25 @@ static hl_renderer **quick_renderer_of(server_page *page, const hl_scene *scene)
   return &found->renderer;
 }
 
+/* Answers with the overlays of a scene. If the scene is not the one of the page's newest picture, the lane's
+ * own renderer finds out where the matter is. */
+static hl_status make_overlay(server *s, server_page *page, const hl_scene *scene,
+                              const frame_request *request, server_answer *answer, hl_error *error) {
+  hl_render_statistics statistics = {.struct_size = sizeof statistics};
+  double began = server_seconds();
+  hl_status status = HL_OK;
+  hl_image *matter = matter_find(s, request);
+  if (matter == NULL) {
+    if (page->renderer == NULL) status = hl_renderer_create(s->options.context, &page->renderer, error);
+    if (status == HL_OK) status = render_small(s, page->renderer, scene, &matter, &statistics, error);
+    answer->seconds_once += statistics.seconds_prepare;
+    answer->seconds_render = server_seconds() - began;
+  }
+  if (status == HL_OK) status = write_overlay(s, matter, scene, request, answer, error);
+  hl_image_destroy(matter);
+  return status;
+}
+
 /* Renders a frame. renderer: the page's renderer for moving scenes, or for scenes at rest. */
 static hl_status render(server *s, server_page *page, hl_renderer **renderer, const hl_scene *scene,
                         const frame_request *request, server_answer *answer, hl_error *error) {
@@ -345,8 +366,6 @@ static hl_status render(server *s, server_page *page, hl_renderer **renderer, co
   hl_status status = is_new ? hl_renderer_create(s->options.context, renderer, error) : HL_OK;
   if (status == HL_OK && strcmp(request->format, "depth") == 0)
     return render_depth(page, scene, answer, error);
-  if (status == HL_OK && strcmp(request->format, "overlay") == 0)
-    return write_overlay(s, *renderer, scene, request, answer, error);
   if (status == HL_OK) status = check_overlay(s, scene, request, error);
   if (status == HL_OK) status = hl_image_create(s->options.context, d->width, d->height, &image, error);
   if (status == HL_OK)
@@ -354,6 +373,7 @@ static hl_status render(server *s, server_page *page, hl_renderer **renderer, co
                                 error);
   if (is_new) answer->seconds_once += statistics.seconds_prepare;
   double rendered = server_seconds();
+  if (status == HL_OK && !request->moving && !is_lane(page)) matter_keep(s, page, request, image);
   if (status == HL_OK) status = write_picture(s, scene, image, request, answer, error);
   hl_image_destroy(image);
   answer->seconds_render = rendered - began;
@@ -376,8 +396,10 @@ static hl_status make_frame(server *s, server_page *page, const frame_request *r
   answer->seconds_once = server_seconds() - parsed;
   if (status == HL_OK)
     status = film != NULL ? render_film(s, page, scene, film, answer, error)
-                          : render(s, page, coarser ? quick_renderer_of(page, quick) : &page->renderer,
-                                   coarser ? quick : scene, request, answer, error);
+             : strcmp(request->format, "overlay") == 0
+                 ? make_overlay(s, page, scene, request, answer, error)
+                 : render(s, page, coarser ? quick_renderer_of(page, quick) : &page->renderer,
+                          coarser ? quick : scene, request, answer, error);
   hl_scene_release(quick);
   hl_scene_release(scene);
   return status;

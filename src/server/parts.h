@@ -62,6 +62,14 @@ typedef struct quick_renderer {
 /* The stages of making a frame. Labels and sky are made before the picture. Later frames use them again. */
 typedef enum frame_stage { STAGE_PICTURE = 0, STAGE_LABELS = 1, STAGE_SKY = 2 } frame_stage;
 
+/* What the newest picture at rest of a page shows. */
+typedef struct page_matter {
+  hl_image *image;  /* owned; the opacities of the picture, with fewer pixels; null if there is no picture */
+  char *scene;      /* owned; [length]; the text of the scene that the picture shows */
+  size_t length;    /* number of bytes */
+  long long opened; /* the number of the open scene whose volumes the picture shows */
+} page_matter;
+
 /* A page in a browser. Its frames are rendered one after the other. */
 typedef struct server_page {
   char name[PAGE_NAME_LENGTH + 1];       /* "": the place is free */
@@ -87,6 +95,7 @@ typedef struct server_page {
   char *base; /* owned; the text of the newest scene that the page has sent as a whole; null if there is none;
                * guarded by server.pages_lock */
   unsigned long long base_number; /* number of the frame of `base`; guarded by server.pages_lock */
+  page_matter matter;             /* guarded by server.pages_lock */
 } server_page;
 
 /* An open scene as it was read so far. Volumes of several resolutions are read from coarse to fine; each time
@@ -273,13 +282,25 @@ bool read_triple(const char *text, double numbers[3]);
 /* Answers with the depth of the surface or matter that the picture's middle pixel shows. */
 hl_status render_depth(server_page *page, const hl_scene *scene, server_answer *answer, hl_error *error);
 
+/* matter.c */
+/* Keeps what a picture at rest shows. */
+void matter_keep(server *s, server_page *page, const frame_request *request, const hl_image *image);
+void matter_forget(server_page *page); /* the caller must hold server.pages_lock */
+/* Finds what the page whose lane requests an overlay has been shown of the overlay's scene. Returns an image
+ * of opacities that the caller owns; null if this scene is not the one of the page's newest picture. */
+hl_image *matter_find(server *s, const frame_request *request);
+
 /* pictures.c */
 /* Finds out, before the picture is made, whether the overlays that the request asks for can be drawn. */
 hl_status check_overlay(const server *s, const hl_scene *scene, const frame_request *request,
                         hl_error *error);
-/* Answers with the overlays alone, as a transparent PNG of the picture's size. renderer: renders a small
- * picture of the scene, which tells where the matter is. */
-hl_status write_overlay(const server *s, hl_renderer *renderer, const hl_scene *scene,
+/* Renders a small picture of a scene, which tells where the matter is. *image: owned by the caller, also
+ * after a failure; may be null. */
+hl_status render_small(const server *s, hl_renderer *renderer, const hl_scene *scene, hl_image **image,
+                       hl_render_statistics *statistics, hl_error *error);
+/* Answers with the overlays alone, as a transparent PNG of the picture's size. matter: a picture of the scene
+ * of any size. */
+hl_status write_overlay(const server *s, const hl_image *matter, const hl_scene *scene,
                         const frame_request *request, server_answer *answer, hl_error *error);
 /* Answers with the image as a file of the request's format. */
 hl_status write_picture(const server *s, const hl_scene *scene, const hl_image *image,

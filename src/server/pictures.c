@@ -63,9 +63,8 @@ hl_status check_overlay(const server *s, const hl_scene *scene, const frame_requ
   return status;
 }
 
-/* Renders a small picture of a scene. *image: owned by the caller, also after a failure; may be null. */
-static hl_status render_small(const server *s, hl_renderer *renderer, const hl_scene *scene, hl_image **image,
-                              hl_error *error) {
+hl_status render_small(const server *s, hl_renderer *renderer, const hl_scene *scene, hl_image **image,
+                       hl_render_statistics *statistics, hl_error *error) {
   enum { MOST_PIXELS_ALONG = 256 };
   hl_scene_description d = *hl_scene_describe(scene);
   const double part = fmin(1, (double)MOST_PIXELS_ALONG / fmax(d.width, d.height));
@@ -76,18 +75,18 @@ static hl_status render_small(const server *s, hl_renderer *renderer, const hl_s
   hl_status status = hl_scene_create(s->options.context, &d, &small, error);
   if (status == HL_OK) status = hl_image_create(s->options.context, d.width, d.height, image, error);
   if (status == HL_OK)
-    status = hl_renderer_render(renderer, small, hl_image_pixels(*image), 4 * (size_t)d.width, NULL, error);
+    status = hl_renderer_render(renderer, small, hl_image_pixels(*image), 4 * (size_t)d.width, statistics,
+                                error);
   hl_scene_release(small);
   return status;
 }
 
-hl_status write_overlay(const server *s, hl_renderer *renderer, const hl_scene *scene,
+hl_status write_overlay(const server *s, const hl_image *matter, const hl_scene *scene,
                         const frame_request *request, server_answer *answer, hl_error *error) {
   const hl_scene_description *d = hl_scene_describe(scene);
   hl_context *context = s->options.context;
-  hl_image *place = NULL, *matter = NULL;
+  hl_image *place = NULL;
   hl_status status = hl_image_create(context, d->width, d->height, &place, error);
-  if (status == HL_OK) status = render_small(s, renderer, scene, &matter, error);
   if (status == HL_OK) {
     hl_figure figure;
     hl_figure_panel panel;
@@ -98,7 +97,6 @@ hl_status write_overlay(const server *s, hl_renderer *renderer, const hl_scene *
     status = hl_figure_encode(context, &figure, "png", NULL, &answer->bytes, &answer->length, error);
     answer->type = "image/png";
   }
-  hl_image_destroy(matter);
   hl_image_destroy(place);
   return status;
 }

@@ -110,6 +110,31 @@ def drawn_over(viewer, scene):
         equals(measured, scene, ["--scale-bar", "auto"], scale_bar=1)
 
 
+def shared_with_picture(viewer, scene):
+    """The overlay of the picture that its page has been shown last is made without a renderer of its own; that of another scene, or of
+    another page, renders a small picture."""
+    def overlay(asked, page="sharing"):
+        status, headers, body = request(viewer, "POST", f"overlay?page={page}-overlay&number={next(numbers)}&legend=1", json.dumps(asked))
+        check(status == 200, f"an overlay: {status}")
+        return body, "Server-Timing" in headers
+
+    other = json.loads(json.dumps(scene))
+    other["image"]["exposure"] = 0.5
+    alone = overlay(scene)
+    check(alone[1], "no picture was made yet")
+    frame(viewer, scene, page="sharing", moving=1)
+    check(overlay(scene)[1], "nor one at rest")
+    frame(viewer, scene, page="sharing")
+    shared, rendered = overlay(scene)
+    check(not rendered, "the picture tells where the matter is")
+    check(abs(levels(shared) - levels(alone[0])).max() == 0, "the legend lies where it lay")
+    check(overlay(other)[1] and overlay(scene, page="sharin")[1], "another scene, and another page")
+    frame(viewer, other, page="sharing")
+    check(not overlay(other)[1] and overlay(scene)[1], "the newest picture counts")
+    request(viewer, "POST", "leave?page=sharing")
+    check(overlay(other)[1], "a page that has gone has none")
+
+
 def levels(png):
     with Image.open(io.BytesIO(png)) as image:
         return numpy.asarray(image.convert("RGBA"), dtype=float)
@@ -418,6 +443,7 @@ with tempfile.TemporaryDirectory() as folder:
         exact_pictures(viewer, small(scene))
         drawn_over(viewer, small(scene))
         overlays_without_room(viewer, scene)
+        shared_with_picture(viewer, small(scene, 700))
         complete_scenes(viewer, scene)
         refusals(viewer, scene)
         film_scenes(viewer, scene)

@@ -125,8 +125,11 @@ def steps_change_something(browser):
     check(browser.run(steps) == count, "the choice of what is chosen is no step")
     boxes = "['legend', 'scale-bar'].map((id) => document.getElementById(id).checked)"
     open_section(browser, "Save")
+    browser.run("""(() => { const asked = globalThis.fetch; globalThis.drawn = []; globalThis.fetch = async (...all) => { const answer = await asked(...all);
+      if (String(all[0]).startsWith('overlay')) drawn.push(answer.headers.get('Server-Timing')); return answer; }; })()""")
     browser.run("document.getElementById('legend').click()")
     browser.wait("!document.querySelector('canvas.figure').hidden")
+    check(browser.run("drawn") == [None], f"no picture is rendered for the legend: {browser.run('drawn')}")
     check(browser.run(boxes) == [True, False], "a legend")
     undo(browser)
     check(browser.run(boxes) == [False, False] and browser.run("document.querySelector('canvas.figure').hidden"), "is undone")

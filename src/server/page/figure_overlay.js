@@ -78,7 +78,7 @@ export function figureOverlay({ store, start, channel, failed, report, find, atR
   atRest.push(draw);
   store.listen((_, name) => {
     if (shown !== "" && shown !== told()) show("");
-    if ((name === "page" || name === "history") && frames().statistics.stage === "final") draw();
+    if ((name === "page" || name === "history") && frames().hasFinal(store.scene)) draw();
   });
 
   // ---- rows ----

@@ -108,6 +108,9 @@ export class Frames {
     return part < 1 ? change(scene, part) : scene;
   }
 
+  // Whether the final picture of this scene is there.
+  hasFinal(scene) { return this.statistics.stage === "final" && scene === this.#scene; }
+
   #full() {
     const { width, height } = this.#store.scene.image;
     return { width, height, pixels: width * height };
