@@ -25,7 +25,8 @@ for input in ball_16x16x16_uint8.raw smoke.nrrd pot.nrrd body.nrrd; do
   small $input a.npy
   look $input
   up=$(tr -d '[] ' <up)
-  for same in '--elevation 20' '--roll 0' '--zoom 1' '--fovy 30' "--up $up" '--size 40x40' '--light -40,45' '--light-size 7' '--shadows soft' \
+  case $input in smoke*) light=-75,40 ;; *) light=-40,45 ;; esac
+  for same in '--elevation 20' '--roll 0' '--zoom 1' '--fovy 30' "--up $up" '--size 40x40' "--light $light" '--light-size 7' '--shadows soft' \
     '--soft-method cascade' '--shadow-resolution auto' '--shadow-lookup auto' '--kernel bspline' '--reconstruction auto' '--slicing half-vector' \
     '--threads 1' '--instruction-set auto' '--elevation 20 --roll 0' "--up $up --elevation 20"; do
     rm -f b.npy
