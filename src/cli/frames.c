@@ -4,6 +4,7 @@
 #define _GNU_SOURCE
 #include "frames.h"
 
+#include <errno.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -47,6 +48,7 @@ int frames_read_part(const cli_value *value, const cli_value *ranks, int *part, 
 
 unsigned char *frames_read_picture(const char *path, size_t *length) {
   struct stat about;
+  errno = 0;
   FILE *file = fopen(path, "rbe");
   unsigned char *bytes = NULL;
   if (file == NULL) return NULL;
@@ -56,6 +58,11 @@ unsigned char *frames_read_picture(const char *path, size_t *length) {
   *length = bytes != NULL ? fread(bytes, 1, (size_t)about.st_size, file) : 0;
   fclose(file);
   return bytes;
+}
+
+int frames_fail_read(const char *path) {
+  return fail(errno == ENOMEM ? EXIT_CODE_FAILURE : EXIT_CODE_INPUT, "%s: cannot be read: %s", path,
+              errno != 0 ? strerror(errno) : "it is empty or no file");
 }
 
 /* The text of the scene from which a picture on disk was made; free it with hl_text_release(). Null if there

@@ -29,8 +29,12 @@
  * exit code. */
 int frames_read_part(const cli_value *value, const cli_value *ranks, int *part, int *parts);
 
-/* The bytes of a picture's file, owned by the caller (free); null if it cannot be read. */
+/* The bytes of a picture's file, owned by the caller (free); null if it cannot be read: errno tells why, or
+ * is 0 if the file is empty or no regular file. */
 unsigned char *frames_read_picture(const char *path, size_t *length);
+
+/* Prints why frames_read_picture() has just returned null. Returns the exit code. */
+int frames_fail_read(const char *path);
 
 /* Returns whether a picture exists and carries this scene. */
 bool frames_have_scene(const cli_host *host, const char *path, const hl_scene *scene);

@@ -7,7 +7,6 @@
 #define _GNU_SOURCE
 #include "panels.h"
 
-#include <errno.h>
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -431,8 +430,7 @@ int figure_page_read(const char *path, figure_page *page) {
   if (page->panels == NULL) return fail(EXIT_CODE_FAILURE, "out of memory");
   size_t length = 0;
   unsigned char *bytes = frames_read_picture(path, &length);
-  if (bytes == NULL)
-    return fail(EXIT_CODE_INPUT, "%s: cannot be read: %s", path, errno != 0 ? strerror(errno) : "no file");
+  if (bytes == NULL) return frames_fail_read(path);
   json_error_t place;
   json_t *root = hl_plain_json_load((const char *)bytes, length, JSON_REJECT_DUPLICATES, &place);
   free(bytes);

@@ -1,6 +1,5 @@
 /* cli/info/info.c - implements `halflight info FILE`, which prints the properties of a volume, a scene or a
  * mesh. */
-#include <errno.h>
 #include <inttypes.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -145,12 +144,10 @@ static int info_of_picture(cli_host *host, const cli_value *values, const cli_in
 /* Prints the properties of an OpenEXR or Radiance HDR picture. */
 static int info_of_light(cli_host *host, const cli_value *values, const char *path) {
   size_t length = 0;
-  errno = 0;
   unsigned char *bytes = frames_read_picture(path, &length);
   const cli_input input = {.path = path, .title = path};
   int exit_code = bytes != NULL ? info_of_picture(host, values, &input, bytes, length)
-                                : fail(EXIT_CODE_INPUT, "%s: cannot be read: %s", path,
-                                       errno != 0 ? strerror(errno) : "it is empty or no file");
+                                : frames_fail_read(path);
   free(bytes);
   return exit_code;
 }
