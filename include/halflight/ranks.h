@@ -46,6 +46,11 @@ HL_API int hl_ranks_size(const hl_ranks *ranks); /* 1 for null */
  * pictures is the whole picture. */
 HL_API void hl_ranks_sum(hl_ranks *ranks, float *values, size_t count);
 
+/* Compares a number over all ranks, as the hash of what a rank is about to do. This call is collective.
+ * Returns the first rank whose number is not the number of rank 0, or 0 if all numbers are equal or `ranks`
+ * is null. */
+HL_API int hl_ranks_compare(hl_ranks *ranks, uint64_t number);
+
 /* Tells how much this rank has received of other ranks' voxels so far: the number of bytes, the number of
  * requests, and the seconds that this rank's threads have waited for the answers. Each pointer may be
  * null. */

@@ -101,6 +101,12 @@ int ranks_begin(cli_host *host, const char *option, hl_ranks **ranks) {
         EXIT_CODE_FAILURE,
         "--%s: %s is %s, but MPI's processes are %d: the library and the launcher belong to different MPIs",
         option, found.size_name, found.size, hl_ranks_size(*ranks));
+  /* What processes do together depends on the option and on the version. */
+  int other = hl_ranks_compare(*ranks, hl_hash_bytes(hl_hash_bytes(HL_HASH_BEGIN, option, strlen(option)),
+                                                     hl_version(), strlen(hl_version())));
+  if (other != 0)
+    return fail(EXIT_CODE_USAGE, "--%s: rank %d has another option or another version than rank 0", option,
+                other);
   host->quiet = host->quiet || hl_ranks_rank(*ranks) > 0;
   host->bar = host->bar && !host->quiet;
   return EXIT_CODE_OK;
@@ -145,22 +151,12 @@ static hl_status number_scene(hl_context *context, const hl_scene *scene, uint64
 }
 
 int ranks_compare(cli_host *host, hl_ranks *ranks, const hl_scene *scene) {
-  /* A number of 64 bits is sent as pieces of 16 bits, because a float holds such a piece exactly. */
-  enum { PIECES = 4, BITS = 16 };
   uint64_t hash = 0;
   hl_error error = {0};
-  int size = hl_ranks_size(ranks), rank = hl_ranks_rank(ranks);
   if (ranks == NULL) return EXIT_CODE_OK;
   hl_status status = number_scene(host->context, scene, &hash, &error);
   if (status != HL_OK) return host_fail(host, PHASE_RUN, status, &error);
-  float *pieces = calloc((size_t)size * PIECES, sizeof *pieces);
-  if (pieces == NULL) return fail(EXIT_CODE_FAILURE, "out of memory");
-  for (int n = 0; n < PIECES; n++) pieces[rank * PIECES + n] = (float)(hash >> (n * BITS) & 0xffff);
-  hl_ranks_sum(ranks, pieces, (size_t)size * PIECES); /* now rank 0 has the pieces of all ranks */
-  int other = 0;
-  for (int r = 1; rank == 0 && r < size && other == 0; r++)
-    if (memcmp(pieces, pieces + r * PIECES, PIECES * sizeof *pieces) != 0) other = r;
-  free(pieces);
+  int other = hl_ranks_compare(ranks, hash);
   if (other == 0) return EXIT_CODE_OK;
   return fail(
       EXIT_CODE_INPUT,

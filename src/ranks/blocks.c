@@ -230,6 +230,7 @@ static hl_status make_blocks(hl_ranks *ranks, const hl_blocks_shape *shape, cons
 hl_status hl_blocks_share(hl_ranks *ranks, const hl_blocks_shape *shape, const hl_block_source *source,
                           hl_blocks **blocks, hl_error *error) {
   hl_status status = make_blocks(ranks, shape, source, blocks, error);
+  if (status == HL_OK) status = hl_ranks_begin_step(ranks, RANKS_SHARE_VOLUME, shape->dimension, error);
   if (status == HL_OK) {
     set_first(ranks, *blocks, true); /* other ranks may ask for parts as soon as the gathering has ended */
     hl_ranks_gather(ranks, &source->box, sizeof source->box, (*blocks)->boxes);

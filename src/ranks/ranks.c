@@ -49,6 +49,25 @@ void hl_ranks_gather(hl_ranks *ranks, const void *from, size_t bytes, void *to) 
   hl_ranks_wait(ranks, request);
 }
 
+int hl_ranks_compare(hl_ranks *ranks, uint64_t number) {
+  if (ranks == NULL) return 0;
+  hl_ranks_gather(ranks, &number, sizeof number, ranks->numbers);
+  for (int rank = 1; rank < ranks->size; rank++)
+    if (ranks->numbers[rank] != ranks->numbers[0]) return rank;
+  return 0;
+}
+
+hl_status hl_ranks_begin_step(hl_ranks *ranks, ranks_step step, const size_t dimension[3], hl_error *error) {
+  static const uint64_t prime = 1099511628211u; /* of the hash FNV-1a of 64 bits */
+  uint64_t number = (uint64_t)step;
+  for (int axis = 0; axis < 3; axis++) number = (number ^ dimension[axis]) * prime;
+  int other = hl_ranks_compare(ranks, number);
+  if (other == 0) return HL_OK;
+  return hl_fail(
+      error, HL_ERROR_INPUT,
+      "rank %d has another volume than rank 0: give all processes the same options and equal files", other);
+}
+
 /* Messages must be shorter than 2^31 bytes; callers send only some megabytes. Messages between two ranks keep
  * their order, so one tag serves all of them. */
 void hl_ranks_send(hl_ranks *ranks, const void *from, size_t bytes, void *to, size_t most,
@@ -153,10 +172,12 @@ static hl_status join(hl_ranks *ranks, void *communicator, hl_error *error) {
   if (mpi->calls->duplicate(mpi, parent) != 0 || mpi->calls->rank(mpi, &ranks->rank) != 0 ||
       mpi->calls->size(mpi, &ranks->size) != 0)
     return hl_fail(error, HL_ERROR_UNSUPPORTED, "%s does not tell this process's rank", mpi->name);
-  return HL_OK;
+  ranks->numbers = hl_allocate(ranks->context, (size_t)ranks->size, sizeof *ranks->numbers);
+  return ranks->numbers != NULL ? HL_OK : hl_fail_memory(error, (size_t)ranks->size, "the ranks of a job");
 }
 
 static void release(hl_ranks *ranks) {
+  hl_release(ranks->context, ranks->numbers);
   pthread_mutex_destroy(&ranks->calling);
   hl_release(ranks->context, ranks);
 }

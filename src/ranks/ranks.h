@@ -22,6 +22,7 @@ struct hl_ranks {
   int rank, size;
   bool started;                          /* whether hl_ranks_join() started MPI; if so, this library must end
                                           * it, too */
+  uint64_t *numbers;                     /* owned; [size], memory of hl_ranks_compare() */
   pthread_mutex_t calling;               /* held during each call of MPI */
   struct hl_block_server *server;        /* owned (blocks.h); null if no blocks are shared */
   atomic_uint_least64_t bytes, requests; /* received from other ranks */
@@ -45,6 +46,13 @@ void hl_ranks_barrier(hl_ranks *ranks);
 /* Gathers bytes from every rank on all ranks. from: this rank's bytes; each rank sends the same number of
  * bytes. to: [size][bytes]. */
 void hl_ranks_gather(hl_ranks *ranks, const void *from, size_t bytes, void *to);
+
+/* What ranks do together before their scenes are compared. A rank with another file or another option would
+ * take part in another collective than the other ranks. */
+typedef enum ranks_step { RANKS_SHARE_VOLUME = 1, RANKS_COPY_LABELS } ranks_step;
+
+/* Fails on all ranks if they do not all begin the same step, with an array of the same dimensions. */
+hl_status hl_ranks_begin_step(hl_ranks *ranks, ranks_step step, const size_t dimension[3], hl_error *error);
 
 /* Begins to send this rank's bytes to all other ranks, and to receive theirs. Ranks may send different
  * numbers of bytes, each at most `most`. to: [size][most]; this rank's own row is left as it is. pending: [2

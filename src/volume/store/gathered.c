@@ -110,11 +110,12 @@ static hl_status gather(const hl_volume *map, hl_volume **whole, hl_error *error
   hl_context *context = map->context;
   gathering g = {.map = map, .own = map->pages->own, .ranks = hl_blocks_ranks(map->pages->blocks)};
   const size_t *n = map->dimension, count = hl_volume_voxel_count(map);
+  hl_status status = hl_ranks_begin_step(g.ranks, RANKS_COPY_LABELS, n, error);
+  if (status != HL_OK) return status;
   g.exact = any_rank(g.ranks, map->storage == HL_STORAGE_F32 && has_numbers(g.own));
   g.sent_bytes = g.exact ? hl_voxel_type_bytes(map->type) : hl_storage_bytes(map->storage);
   g.slice = hl_allocate(context, n[0] * n[1], g.sent_bytes);
   g.sent = hl_allocate(context, count, g.sent_bytes);
-  hl_status status = HL_OK;
   if (any_rank(g.ranks, g.slice == NULL || g.sent == NULL))
     status = hl_fail_memory(error, (count + n[0] * n[1]) * g.sent_bytes,
                             "a label map, which each process holds whole");

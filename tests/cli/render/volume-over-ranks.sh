@@ -48,6 +48,18 @@ cat >failing.sh <<'END'
 if [ "${OMPI_COMM_WORLD_RANK-$PMI_RANK}" = 2 ]; then limit="--max-memory 100K"; fi
 exec "$HALFLIGHT" render ball_176x176x176_uint8.raw --size 60x50 --quiet --volume-over-ranks -o shared.npy $limit
 END
+# Ranks with another volume, with more volumes, or with another option would wait for each other without end.
+tool ball 120 other_120x120x120_uint8.raw
+cat >different.sh <<'END'
+if [ "${OMPI_COMM_WORLD_RANK-$PMI_RANK}" = 1 ]; then words=$one; fi
+exec "$HALFLIGHT" render ${words:-ball_176x176x176_uint8.raw --volume-over-ranks} --size 60x50 --quiet -o shared.npy
+END
+for one in "other_120x120x120_uint8.raw --volume-over-ranks" "ball_176x176x176_uint8.raw ball.nrrd --volume-over-ranks" \
+  "ball_176x176x176_uint8.raw --strips-over-ranks"; do
+  export one
+  ! run 3 timeout 60 sh different.sh
+  grep -o -m 1 "rank 1 has another" mpirun.txt || cat mpirun.txt
+done
 ! run 4 sh killed.sh
 grep -o -m 1 "$killed" mpirun.txt
 ! run 4 sh failing.sh
