@@ -33,12 +33,15 @@ static int check_folder(const char *path) {
   char *folder = strdup(path);
   if (folder == NULL) return fail(EXIT_CODE_FAILURE, "out of memory");
   char *slash = strrchr(folder, '/');
-  if (slash != NULL) slash[slash == folder ? 1 : 0] = '\0';
+  if (slash != NULL) slash[1] = '\0'; /* after a slash, the system takes no file for a folder */
   const char *name = slash != NULL ? folder : ".";
   int exit_code = EXIT_CODE_OK;
-  if (access(name, W_OK | X_OK) != 0)
+  if (access(name, W_OK | X_OK) != 0) {
+    int reason = errno;
+    if (slash != NULL && slash > folder) *slash = '\0';
     exit_code = fail(EXIT_CODE_FAILURE, "%s: its folder '%s' cannot be written: %s", path, name,
-                     strerror(errno));
+                     strerror(reason));
+  }
   free(folder);
   return exit_code;
 }
