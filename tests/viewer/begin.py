@@ -159,6 +159,14 @@ def two_pictures(browser):
       return a.length === b.length ? a.reduce((sum, x, n) => sum + Math.abs(x - b[n]), 0) / a.length : -1; })()""")
     check(differ > 0.2, f"shadows make a difference: {differ}")
     check(browser.run("[...document.querySelectorAll('.side')].map((s) => s.textContent)") == ["without shadows", "soft shadows"], "both sides are named")
+    size = browser.run("[innerWidth, innerHeight]")
+    resize(browser, 390, 844)
+    browser.run("document.querySelector('.side').setAttribute('data-making', '')")  # the longest name
+    inside = browser.run("""(() => { const view = document.getElementById('view').getBoundingClientRect();
+      return [...document.querySelectorAll('.side')].every((side) => { const b = side.getBoundingClientRect(); return b.left >= view.left && b.right <= view.right; }); })()""")
+    check(inside, "names have room in a narrow picture")
+    resize(browser, *size)
+    browser.wait("!document.querySelector('.compared').hidden")
     x, y = center(browser, ".divider")
     browser.drag([x, y], [x - 90, y + 5])
     at = browser.run("+document.querySelector('.divider').getAttribute('aria-valuenow')")

@@ -79,6 +79,21 @@ def uploads(browser):
     browser.problems.remove(expected[0])
 
 
+def shape_of_moving_pictures(browser):
+    """While something moves, pictures are smaller and have the shape of the full one, so that nothing is stretched."""
+    resize(browser, 820, 1180)
+    rest(browser)
+    browser.run("""(() => { const picture = document.getElementById('picture'); globalThis.shapes = [];
+      new MutationObserver(() => shapes.push([picture.width, picture.height])).observe(picture, { attributes: true, attributeFilter: ['width', 'height'] }); })()""")
+    x, y = center(browser, "#view")
+    browser.drag([x - 60, y + 90], [x, y + 110], steps=12)
+    rest(browser)
+    full = scene_of(browser)["image"]
+    shapes = browser.run("shapes")
+    check(len({tuple(shape) for shape in shapes}) > 1, f"smaller pictures were shown: {shapes}")
+    check(all(abs(width * full["height"] / full["width"] - height) <= 0.5 for width, height in shapes), f"of {full['width']} x {full['height']}: {shapes}")
+
+
 def fingers_on_the_camera(browser):
     x, y = center(browser, "#view")
     at = [x - 120, y + 90]
@@ -183,6 +198,7 @@ def keyboard_and_names(browser):
     browser.run("document.getElementById('view').focus()")
     browser.key("?")
     check(browser.run("document.getElementById('help').open"), "'?' opens the help sheet")
+    check(browser.run("(({ scrollHeight, clientHeight }) => scrollHeight <= clientHeight)(document.getElementById('help'))"), "which is seen whole in 1280 x 720")
     browser.run("document.getElementById('help').close()")
     overflow = browser.run("[document.documentElement.scrollWidth - innerWidth, document.documentElement.scrollHeight - innerHeight]")
     check(max(overflow) <= 0, "the page fits into 1280 x 720")
@@ -346,6 +362,7 @@ with tempfile.TemporaryDirectory() as folder:
         saved_as_seen(browser)
         reach(browser)
         narrow_pages(browser)
+        shape_of_moving_pictures(browser)
         resize(browser, 720, 420)
         uploads(browser)
         hands_on_the_camera(browser)

@@ -464,6 +464,7 @@ def after_restart(browser, viewer, options):
     browser.wait(f"{BANNER} && !{BANNER}.hidden")
     check(browser.run("document.getElementById('stage').textContent") == "failed", "the picture is not the scene's")
     check("Retry" in browser.run(f"{BANNER}.textContent"), "the banner offers to try again")
+    check(browser.run("getComputedStyle(document.getElementById('picture')).objectFit") == "cover", "the picture is not stretched into the room that the banner leaves")
     shot(browser, "banner")
     before = browser.run(STATE)
     os.mkdir("lost")

@@ -28,6 +28,7 @@ export function comparison({ store, channel, failed, find, report }) {
     left.toggleAttribute("data-making", canvas.hidden); // the present picture is on both sides
     canvas.style.clipPath = `inset(0 ${100 * (1 - part)}% 0 0)`;
     line.style.left = `${100 * part}%`;
+    line.style.setProperty("--part", part);
     line.setAttribute("aria-valuenow", Math.round(100 * part));
   }
 

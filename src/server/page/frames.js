@@ -26,8 +26,8 @@ function firstSpacing(volumes) {
   return Math.min(Math.max(Math.cbrt(voxels / SOON_PREPARED), 1.5), WIDEST);
 }
 
-// Pictures whose sides are multiples of 16 are rendered without a copy.
-const rounded = (side) => Math.max(16, Math.ceil(side / 16) * 16);
+// The renderer computes blocks of 16 x 16 pixels.
+const BLOCK = 16;
 
 export class Frames {
   #store;
@@ -120,8 +120,9 @@ export class Frames {
   #scaled(pixels, spacing) {
     const scene = this.#store.scene, full = this.#full();
     const factor = Math.min(1, Math.sqrt(pixels / full.pixels));
-    const width = factor === 1 ? full.width : rounded(full.width * factor);
-    const height = factor === 1 ? full.height : rounded(full.height * factor);
+    // The picture has the shape of the full one, as otherwise it would be stretched.
+    const width = factor === 1 ? full.width : Math.ceil((full.width * factor) / BLOCK) * BLOCK;
+    const height = factor === 1 ? full.height : Math.max(1, Math.round((width * full.height) / full.width));
     const sheets = Math.max(spacing, scene.render.sheet_spacing);
     return {
       ...scene, image: { ...scene.image, width, height }, render: { ...scene.render, sheet_spacing: sheets, pixel_samples: 0 },

@@ -80,11 +80,11 @@ export function installShortcuts(store, keyboard, area, actions, nearest) {
 }
 
 export function helpSheet(dialog, keys) {
-  const rows = (list) => list.map(([key, text]) => make("tr", {}, make("th", { scope: "row" }, make("kbd", {}, key)), make("td", {}, text)));
+  const all = [...MOUSE, ...keys], half = Math.ceil(all.length / 2);
+  const table = (list) => make("table", {}, make("tbody", {}, ...list.map(([key, text]) => make("tr", {}, make("th", { scope: "row" }, make("kbd", {}, key)), make("td", {}, text)))));
   dialog.append(
     make("h2", { id: "help-title" }, "Mouse, fingers and keys"),
-    make("div", { class: "sheet" },
-      make("table", {}, make("tbody", {}, ...rows(MOUSE))), make("table", {}, make("tbody", {}, ...rows(keys)))),
+    make("div", { class: "sheet" }, table(all.slice(0, half)), table(all.slice(half))),
     make("p", {}, "Of the light's handle the arrow keys move the light, + and − change its size. In the drawing of the " +
       "transfer function they move the chosen point; Page Up and Page Down choose another."),
     make("form", { method: "dialog" }, make("button", { class: "primary", autofocus: true }, "Close")));
