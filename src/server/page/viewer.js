@@ -172,14 +172,21 @@ async function openSession(file, restore, viewer) {
   }
 }
 
-// Unfolds and folds the sections as they were before a reload, and keeps which ones are not as at first: page.sections, by title.
+// Unfolds and folds the sections as they were before a reload or in a session's file, and keeps which ones are not as at first:
+// page.sections, by title.
 function keepOpenSections(panels, store) {
   const titleOf = (element) => element.firstElementChild.textContent, all = [...panels.querySelectorAll(".section")].map((element) => ({ element, first: element.open }));
-  for (const { element, first } of all) element.open = store.page.sections?.[titleOf(element)] ?? first;
+  let shown; // as all are unfolded and folded
+  const show = () => {
+    shown = store.page.sections;
+    for (const { element, first } of all) element.open = shown?.[titleOf(element)] ?? first;
+  };
+  show();
   const keep = () => {
     const { sections = {} } = store.page, now = Object.fromEntries(all.filter(({ element, first }) => element.open !== first).map(({ element }) => [titleOf(element), element.open]));
-    if (Object.keys({ ...sections, ...now }).some((title) => now[title] !== sections[title])) store.setPage({ sections: now });
+    if (Object.keys({ ...sections, ...now }).some((title) => now[title] !== sections[title])) store.setPage({ sections: shown = now });
   };
+  store.listen((_, name) => { if (name === "history" && store.page.sections !== shown) show(); });
   panels.addEventListener("toggle", keep, { capture: true }); // the event does not rise to the side bar
 }
 
