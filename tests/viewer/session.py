@@ -390,8 +390,19 @@ def film_is_shown(browser):
     browser.key("Delete")
     check(browser.run("document.activeElement.dataset.frame") == "100", "the focus lies on the key that is left")
     has(3, "one key is left")
-    undo(browser)
+    browser.key("z", modifiers=2)
+    check(browser.run("document.activeElement.dataset.frame") == "100", "and stays there after undo")
     has(2.2, "and there are two again")
+    browser.run("halflight.store.changeVolume(0, 'scattering', (v) => ({ ...v, scattering: { anisotropy: 0.25 } }))")
+    browser.run("document.querySelector('.viewer').dispatchEvent(new CustomEvent('halflight-key', { detail: { paths: ['volumes.0.scattering.anisotropy'] } }))")
+    browser.run("halflight.store.changeVolume(0, 'scattering', ({ scattering: _, ...v }) => v)")
+    seek(61)
+    told = browser.run("document.getElementById('message').textContent")
+    check(told.endswith("film changes: volume 1, scattering anisotropy."), f"a track of what is there no longer is told: {told}")
+    for _ in range(3):
+        undo(browser)
+    seek(60)
+    has(2.2, "without it")
     camera = scene_of(browser)["camera"]["position"]
     away = f"Math.hypot(...halflight.store.scene.camera.position.map((x, k) => x - {json.dumps(camera)}[k]))"
     turn = "(() => { const t = [...document.querySelectorAll('label')].find((l) => l.textContent === 'Whole turn'); document.getElementById(t.htmlFor).click(); })()"

@@ -5,7 +5,7 @@
 import { reshaped } from "./camera.js";
 import { button, isActive, make, row, section, select, toggle } from "./controls.js";
 import { download, fileWord, quoted, sceneText, stem } from "./export.js";
-import { CAMERA, FORMATS, MOST_FPS, MOST_FRAMES, keyTexts, readFilm, stretched, withKey } from "./timeline.js";
+import { CAMERA, FORMATS, MOST_FPS, MOST_FRAMES, keyTexts, readFilm, stretched, trackName, withKey } from "./timeline.js";
 import { timelineStrip } from "./timeline_strip.js";
 
 const ASK_EVERY = 300; // milliseconds between questions for the film's progress
@@ -62,6 +62,11 @@ class Film {
     this.#kept = { tracks, frames, fps, turns, frame, format, open, ...(turns ? { from: { camera, image: { width, height } } } : {}) };
     if (edits) this.#viewer.store.setFilm(this.#kept);
     else this.#viewer.store.setPage({ film: this.#kept });
+  }
+
+  // A track of a number for which the scene has no place, as of the scattering of a volume that scatters no longer.
+  get #gone() {
+    return this.tracks.find(({ path }) => path !== CAMERA && typeof numberAt(this.scene, path.split(".").slice(0, -1).join(".")) !== "object");
   }
 
   get #isEmpty() { return this.tracks.length === 0 && !this.turns; }
@@ -134,8 +139,13 @@ class Film {
 
   // Shows the scene of the film's frame. Of frames that are asked for meanwhile, only the last one is shown.
   async #showScene() {
-    const { channel, store, report } = this.#viewer;
+    const { channel, store, report } = this.#viewer, gone = this.#gone;
     if (!channel.sceneAt) return;
+    if (gone !== undefined) {
+      this.playing = false;
+      report(`The scene no longer has what this track of the film changes: ${trackName(gone.path)}.`);
+      return;
+    }
     this.#again = store.isDue = true;
     if (this.#asking) return;
     this.#asking = true;

@@ -34,10 +34,8 @@ export function timelineStrip({ get, setTracks, show, play, canShow }) {
   function onKey(event, path, frame) {
     const step = { ArrowLeft: -1, ArrowRight: 1 }[event.key] * (event.shiftKey ? 10 : 1);
     const to = Math.min(Math.max(frame + step, 0), get().frames - 1);
-    if (event.key === "Delete" || event.key === "Backspace") {
-      setTracks(withoutKey(get().tracks, path, frame));
-      (rows.querySelector(`[data-path="${CSS.escape(path)}"]`) ?? slider).focus(); // the keys are drawn anew
-    } else if (step) {
+    if (event.key === "Delete" || event.key === "Backspace") setTracks(withoutKey(get().tracks, path, frame));
+    else if (step) {
       if (to !== frame) setTracks(withMovedKey(get().tracks, path, frame, to));
       rows.querySelector(`[data-path="${CSS.escape(path)}"][data-frame="${to}"]`)?.focus();
     } else return;
@@ -55,6 +53,13 @@ export function timelineStrip({ get, setTracks, show, play, canShow }) {
     return mark;
   };
 
+  // The keyboard's focus goes from an element of the rows that are drawn anew to the key of the same track that is nearest, or to the slider.
+  function focusNear({ path, frame }) {
+    const away = (key) => Math.abs(key.dataset.frame - frame);
+    const keys = [...rows.querySelectorAll(".key")].filter((key) => key.dataset.path === path).sort((a, b) => away(a) - away(b));
+    (keys[0] ?? slider).focus();
+  }
+
   let drawn = null;
   function update() {
     const { tracks, frames, frame, fps, playing } = get();
@@ -66,9 +71,11 @@ export function timelineStrip({ get, setTracks, show, play, canShow }) {
     player.textContent = playing ? "stop playing" : "play";
     if (drawn?.tracks === tracks && drawn.frames === frames) return;
     drawn = { tracks, frames };
+    const { activeElement } = rows.getRootNode(), focused = rows.contains(activeElement) ? { ...activeElement.dataset } : null;
     rows.replaceChildren(...tracks.map(({ path, points }) => make("div", { class: "track" },
       make("span", { class: "track-name", title: path }, trackName(path)), make("span", { class: "track-keys" }, ...points.map((point) => keyMark(path, point))),
       button("−", () => setTracks(get().tracks.filter((track) => track.path !== path)), { "aria-label": `Remove the keys of ${trackName(path)}` }))));
+    if (focused !== null) focusNear(focused);
   }
   return { element, update };
 }
