@@ -5,7 +5,7 @@
 #ifndef HALFLIGHT_MESH_H
 #define HALFLIGHT_MESH_H
 
-#include "context.h"
+#include "volume.h"
 
 #ifdef __cplusplus
 extern "C" {
@@ -62,6 +62,22 @@ HL_API HL_WARN_UNUSED hl_status hl_mesh_create(hl_context *context, const hl_mes
  * before arrays of cells. Scalars that are not 8-bit RGB or RGBA are shown in the colormap viridis, over
  * their whole range. */
 HL_API HL_WARN_UNUSED hl_status hl_mesh_load(hl_context *context, const char *path, hl_mesh **mesh,
+                                             hl_error *error);
+
+/* Makes a mesh of the surface on which a volume has a value, as an isosurface of a scene shows it with the
+ * kernel HL_KERNEL_BSPLINE. Triangles show their fronts to the lesser values. The surface is closed. Where
+ * the volume's box cuts through the greater values, it gets faces; these share no vertices with the surface,
+ * and overlap it by 0.03 voxels. Positions are in the world of the volume's file, and the surface's place is
+ * exact to 0.02 of the smallest edge of a voxel. HL_ERROR_INPUT: nowhere does the volume have this value.
+ * *mesh is owned by the caller, who releases it. */
+HL_API HL_WARN_UNUSED hl_status hl_mesh_of_isosurface(hl_context *context, hl_volume *volume, double value,
+                                                      hl_mesh **mesh, hl_error *error);
+
+/* Writes the triangles of a mesh by the path's ending: .ply (binary, with normals and colours), .stl (binary)
+ * or .obj (with normals). Tubes are written as triangles; spheres are left out, and colours where the format
+ * has none, with a warning. The file appears whole or not at all. HL_ERROR_UNSUPPORTED: another ending, or
+ * a mesh without triangles. */
+HL_API HL_WARN_UNUSED hl_status hl_mesh_save(hl_context *context, const hl_mesh *mesh, const char *path,
                                              hl_error *error);
 
 /* Returns 1 if hl_mesh_load() reads files with this name, and else 0. The name's ending decides. A .vtk file

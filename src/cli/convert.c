@@ -1,6 +1,7 @@
 /* cli/convert.c - implements `halflight convert IN OUT`, which writes a volume, or a box of it, in another
- * format, type or resolution, and pictures in another format. */
+ * format, type or resolution, a volume's surface as a mesh, and pictures and meshes in another format. */
 #define _GNU_SOURCE
+#include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -16,6 +17,7 @@ enum convert_option {
   CONVERT_SHRINK,
   CONVERT_TYPE,
   CONVERT_UNIT,
+  CONVERT_ISO,
   CONVERT_OUTPUT,
   CONVERT_ARRAY,
   CONVERT_COMPONENT,
@@ -69,6 +71,14 @@ static const cli_option convert_options[CONVERT_OPTION_COUNT] = {
                       .kind = OPTION_TEXT,
                       .argument = "UNIT",
                       .help = "unit of lengths, where IN does not tell it: m, cm, mm,\num, nm or angstrom"},
+    [CONVERT_ISO] = {.name = "iso",
+                     .also = "isosurface",
+                     .kind = OPTION_NUMBERS,
+                     .argument = "VALUE",
+                     .help = "the value on the surface that becomes the mesh OUT: .ply,\n.stl or .obj",
+                     .count = 1,
+                     .low = -INFINITY,
+                     .high = INFINITY},
     [CONVERT_OUTPUT] = {.name = "output",
                         .letter = 'o',
                         .kind = OPTION_TEXT,
@@ -158,20 +168,28 @@ static int check_unit(const cli_value *unit, const hl_volume *volume) {
 
 static void report(const char *output, double seconds) { say("%s: written in %.2f s", output, seconds); }
 
+/* Loads the volume IN. The caller closes the input and releases the volume, also after a failure. */
+static int load_volume(cli_host *host, const cli_value *values, const char *in, cli_input *input,
+                       hl_volume **volume) {
+  hl_error error = {0};
+  hl_volume_load_options load;
+  input_load_options(&values[CONVERT_ARRAY], &values[CONVERT_SPACING], &load);
+  int exit_code = input_open(in, values[CONVERT_MAX_MEMORY].bytes, input);
+  if (exit_code == EXIT_CODE_OK) {
+    hl_status status = input_load_volume(host->context, input, &load, volume, &error);
+    if (status != HL_OK) exit_code = host_fail(host, PHASE_READ, status, &error);
+  }
+  host_clear_bar(host);
+  return exit_code;
+}
+
 static int convert(cli_host *host, const cli_value *values, const char *in, const char *out,
                    hl_volume_save_options *options) {
   double started = clock_seconds();
   cli_input input = {0};
   hl_volume *volume = NULL;
   hl_error error = {0};
-  hl_volume_load_options load;
-  input_load_options(&values[CONVERT_ARRAY], &values[CONVERT_SPACING], &load);
-  int exit_code = input_open(in, values[CONVERT_MAX_MEMORY].bytes, &input);
-  if (exit_code == EXIT_CODE_OK) {
-    hl_status status = input_load_volume(host->context, &input, &load, &volume, &error);
-    if (status != HL_OK) exit_code = host_fail(host, PHASE_READ, status, &error);
-  }
-  host_clear_bar(host);
+  int exit_code = load_volume(host, values, in, &input, &volume);
   if (exit_code == EXIT_CODE_OK) exit_code = check_crop(&values[CONVERT_CROP], options, volume);
   if (exit_code == EXIT_CODE_OK) exit_code = check_unit(&values[CONVERT_UNIT], volume);
   if (exit_code == EXIT_CODE_OK) exit_code = read_files_protect(&host->read, out, in);
@@ -188,6 +206,56 @@ static int convert(cli_host *host, const cli_value *values, const char *in, cons
   return exit_code;
 }
 
+/* ---- meshes ---- */
+
+/* Makes the mesh of the surface of the volume IN. */
+static int make_surface(cli_host *host, const cli_value *values, const char *in, const char *out,
+                        hl_mesh **mesh) {
+  const cli_value *iso = &values[CONVERT_ISO];
+  cli_input input = {0};
+  hl_volume *volume = NULL;
+  hl_error error = {0};
+  if (!iso->given)
+    return fail(EXIT_CODE_USAGE, "OUT is a mesh, '%s': give --iso VALUE, the value on the surface of '%s'",
+                out, in);
+  int exit_code = load_volume(host, values, in, &input, &volume);
+  if (exit_code == EXIT_CODE_OK) {
+    hl_status status = hl_mesh_of_isosurface(host->context, volume, iso->number[0], mesh, &error);
+    if (status != HL_OK) exit_code = host_fail(host, PHASE_CHANGE, status, &error);
+  }
+  input_close(&input);
+  hl_volume_release(volume);
+  return exit_code;
+}
+
+static int load_mesh(cli_host *host, const cli_value *values, const char *in, hl_mesh **mesh) {
+  hl_error error = {0};
+  for (int row = CONVERT_CROP; row < CONVERT_BACKGROUND; row++)
+    if (values[row].given && row != CONVERT_OUTPUT)
+      return fail(EXIT_CODE_USAGE, "--%s is for volumes, and IN is a mesh, '%s'", convert_options[row].name,
+                  in);
+  hl_status status = hl_mesh_load(host->context, in, mesh, &error);
+  return status == HL_OK ? EXIT_CODE_OK : host_fail(host, PHASE_READ, status, &error);
+}
+
+/* Writes a mesh: IN itself, or the surface of the volume IN. */
+static int convert_mesh(cli_host *host, const cli_value *values, const char *in, const char *out) {
+  double started = clock_seconds();
+  hl_mesh *mesh = NULL;
+  hl_error error = {0};
+  int exit_code = hl_mesh_reads_name(host->context, in) ? load_mesh(host, values, in, &mesh)
+                                                        : make_surface(host, values, in, out, &mesh);
+  if (exit_code == EXIT_CODE_OK) exit_code = read_files_protect(&host->read, out, in);
+  if (exit_code == EXIT_CODE_OK) {
+    hl_status status = hl_mesh_save(host->context, mesh, out, &error);
+    host_clear_bar(host);
+    if (status != HL_OK) exit_code = host_fail(host, PHASE_RUN, status, &error);
+    else if (!host->quiet) report(out, clock_seconds() - started);
+  }
+  hl_mesh_release(mesh);
+  return exit_code;
+}
+
 /* ---- pictures ---- */
 
 static bool is_picture_name(const char *path) { return has_extension_among(path, picture_extensions); }
@@ -198,19 +266,22 @@ static bool are_pictures(const char *in, const char *out) {
                                     : is_picture_name(out);
 }
 
-/* Refuses options that are for volumes if OUT is a picture, and options that are for pictures if it is none,
- * or if it keeps light as numbers. */
-static int check_kind_of_options(const cli_value *values, bool picture, const char *out) {
+/* Refuses options that are not for what OUT is: options of volumes if OUT is a picture or a mesh, those of
+ * meshes if it is none, and those of pictures if it is none, or if it keeps light as numbers. */
+static int check_kind_of_options(const cli_value *values, bool picture, bool mesh, const char *out) {
   const bool coded = picture && !output_is_linear(out);
   for (int row = 0; row < CONVERT_OPTION_COUNT; row++) {
-    const bool of_picture = row >= CONVERT_BACKGROUND && row <= CONVERT_TONE,
-               of_volume = row != CONVERT_OUTPUT && row < CONVERT_BACKGROUND;
+    const bool of_picture = row >= CONVERT_BACKGROUND && row <= CONVERT_TONE, of_mesh = row == CONVERT_ISO,
+               of_voxels = row<CONVERT_ISO, of_reading = row> CONVERT_OUTPUT && row < CONVERT_BACKGROUND;
     if (values[row].given && of_picture && !coded)
       return fail(EXIT_CODE_USAGE, "--%s is for a .png or .tif, and OUT is '%s'", convert_options[row].name,
                   out);
-    if (values[row].given && of_volume && picture)
-      return fail(EXIT_CODE_USAGE, "--%s is for volumes, and OUT is a picture, '%s'",
+    if (values[row].given && of_mesh && !mesh)
+      return fail(EXIT_CODE_USAGE, "--%s is for a .ply, .stl or .obj, and OUT is '%s'",
                   convert_options[row].name, out);
+    if (values[row].given && ((of_voxels && (picture || mesh)) || (of_reading && picture)))
+      return fail(EXIT_CODE_USAGE, "--%s is for volumes, and OUT is a %s, '%s'", convert_options[row].name,
+                  picture ? "picture" : "mesh", out);
   }
   return EXIT_CODE_OK;
 }
@@ -252,11 +323,15 @@ static int run_convert(const cli_value *values, char **operands) {
     return fail(EXIT_CODE_USAGE, "--output: OUT is given twice, as '%s' and as '%s'", operands[1],
                 values[CONVERT_OUTPUT].text);
   if (out == NULL) return fail(EXIT_CODE_USAGE, "convert needs IN and OUT: see 'halflight help convert'");
-  const bool picture = are_pictures(operands[0], out);
-  int exit_code = check_kind_of_options(values, picture, out);
+  const bool picture = are_pictures(operands[0], out), mesh = has_extension_among(out, mesh_extensions);
+  int exit_code = check_kind_of_options(values, picture, mesh, out);
   if (exit_code == EXIT_CODE_OK) exit_code = read_options(values, &options);
   if (exit_code == EXIT_CODE_OK)
-    exit_code = output_check(out, picture ? picture_extensions : volume_extensions, operands, 1);
+    exit_code = output_check(out,
+                             picture ? picture_extensions
+                             : mesh  ? mesh_extensions
+                                     : volume_extensions,
+                             operands, 1);
   if (exit_code != EXIT_CODE_OK) return exit_code;
   cli_host host = {0};
   cli_host_options host_options = {.quiet = values[CONVERT_QUIET].given,
@@ -267,6 +342,7 @@ static int run_convert(const cli_value *values, char **operands) {
   exit_code = host_open(&host_options, &host);
   if (exit_code == EXIT_CODE_OK)
     exit_code = picture ? convert_picture(&host, values, operands[0], out)
+                : mesh  ? convert_mesh(&host, values, operands[0], out)
                         : convert(&host, values, operands[0], out, &options);
   host_close(&host);
   return exit_code;
@@ -277,7 +353,7 @@ const cli_command convert_command = {
     .operands = "IN OUT",
     .operand_count = 1,
     .operand_most = 2,
-    .summary = "write a volume or a picture in another format",
+    .summary = "write a volume, its surface or a picture in another format",
     .description =
         "Writes the volume IN, of any format that render reads, to the file OUT: .nrrd, .nii, .nii.gz, "
         ".mha,\n"
@@ -285,7 +361,8 @@ const cli_command convert_command = {
         "type (x_256x256x128_uint8.raw).\n"
         "Values and placement are kept. A warning names everything that OUT's format cannot store.\n"
         "Where OUT is a picture, .png, .tif or .exr, IN is a picture, too; the .npy of a .png or an\n"
-        ".exr is a picture.",
+        ".exr is a picture. Where OUT is a mesh, .ply, .stl or .obj, IN is a mesh, too, or a volume\n"
+        "whose surface --iso names.",
     .options = convert_options,
     .option_count = CONVERT_OPTION_COUNT,
     .run = run_convert,

@@ -19,6 +19,8 @@ const char *const figure_extensions[] = {".png", ".exr", ".npy", ".tif", ".tiff"
 const char *const volume_extensions[] = {".nrrd",   ".nii", ".nii.gz", ".mha",    ".vti", ".mrc",
                                          ".mrc.gz", ".npy", ".raw",    ".raw.gz", NULL};
 
+const char *const mesh_extensions[] = {".ply", ".stl", ".obj", NULL};
+
 const char *base_name(const char *path) {
   const char *slash = strrchr(path, '/');
   return slash != NULL ? slash + 1 : path;

@@ -20,7 +20,8 @@ bool has_extension_among(const char *path, const char *const *extensions);
 bool output_is_linear(const char *path);
 
 /* The extensions that can be written; null after the last. */
-extern const char *const picture_extensions[], *const figure_extensions[], *const volume_extensions[];
+extern const char *const picture_extensions[], *const figure_extensions[], *const volume_extensions[],
+                                                                               *const mesh_extensions[];
 
 /* Refuses a path that ends in none of the extensions, is a folder or one of the inputs, or lies in a folder
  * that cannot be written to. Returns the exit code. */

@@ -30,6 +30,8 @@ hl_status hl_mesh_get_format(size_t index, hl_file_format *format) {
   *format = (hl_file_format){
       .struct_size = sizeof *format, .name = listed ? formats[index].name : "VTK .vtk", .reads = 1};
   hl_endings_add(format->read_endings, listed ? formats[index].ending : ".vtk");
+  format->writes = listed && hl_mesh_is_written(formats[index].ending);
+  if (format->writes) hl_endings_add(format->written_endings, formats[index].ending);
   return HL_OK;
 }
 

@@ -112,6 +112,9 @@ hl_status hl_mesh_find_insides(hl_mesh *mesh, hl_error *error);
  * meshes of several parts that enclose an inside together. The fronts must face outwards. */
 void hl_mesh_take_as_closed(hl_mesh *mesh);
 
+/* Returns whether hl_mesh_save() writes files with this ending. */
+bool hl_mesh_is_written(const char *ending);
+
 /* Describes the mesh that would be made of the parts now. The description borrows its arrays from the
  * parts. */
 hl_mesh_description hl_mesh_parts_describe(const mesh_parts *parts);
