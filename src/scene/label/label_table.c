@@ -8,6 +8,7 @@
 #include "core/file.h"
 #include "core/memory.h"
 #include "scene/function/transfer_function.h"
+#include "text/plain.h"
 #include "volume/io/text.h"
 
 enum { MOST_BYTES = 4 << 20, MOST_WORDS = 12 };
@@ -20,10 +21,12 @@ typedef struct word {
   bool is_number, is_whole, has_point;
 } word;
 
-/* The useful columns of a table with a header, as in dseg.tsv of BIDS; -1: the table does not have the
- * column. */
+/* The columns of a table with a header, as in dseg.tsv of BIDS; -1: the table does not have the column. */
+typedef enum column { COLUMN_VALUE, COLUMN_NAME, COLUMN_COLOR, COLUMN_RED, COLUMN_GREEN, COLUMN_BLUE } column;
+enum { COLUMNS = COLUMN_BLUE + 1 };
 typedef struct columns {
-  int value, name, color;
+  char separator; /* 0: the table has no header */
+  int at[COLUMNS];
 } columns;
 
 static word make_word(char *text, bool quoted) {
@@ -62,36 +65,62 @@ static int part_line(char *line, word words[MOST_WORDS]) {
   return count;
 }
 
-/* Splits a line at its tabs alone, in place. Names may have blanks, and fields may be empty. */
-static int part_at_tabs(char *line, word words[MOST_WORDS]) {
+/* Splits a line at one separator alone, in place. Names may have blanks, and fields may be empty. Separators
+ * within quotes do not count. */
+static int part_at(char separator, char *line, word words[MOST_WORDS]) {
   int count = 0;
   for (char *at = line; at != NULL && count < MOST_WORDS;) {
-    char *end = strchr(at, '\t');
-    if (end != NULL) *end = 0;
-    words[count++] = make_word(at, false);
+    at += strspn(at, " ");
+    const bool quoted = *at == '"' && strchr(at + 1, '"') != NULL;
+    char *begin = quoted ? at + 1 : at, *last = quoted ? strchr(begin, '"') : begin;
+    char *end = strchr(last, separator);
     at = end != NULL ? end + 1 : NULL;
+    if (end == NULL) end = last + strlen(last);
+    if (quoted) end = last;
+    while (!quoted && end > begin && end[-1] == ' ') end--;
+    *end = 0;
+    words[count++] = make_word(begin, quoted);
   }
   return count;
 }
 
-static bool is_word(const char *text, size_t length, const char *word) {
-  return strlen(word) == length && memcmp(text, word, length) == 0;
+/* The names of columns, separated by blanks. */
+static const char *const column_names[COLUMNS] = {[COLUMN_VALUE] = "index label value id number",
+                                                  [COLUMN_NAME] = "name",
+                                                  [COLUMN_COLOR] = "color colour hex",
+                                                  [COLUMN_RED] = "red r",
+                                                  [COLUMN_GREEN] = "green g",
+                                                  [COLUMN_BLUE] = "blue b"};
+
+/* Returns whether a text is one of several names. */
+static bool is_among(const char *names, const char *text, size_t length) {
+  for (const char *at = names; length > 0; at++) {
+    const size_t wide = strcspn(at, " ");
+    if (wide == length && hl_plain_equal_bytes(at, text, length)) return true;
+    at += wide;
+    if (*at == 0) break;
+  }
+  return false;
 }
 
-/* Returns whether a line is the header of a table with tabs, whose columns may be in any order. */
+/* Returns whether a line is the header of a table, whose columns may be in any order. */
 static bool read_header(const char *line, columns *found) {
-  *found = (columns){-1, -1, -1};
-  if (strchr(line, '\t') == NULL) return false;
-  int column = 0;
-  for (const char *at = line; column < MOST_WORDS; column++) {
-    const size_t length = strcspn(at, "\t");
-    if (is_word(at, length, "index")) found->value = column;
-    else if (is_word(at, length, "name")) found->name = column;
-    else if (is_word(at, length, "color")) found->color = column;
-    if (at[length] == 0) break;
-    at += length + 1;
+  const char *first = strpbrk(line, "\t,;");
+  *found = (columns){.separator = first != NULL ? *first : 0};
+  for (int c = 0; c < COLUMNS; c++) found->at[c] = -1;
+  for (int n = 0; n < MOST_WORDS && found->separator != 0; n++) {
+    line += strspn(line, " \"");
+    const char separators[] = {found->separator, 0};
+    const size_t field = strcspn(line, separators);
+    size_t length = field;
+    while (length > 0 && strchr(" \"", line[length - 1]) != NULL) length--;
+    for (int c = 0; c < COLUMNS; c++)
+      if (found->at[c] < 0 && is_among(column_names[c], line, length)) found->at[c] = n;
+    if (line[field] == 0) break;
+    line += field + 1;
   }
-  return found->value >= 0 && found->name >= 0;
+  if (found->at[COLUMN_VALUE] < 0 || found->at[COLUMN_NAME] < 0) found->separator = 0;
+  return found->separator != 0;
 }
 
 /* Reads a colour that begins at a word: three numbers. */
@@ -103,6 +132,15 @@ static bool read_color(const word *words, double color[3]) {
     point |= words[c].has_point;
   }
   for (int c = 0; c < 3; c++) color[c] = hl_srgb_decode(words[c].number / (fractions && point ? 1 : 255));
+  return true;
+}
+
+/* Reads a colour that is written as "#rrggbb". */
+static bool read_web_color(const char *text, double color[3]) {
+  char *end;
+  if (text[0] != '#' || strspn(text + 1, "0123456789abcdefABCDEF") != 6 || text[7] != 0) return false;
+  const unsigned long rgb = strtoul(text + 1, &end, 16);
+  for (int c = 0; c < 3; c++) color[c] = hl_srgb_decode((double)(rgb >> (16 - 8 * c) & 255) / 255);
   return true;
 }
 
@@ -120,29 +158,41 @@ static bool read_label(const word *words, int count, hl_label *label) {
   }
   if (count >= 2 && count < 5 && !words[1].is_number) {
     label->name = words[1].text;
-    hl_label_distinct_color(label->value, label->color);
+    if (count < 3 || !read_web_color(words[2].text, label->color))
+      hl_label_distinct_color(label->value, label->color);
     return true;
   }
   return false;
 }
 
-/* Reads a colour that is written as "#rrggbb". */
-static bool read_web_color(const char *text, double color[3]) {
-  char *end;
-  if (text[0] != '#' || strspn(text + 1, "0123456789abcdefABCDEF") != 6 || text[7] != 0) return false;
-  const unsigned long rgb = strtoul(text + 1, &end, 16);
-  for (int c = 0; c < 3; c++) color[c] = hl_srgb_decode((double)(rgb >> (16 - 8 * c) & 255) / 255);
-  return true;
+/* Reads the colour that a line of a table with columns gives. *given: false if it gives none, as "n/a" or an
+ * empty field. Returns false if the field is no colour. */
+static bool read_cells(const word *words, int count, const columns *table, bool *given, double color[3]) {
+  const int at = table->at[COLUMN_COLOR];
+  const int rgb[3] = {table->at[COLUMN_RED], table->at[COLUMN_GREEN], table->at[COLUMN_BLUE]};
+  *given = false;
+  if (at >= 0 && at < count && words[at].text[0] != 0 && strcmp(words[at].text, "n/a") != 0)
+    return *given = read_web_color(words[at].text, color);
+  if (rgb[0] < 0 || rgb[1] < 0 || rgb[2] < 0) return true;
+  word parts[3] = {0};
+  for (int c = 0; c < 3; c++) {
+    if (rgb[c] >= count || words[rgb[c]].text[0] == 0) return true;
+    parts[c] = words[rgb[c]];
+  }
+  return *given = read_color(parts, color);
 }
 
-/* Reads a label from one line by the columns of a table. A label without a colour ("n/a") gets a colour made
- * from its number. */
-static bool read_row(const word *words, int count, const columns *at, hl_label *label) {
-  if (at->name >= count) return false;
-  *label = (hl_label){
-      .value = words[at->value].whole, .name = words[at->name].text, .opacity = 1, .visible = 1};
-  if (at->color < 0 || at->color >= count || !read_web_color(words[at->color].text, label->color))
-    hl_label_distinct_color(label->value, label->color);
+/* Reads a label from one line by the columns of a table. A label without a colour gets a colour made from its
+ * number. */
+static bool read_row(const word *words, int count, const columns *table, hl_label *label) {
+  bool given;
+  if (table->at[COLUMN_NAME] >= count) return false;
+  *label = (hl_label){.value = words[table->at[COLUMN_VALUE]].whole,
+                      .name = words[table->at[COLUMN_NAME]].text,
+                      .opacity = 1,
+                      .visible = 1};
+  if (!read_cells(words, count, table, &given, label->color)) return false;
+  if (!given) hl_label_distinct_color(label->value, label->color);
   return true;
 }
 
@@ -165,11 +215,11 @@ static hl_status fail_line(const char *name, size_t line, const char *what, hl_e
 static hl_status add_line(const char *name, size_t number, char *line, columns *table, hl_label_list *list,
                           hl_error *error) {
   word words[MOST_WORDS];
-  if (table->value < 0 && list->count == 0 && read_header(line, table)) return HL_OK;
-  const bool has_columns = table->value >= 0;
-  const int count = has_columns ? part_at_tabs(line, words) : part_line(line, words);
+  if (table->separator == 0 && list->count == 0 && read_header(line, table)) return HL_OK;
+  const bool has_columns = table->separator != 0;
+  const int count = has_columns ? part_at(table->separator, line, words) : part_line(line, words);
   if (count == 0 || words[0].text[0] == '#' || (count == 1 && words[0].text[0] == 0)) return HL_OK;
-  const int value = has_columns ? table->value : 0;
+  const int value = has_columns ? table->at[COLUMN_VALUE] : 0;
   if (value >= count || !words[value].is_number)
     return list->count == 0 && !has_columns ? HL_OK : fail_line(name, number, "begins with no number", error);
   if (!words[value].is_whole) return fail_line(name, number, "its number is no label's", error);
@@ -217,7 +267,7 @@ hl_status hl_label_table_parse(hl_context *context, const char *text, size_t len
   list->names[length] = 0;
   hl_status status = HL_OK;
   size_t number = 1;
-  columns table = {-1, -1, -1};
+  columns table = {0};
   for (char *line = skip_mark(list->names); line != NULL && status == HL_OK; number++) {
     char *next = end_line(line);
     status = add_line(name, number, line, &table, list, error);
