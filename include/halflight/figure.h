@@ -33,7 +33,9 @@ typedef enum hl_corner {
   HL_CORNER_UPPER_LEFT = 1,
   HL_CORNER_UPPER_RIGHT = 2,
   HL_CORNER_LOWER_LEFT = 3,
-  HL_CORNER_LOWER_RIGHT = 4
+  HL_CORNER_LOWER_RIGHT = 4,
+  HL_CORNER_BELOW = 5 /* for a legend alone: below all pictures, in a strip that hl_figure_add_strip() makes.
+                       * Several panels that ask for it share the legend of the first of them */
 } hl_corner;
 
 /* A text over a picture. */
@@ -128,6 +130,10 @@ HL_API void hl_figure_defaults(hl_figure *figure);
  * panel must have their defaults. */
 HL_API void hl_figure_of_picture(const hl_image *image, const hl_scene *scene, double width,
                                  hl_figure *figure, hl_figure_panel *panel);
+
+/* Makes the page higher by the strip that a legend below the pictures needs. The strip begins at the lower
+ * edge of the lowest panel. Does nothing if no panel asks for HL_CORNER_BELOW. */
+HL_API HL_WARN_UNUSED hl_status hl_figure_add_strip(hl_context *context, hl_figure *figure, hl_error *error);
 
 /* Checks whether everything in a figure can be drawn, before its pictures are made. For this, the page is
  * drawn with an eighth of its pixels along each side, and without the panels' images. Errors: as for

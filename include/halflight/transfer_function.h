@@ -136,6 +136,9 @@ typedef enum hl_range_scale {
   HL_RANGE_LINEAR = 0,
   HL_RANGE_LOG = 1 /* they are spread evenly over the logarithms of the values; the range must be above 0 */
 } hl_range_scale;
+/* The scale by which the colours of a function were spread. It is HL_RANGE_LOG if they have a point at each
+ * of the equal ratios into which this scale divides their range. */
+HL_API hl_range_scale hl_transfer_function_scale(const hl_transfer_function *function);
 /* Makes the function *to by moving the points of `from`: the values from old[0] to old[1] become the values
  * from range[0] to range[1]. Lengths of gradients are multiplied by the ratio of the ranges' widths. With
  * HL_RANGE_LOG, *to gets further points, so that it follows the logarithm between the moved points, too;

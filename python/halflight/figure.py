@@ -21,7 +21,7 @@ _FORMATS = ("pdf", "svg", "png", "tif")
 _AXES = {"arrows": "HL_AXES_ARROWS", "letters": "HL_AXES_LETTERS"}
 _PLACED = {"legend": "legend_corner", "scale_bar": "scale_bar_corner", "axes": "arrows_corner"}
 _CORNERS = {"upper left": "HL_CORNER_UPPER_LEFT", "upper right": "HL_CORNER_UPPER_RIGHT", "lower left": "HL_CORNER_LOWER_LEFT",
-            "lower right": "HL_CORNER_LOWER_RIGHT"}
+            "lower right": "HL_CORNER_LOWER_RIGHT", "below": "HL_CORNER_BELOW"}
 _MILLIMETRES = {"mm": 1.0, "cm": 10.0, "in": 25.4, "pt": 25.4 / 72}
 
 
@@ -131,6 +131,7 @@ class Figure:
                 made.background[0:3] = linear_color("background", self._background)
         kept.append(ffi.new("char[]", self._font.encode()))
         made.font, made.font_points = kept[-1], self._font_size
+        call(lib.hl_figure_add_strip, context, made)
         return made
 
     def _options(self, made: Any) -> Any:

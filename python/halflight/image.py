@@ -315,7 +315,8 @@ class Image(NDArrayOperatorsMixin):
             The panel's letter, which is drawn at the upper left.
         places : mapping, optional
             Corners for "legend", "scale_bar" and "axes" (arrows), such as ``{"legend": "upper left"}``. Each of them that
-            has no corner here lies where it covers the least.
+            has no corner here lies where it covers the least. ``{"legend": "below"}`` adds a strip with the legend below
+            the picture, or below all pictures of a page.
         width : float or str, optional
             The width of the picture on paper: millimetres, or a text such as "89mm", "3.5in".
         dpi : float, optional

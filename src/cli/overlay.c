@@ -36,9 +36,10 @@ void overlay_hold(cli_overlay *overlay) {
   hold(&overlay->overlay.arrows_corner, HL_CORNER_LOWER_RIGHT);
 }
 
-/* Describes the page that the picture fills. */
-static void make_figure(const cli_overlay *overlay, const hl_image *image, const hl_scene *scene,
-                        hl_figure *figure, hl_figure_panel *panel) {
+/* Describes the page that the picture fills, with the strip of a legend below it. */
+static hl_status make_figure(hl_context *context, const cli_overlay *overlay, const hl_image *image,
+                             const hl_scene *scene, hl_figure *figure, hl_figure_panel *panel,
+                             hl_error *error) {
   double width = overlay->width;
   if (width == 0 && overlay->pixels_per_inch > 0)
     width = hl_image_width(image) * MILLIMETRES_PER_INCH / overlay->pixels_per_inch;
@@ -48,6 +49,7 @@ static void make_figure(const cli_overlay *overlay, const hl_image *image, const
   hl_figure_of_picture(image, scene, width, figure, panel);
   if (overlay->font_points > 0) figure->font_points = overlay->font_points;
   panel->overlay = overlay->overlay;
+  return hl_figure_add_strip(context, figure, error);
 }
 
 hl_status overlay_check_scene(hl_context *context, const cli_overlay *overlay, const hl_scene *scene,
@@ -58,24 +60,24 @@ hl_status overlay_check_scene(hl_context *context, const cli_overlay *overlay, c
   hl_image *trial = NULL;
   if (!overlay->drawn) return HL_OK;
   hl_status status = hl_image_create(context, description->width, description->height, &trial, error);
-  if (status == HL_OK) {
-    make_figure(overlay, trial, scene, &figure, &panel);
-    status = hl_figure_check(context, &figure, error);
-  }
+  if (status == HL_OK) status = make_figure(context, overlay, trial, scene, &figure, &panel, error);
+  if (status == HL_OK) status = hl_figure_check(context, &figure, error);
   hl_image_destroy(trial);
   return status;
 }
 
 /* Begins to write a picture's file: describes its page, and sets the physical size that a file of pixels
- * states. Returns false if the picture is written as it is, without a figure. */
-static bool begin(const cli_overlay *overlay, const hl_image *image, const hl_scene *scene, bool vectors,
-                  hl_image_write_options *options, hl_figure *figure, hl_figure_panel *panel) {
-  if (overlay == NULL) return false;
-  make_figure(overlay, image, scene, figure, panel);
+ * states. *draws: false if the picture is written as it is, without a figure. */
+static hl_status begin(hl_context *context, const cli_overlay *overlay, const hl_image *image,
+                       const hl_scene *scene, bool vectors, hl_image_write_options *options, bool *draws,
+                       hl_figure *figure, hl_figure_panel *panel, hl_error *error) {
+  *draws = overlay != NULL && (overlay->drawn || vectors);
+  if (overlay == NULL) return HL_OK;
+  hl_status status = make_figure(context, overlay, image, scene, figure, panel, error);
   figure->background_transparent = options->background_transparent;
   if (overlay->pixels_per_inch > 0) options->pixels_per_inch = overlay->pixels_per_inch;
   else options->pixels_per_inch = overlay->width > 0 ? figure->pixels_per_inch : 0;
-  return overlay->drawn || vectors;
+  return status;
 }
 
 hl_status overlay_write(hl_context *context, const cli_overlay *overlay, const hl_image *image,
@@ -83,9 +85,12 @@ hl_status overlay_write(hl_context *context, const cli_overlay *overlay, const h
                         hl_error *error) {
   hl_figure figure;
   hl_figure_panel panel;
-  if (begin(overlay, image, scene, is_vectors(path), options, &figure, &panel))
-    return hl_figure_write(context, &figure, path, options, error);
-  return hl_image_write(context, image, path, options, error);
+  bool draws;
+  hl_status status = begin(context, overlay, image, scene, is_vectors(path), options, &draws, &figure, &panel,
+                           error);
+  if (status != HL_OK) return status;
+  return draws ? hl_figure_write(context, &figure, path, options, error)
+               : hl_image_write(context, image, path, options, error);
 }
 
 hl_status overlay_encode(hl_context *context, const cli_overlay *overlay, const hl_image *image,
@@ -93,8 +98,9 @@ hl_status overlay_encode(hl_context *context, const cli_overlay *overlay, const 
                          unsigned char **bytes, size_t *length, hl_error *error) {
   hl_figure figure;
   hl_figure_panel panel;
-  bool vectors = strcmp(format, "pdf") == 0 || strcmp(format, "svg") == 0;
-  if (begin(overlay, image, scene, vectors, options, &figure, &panel))
-    return hl_figure_encode(context, &figure, format, options, bytes, length, error);
-  return hl_image_encode(context, image, format, options, bytes, length, error);
+  bool draws, vectors = strcmp(format, "pdf") == 0 || strcmp(format, "svg") == 0;
+  hl_status status = begin(context, overlay, image, scene, vectors, options, &draws, &figure, &panel, error);
+  if (status != HL_OK) return status;
+  return draws ? hl_figure_encode(context, &figure, format, options, bytes, length, error)
+               : hl_image_encode(context, image, format, options, bytes, length, error);
 }

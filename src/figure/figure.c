@@ -64,7 +64,7 @@ static hl_status check_panel(const hl_figure_panel *panel, size_t index, hl_erro
   const hl_overlay *overlay = &panel->overlay;
   const hl_corner corners[] = {overlay->scale_bar_corner, overlay->legend_corner, overlay->arrows_corner};
   for (int n = 0; n < 3; n++)
-    if ((unsigned)corners[n] > HL_CORNER_LOWER_RIGHT)
+    if ((unsigned)corners[n] > HL_CORNER_LOWER_RIGHT && (n != 1 || corners[n] != HL_CORNER_BELOW))
       return hl_fail(error, HL_ERROR_ARGUMENT, "panel %zu: %d is no hl_corner", index + 1, (int)corners[n]);
   bool of_scene = overlay->scale_bar || overlay->legend || overlay->marks || overlay->axes != HL_AXES_NONE;
   for (size_t a = 0; a < overlay->annotation_count; a++) of_scene |= overlay->annotations[a].in_world != 0;
@@ -96,6 +96,32 @@ static hl_status check(const hl_figure *figure, hl_error *error) {
     hl_status status = check_panel(&figure->panels[p], p, error);
     if (status != HL_OK) return status;
   }
+  return HL_OK;
+}
+
+const hl_figure_panel *hl_panel_of_strip(const hl_figure *figure) {
+  for (size_t p = 0; p < figure->panel_count; p++) {
+    const hl_figure_panel *panel = &figure->panels[p];
+    if (panel->overlay.legend && panel->overlay.legend_corner == HL_CORNER_BELOW) return panel;
+  }
+  return NULL;
+}
+
+hl_status hl_figure_add_strip(hl_context *context, hl_figure *figure, hl_error *error) {
+  HL_DOOR;
+  if (context == NULL || figure == NULL)
+    return hl_fail(error, HL_ERROR_ARGUMENT, "hl_figure_add_strip: context and figure must not be null");
+  const hl_figure_panel *panel = hl_panel_of_strip(figure);
+  if (panel == NULL) return HL_OK;
+  hl_status status = check(figure, error);
+  if (status != HL_OK) return status;
+  double bottom = 0, height;
+  for (size_t p = 0; p < figure->panel_count; p++)
+    bottom = fmax(bottom, figure->panels[p].top + figure->panels[p].height);
+  status = hl_page_measure_strip(figure, panel, &height, error);
+  if (status != HL_OK) return status;
+  const double pixel = MILLIMETRES_PER_INCH / figure->pixels_per_inch; /* pictures keep whole pixels */
+  figure->height = fmax(figure->height, ceil((bottom + height) / pixel - 1e-6) * pixel);
   return HL_OK;
 }
 

@@ -194,6 +194,13 @@ static double height_at(const hl_ink *ink, const hl_overlay_place *place, hl_rec
 static const double widths[] = {1e3, 12, 9, 7}, strips[] = {9, 5.5};
 enum { WIDTHS = sizeof widths / sizeof *widths, STRIPS = sizeof strips / sizeof *strips };
 
+/* The n-th shape of a legend of a height. */
+static hl_legend_shape shape_of(double height, int n, const hl_ink *ink) {
+  return (hl_legend_shape){.height = height,
+                           .width = widths[n % WIDTHS] * ink->size,
+                           .strip_height = strips[n / WIDTHS] * ink->size};
+}
+
 /* Finds the best of the shapes of the legend, all of one height, and its place: the shape that leaves out
  * the least rows, then the one that covers the least, then the first one. whole: the legend with all the
  * height of the picture. */
@@ -207,7 +214,7 @@ static hl_status shape_legend(const hl_ink *ink, hl_overlay_place *place, const 
   for (int n = 0; n < WIDTHS * STRIPS && status == HL_OK; n++) {
     hl_rectangle box;
     if (n % WIDTHS > 0 && left_out_first > 0) continue; /* narrower rows leave out no less */
-    place->legend = (hl_legend_shape){height, widths[n % WIDTHS] * ink->size, strips[n / WIDTHS] * ink->size};
+    place->legend = shape_of(height, n, ink);
     status = find_box(ink, place, part->draw, &box, error);
     if (status != HL_OK) break;
     if (n % WIDTHS == 0) left_out_first = left_out;
@@ -233,8 +240,7 @@ static hl_status place_legend(const hl_ink *ink, hl_overlay_place *place, const 
   hl_rectangle whole;
   size_t left_out = 0;
   place->rows_left_out = &left_out;
-  place->legend = (hl_legend_shape){place->picture.height - 2 * place->margin, widths[0] * ink->size,
-                                    strips[0] * ink->size};
+  place->legend = shape_of(place->picture.height - 2 * place->margin, 0, ink);
   hl_status status = find_box(ink, place, part->draw, &whole, error);
   place->rows_left_out = NULL;
   if (status != HL_OK) return status;
@@ -386,7 +392,7 @@ static hl_status place_and_draw(const hl_ink *ink, hl_overlay_place *place, cons
                                .asked = overlay->scale_bar_corner},
                               {.name = "legend",
                                .draw = hl_overlay_legend,
-                               .wanted = overlay->legend,
+                               .wanted = overlay->legend && overlay->legend_corner != HL_CORNER_BELOW,
                                .usual = HL_CORNER_UPPER_RIGHT,
                                .asked = overlay->legend_corner}};
   hl_ink trial = begin_trial(ink);
@@ -420,4 +426,31 @@ hl_status hl_overlay_draw(const hl_ink *ink, const hl_overlay *overlay, const hl
   hl_cover_release(&cover);
   hl_release(ground->context, lines);
   return status;
+}
+
+/* ---- a strip of the page ---- */
+
+/* The rows of a legend in columns are at most this wide, where their words allow it, and its strips of
+ * colours this high; in units of the letters' size. */
+static const double column_width = 16, column_strip = 5;
+
+hl_status hl_overlay_strip(const hl_ink *ink, const hl_overlay *overlay, const hl_scene *scene,
+                           hl_rectangle strip, bool draws, double *height, hl_error *error) {
+  const double size = ink->size, line = 0.7 * size;
+  hl_overlay_place place = {
+      .overlay = overlay,
+      .scene = hl_scene_describe(scene),
+      .picture = strip,
+      .margin = size,
+      .legend = {.width = column_width * size, .strip_height = column_strip * size, .in_columns = true}};
+  hl_rectangle box = {0};
+  hl_status status;
+  do { /* higher columns are fewer, until one of them holds all: its highest part leaves at most so much over
+        */
+    place.legend.height += line;
+    status = find_box(ink, &place, hl_overlay_legend, &box, error);
+  } while (status == HL_OK && box.left + box.width > strip.left + strip.width - place.margin &&
+           place.legend.height < box.height + 2 * place.legend.strip_height);
+  *height = box.height + 2 * place.margin;
+  return status == HL_OK && draws ? hl_overlay_legend(ink, &place, error) : status;
 }

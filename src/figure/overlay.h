@@ -18,6 +18,8 @@ typedef struct hl_overlay_place {
     double height;       /* the greatest height of the legend, points */
     double width;        /* the greatest width of its titles and rows, points, if their words allow it */
     double strip_height; /* the greatest height of a strip of colours, points */
+    bool in_columns; /* whether the legend fills columns from the picture's left, each of the legend's height
+                      */
   } legend;
   size_t *rows_left_out; /* takes the number of rows that the legend has no room for; may be null */
 } hl_overlay_place;
@@ -40,6 +42,11 @@ typedef struct hl_overlay_ground {
 /* Draws the whole overlay over a picture. */
 hl_status hl_overlay_draw(const hl_ink *ink, const hl_overlay *overlay, const hl_overlay_ground *ground,
                           hl_error *error);
+
+/* Finds the least height of a strip of the page, as wide as `strip`, that holds an overlay's legend in
+ * columns, and draws the legend there if `draws` is set. *height: points. */
+hl_status hl_overlay_strip(const hl_ink *ink, const hl_overlay *overlay, const hl_scene *scene,
+                           hl_rectangle strip, bool draws, double *height, hl_error *error);
 
 /* Places a text beside a point on the page: to the right of it (the usual place), to the left, below or
  * above. The first place that keeps clear of what is taken is chosen, or else the usual one. apart: the

@@ -192,6 +192,36 @@ static hl_status draw_overlay(hl_context *context, const hl_figure *figure, size
   return hl_overlay_draw(ink, &panel->overlay, &ground, error);
 }
 
+/* The strip of the page below all panels. */
+static hl_rectangle strip_of(const hl_figure *figure) {
+  double top = 0;
+  for (size_t p = 0; p < figure->panel_count; p++) {
+    const hl_rectangle panel = rectangle_of(&figure->panels[p]);
+    top = fmax(top, panel.top + panel.height);
+  }
+  return (hl_rectangle){0, top, figure->width * points_per_millimetre,
+                        figure->height * points_per_millimetre - top};
+}
+
+hl_status hl_page_measure_strip(const hl_figure *figure, const hl_figure_panel *panel, double *height,
+                                hl_error *error) {
+  const hl_ink ink = {.size = figure->font_points, .font = figure->font};
+  hl_status status = hl_overlay_strip(&ink, &panel->overlay, panel->scene, strip_of(figure), false, height,
+                                      error);
+  *height /= points_per_millimetre;
+  return status;
+}
+
+/* Draws the legend that lies below all panels, if there is one. */
+static hl_status draw_strip(const hl_figure *figure, cairo_t *cairo, hl_error *error) {
+  static const hl_figure_panel paper = {0};
+  const hl_figure_panel *panel = hl_panel_of_strip(figure);
+  const hl_ink ink = ink_for(cairo, figure, &paper);
+  double height;
+  if (panel == NULL) return HL_OK;
+  return hl_overlay_strip(&ink, &panel->overlay, panel->scene, strip_of(figure), true, &height, error);
+}
+
 static hl_status draw_panels(hl_context *context, const hl_figure *figure, cairo_t *cairo, bool pixels,
                              bool is_told, hl_error *error) {
   if (!figure->background_transparent) {
@@ -206,6 +236,7 @@ static hl_status draw_panels(hl_context *context, const hl_figure *figure, cairo
     if (panel->frame) draw_frame(&ink, rectangle_of(panel));
     if (status == HL_OK) status = draw_overlay(context, figure, p, &ink, is_told, error);
   }
+  if (status == HL_OK) status = draw_strip(figure, cairo, error);
   if (status == HL_OK && cairo_status(cairo) != CAIRO_STATUS_SUCCESS)
     status = hl_fail(error, HL_ERROR_INTERNAL, "figure: cairo says: %s",
                      cairo_status_to_string(cairo_status(cairo)));

@@ -18,4 +18,10 @@ hl_status hl_page_write(const hl_figure *figure, bool pdf, hl_output *output, hl
   return refuse(error);
 }
 
+hl_status hl_page_measure_strip(const hl_figure *figure, const hl_figure_panel *panel, double *height,
+                                hl_error *error) {
+  (void)figure, (void)panel, (void)height;
+  return refuse(error);
+}
+
 const char *hl_page_missing(void) { return "cairo and pango"; }

@@ -240,6 +240,67 @@ def legends():
         check(max(abs(found - color(value, True))) < 0.02, f"at {value}: {found}, not {color(value, True)}")
 
 
+def gradient_of(svg):
+    """(offset, colour) of the stops of an SVG's only gradient."""
+    gradient, = XML.parse(svg).getroot().iter("{http://www.w3.org/2000/svg}linearGradient")
+    return [(float(stop.get("offset")), [float(n) / 100 for n in re.findall(r"([\d.]+)%", stop.get("style") or stop.get("stop-color"))])
+            for stop in gradient.iter("{http://www.w3.org/2000/svg}stop")]
+
+
+def logarithmic_strips():
+    """Over equal ratios of values, a strip has the colours that an even strip has over equal differences; its numbers are powers of ten."""
+    nifti("decades.nii", np.geomspace(1e-6, 1e2, 64**3).reshape(64, 64, 64).astype(np.float32), 1.0)
+    look = ["decades.nii", "--look", "mip", "--colormap", "viridis", "--size", "300x300", "--quiet", "--legend", "auto"]
+    halflight(*look, "--range", "1,10", "-o", "even.svg")
+    even = gradient_of("even.svg")
+    for low, high, wanted in (1e-5, 1e1, ["10\u207b4", "10\u207b2", "100"]), (2.0, 9.0, ["2", "4", "6", "8"]):
+        ranged = [*look, "--range", f"{low},{high}", "--range-scale", "log"]
+        halflight(*ranged, "-o", "log.svg")
+        found = gradient_of("log.svg")
+        far = max(abs(np.interp(offset, [o for o, _ in even], [c[n] for _, c in even]) - color[n]) for offset, color in found for n in range(3))
+        check(far < 0.01, f"{low} to {high}: the colours differ by {far}")
+        halflight(*ranged, "-o", "log.pdf")
+        halflight(*ranged, "-o", "kept.png")
+        halflight("kept.png", "--quiet", "--legend", "auto", "-o", "kept.pdf")
+        seen, kept = (words(name).translate(str.maketrans("\u2070\u00b9\u00b2\u00b3\u2074\u2075", "012345")).split() for name in ("log.pdf", "kept.pdf"))
+        check(all(number in seen for number in wanted), f"{low} to {high}: {seen}")
+        check(all(re.fullmatch("10\u207b?[0-9]", number) for number in kept), f"the scene of a picture keeps the scale: {kept}")
+
+
+def legends_below():
+    """Below all pictures a legend has all rows once, in columns within the page, and covers nothing."""
+    labels = np.zeros((32, 32, 32), np.uint8)
+    names = [f"Region-of-interest-{n}" for n in range(1, 15)]
+    for n in range(14):
+        labels[4:28, 4:28, 2 + 2 * n:4 + 2 * n] = n + 1
+    nifti("labels.nii", labels, 1.0)
+    Path("table.csv").write_text("".join(f"{n + 1},{name},{18 * n},80,200\n" for n, name in enumerate(names)))
+    look = ["labels.nii", "--label-table", "table.csv", "--background", "white", "--quiet"]
+    legend = ["--legend", "auto"]
+    for sheet in ["--views", "left,right", "--width", "89mm"], ["--size", "300x300"]:
+        below = [] if "--views" in sheet else ["--place", "legend=below"]
+        halflight(*look, *sheet, *legend, *below, "-o", "below.pdf")
+        check(sorted(word for word in words("below.pdf").split() if word.startswith("Region")) == sorted(names), words("below.pdf"))
+        page = [float(n) for n in re.search(r"Page size:\s+(\S+) x (\S+)", tool("pdfinfo", "below.pdf")).groups()]
+        boxes = re.findall(r'xMin="([\d.]+)" yMin="([\d.]+)" xMax="([\d.]+)" yMax="([\d.]+)">Region', tool("pdftotext", "-bbox", "below.pdf", "-"))
+        rights, bottoms = ([float(box[n]) for box in boxes] for n in (2, 3))
+        check(max(rights) < page[0] and max(bottoms) < page[1] and len({box[0] for box in boxes}) > 1, f"{boxes} on {page}")
+        halflight(*look, *sheet, *legend, *below, "-o", "below.png")
+        halflight(*look, *sheet, "-o", "plain.png")
+        plain, drawn = (np.asarray(Image.open(name).convert("RGB")) for name in ("plain.png", "below.png"))
+        check(drawn.shape[1] == plain.shape[1] and drawn.shape[0] > plain.shape[0] and np.array_equal(drawn[:len(plain)], plain), "the pictures stay")
+        check((drawn[len(plain):] < 100).any(), "the strip has the legend")
+    Path("page.json").write_text(json.dumps({"width": "89mm", "options": {"label-table": "table.csv", "legend": "auto", "place": "legend=below"},
+                                             "panels": [{"input": "labels.nii"}, {"input": "labels.nii", "view": "left"}]}))
+    done = subprocess.run([program, "figure", "page.json", "-o", "page.pdf"], capture_output=True, text=True)
+    check(done.returncode == 0 and words("page.pdf").count("Region") == 14, f"{done.stderr}: {words('page.pdf')}")
+    high = float(re.search(r"x ([\d.]+) mm", done.stderr).group(1))
+    size = re.search(r"Page size:\s+\S+ x (\S+)", tool("pdfinfo", "page.pdf")).group(1)
+    check(abs(float(size) / 72 * 25.4 - high) < 0.1, f"{size} points, and {high} mm are told")
+    said = halflight(*look, "--scale-bar", "auto", "--ortho", "--place", "scale-bar=below", "-o", "no.png", exit_code=2)
+    check("no PART=CORNER" in said, said)
+
+
 def label_legends():
     labels = np.zeros((32, 32, 32), np.uint8)
     labels[4:14, 4:28, 4:28], labels[18:28, 4:28, 4:28] = 3, 7
@@ -589,7 +650,7 @@ def linear_files_are_refused():
 with tempfile.TemporaryDirectory() as folder:
     import os
     os.chdir(folder)
-    for test in (bars, chosen_lengths, perspective, units_are_not_invented, physical_sizes, hostile_texts, legends, label_legends, letters,
+    for test in (bars, chosen_lengths, perspective, units_are_not_invented, physical_sizes, hostile_texts, legends, logarithmic_strips, legends_below, label_legends, letters,
                  points_of_the_world, lengths_of_marks, places_of_marks, pages, plain_pictures, letters_stay_in_place, grounds_behind_parts,
                  parts_cover_the_least, titles_of_legends, without_room, linear_files_are_refused):
         before = checks

@@ -271,7 +271,9 @@ static int make_scenes(figure_job *job) {
 
 /* ---- the page ---- */
 
-static int make_figure(figure_job *job, double height, hl_figure *figure, hl_figure_panel *panels) {
+/* height: the height of the panels together. *figure: the page, with the strip of a legend below them. */
+static hl_status make_figure(figure_job *job, double height, hl_figure *figure, hl_figure_panel *panels,
+                             hl_error *error) {
   const figure_page *page = &job->page;
   hl_figure_defaults(figure);
   figure->width = page->width;
@@ -294,14 +296,14 @@ static int make_figure(figure_job *job, double height, hl_figure *figure, hl_fig
                                   .overlay = from->overlay.overlay};
     panels[p].overlay.letter = from->letter;
   }
-  return page->count;
+  return hl_figure_add_strip(job->host.context, figure, error);
 }
 
 static hl_status try_out(figure_job *job, double height, hl_error *error) {
   hl_figure figure;
   hl_figure_panel panels[FIGURE_MOST_PANELS];
-  make_figure(job, height, &figure, panels);
-  return hl_figure_check(job->host.context, &figure, error);
+  hl_status status = make_figure(job, height, &figure, panels, error);
+  return status == HL_OK ? hl_figure_check(job->host.context, &figure, error) : status;
 }
 
 static hl_status render_panel(figure_job *job, figure_panel *panel, hl_renderer *renderer, hl_error *error) {
@@ -351,8 +353,9 @@ static int make_and_write(figure_job *job) {
   if (status == HL_OK) {
     hl_figure figure;
     hl_figure_panel panels[FIGURE_MOST_PANELS];
-    make_figure(job, height, &figure, panels);
-    status = hl_figure_write(job->host.context, &figure, job->output, NULL, &error);
+    status = make_figure(job, height, &figure, panels, &error);
+    height = figure.height;
+    if (status == HL_OK) status = hl_figure_write(job->host.context, &figure, job->output, NULL, &error);
   }
   if (status != HL_OK) return host_fail(&job->host, PHASE_RUN, status, &error);
   if (!job->host.quiet)

@@ -125,12 +125,15 @@ const cli_option render_options[RENDER_OPTION_COUNT] = {
                          .help = "a text at fractions of the picture from its upper\nleft, or beside a point "
                                  "X,Y,Z of the world; give the\noption again for more texts",
                          .repeatable = true},
-    [RENDER_PLACE] = {.name = "place",
-                      .kind = OPTION_TEXT,
-                      .argument = "PART=CORNER",
-                      .help = "a corner for the legend, the scale-bar or the axes, as\nlegend=upper-left "
-                              "(default: where it covers the least);\ngive the option again for more parts",
-                      .repeatable = true},
+    [RENDER_PLACE] =
+        {.name = "place",
+         .kind = OPTION_TEXT,
+         .argument = "PART=CORNER",
+         .help = "a corner for the legend, the scale-bar or the axes, as\nlegend=upper-left "
+                 "(default: where it covers the least);\nlegend=below: the legend in a strip below "
+                 "the picture, or\nbelow all pictures, as with --views; give the option again\nfor more "
+                 "parts",
+         .repeatable = true},
     [RENDER_FONT_SIZE] =
         {.name = "font-size",
          .kind = OPTION_NUMBERS,

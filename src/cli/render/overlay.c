@@ -92,7 +92,7 @@ static int read_place(const char *text, const cli_value *values, hl_overlay *ove
   const placed_part parts[] = {{"legend", RENDER_LEGEND, &overlay->legend_corner},
                                {"scale-bar", RENDER_SCALE_BAR, &overlay->scale_bar_corner},
                                {"axes", RENDER_AXES, &overlay->arrows_corner}};
-  static const char *const corners[] = {"upper-left", "upper-right", "lower-left", "lower-right"};
+  static const char *const corners[] = {"upper-left", "upper-right", "lower-left", "lower-right", "below"};
   const size_t length = strcspn(text, "=");
   char corner[16] = "";
   if (text[length] == '=') snprintf(corner, sizeof corner, "%.15s", text + length + 1);
@@ -102,7 +102,7 @@ static int read_place(const char *text, const cli_value *values, hl_overlay *ove
     if (!values[parts[p].option].given || (parts[p].option == RENDER_AXES && overlay->axes != HL_AXES_ARROWS))
       return fail(EXIT_CODE_USAGE, "--place: '%s': nothing is there to place: add --%s", text,
                   parts[p].option == RENDER_AXES ? "axes arrows" : parts[p].name);
-    for (int c = 0; c < 4; c++)
+    for (int c = 0; c < (parts[p].option == RENDER_LEGEND ? 5 : 4); c++)
       if (strcmp(corner, corners[c]) == 0) {
         *parts[p].corner = (hl_corner)(HL_CORNER_UPPER_LEFT + c);
         return EXIT_CODE_OK;
@@ -110,7 +110,7 @@ static int read_place(const char *text, const cli_value *values, hl_overlay *ove
   }
   return fail(EXIT_CODE_USAGE,
               "--place: '%s' is no PART=CORNER: give legend, scale-bar or axes, and upper-left, upper-right, "
-              "lower-left or lower-right, as legend=upper-left",
+              "lower-left or lower-right, as legend=upper-left; or legend=below",
               text);
 }
 

@@ -96,6 +96,8 @@ static int check_options(views_job *job) {
   if (exit_code == EXIT_CODE_OK) exit_code = divide_width(job);
   if (exit_code == EXIT_CODE_OK) exit_code = render_check_options(job->values);
   if (exit_code == EXIT_CODE_OK) exit_code = render_overlay_read(job->values, &job->overlay);
+  hl_corner *legend = &job->overlay.overlay.legend_corner;
+  if (!job->files && job->count > 1 && *legend == HL_CORNER_FREE) *legend = HL_CORNER_BELOW; /* one for all */
   if (exit_code == EXIT_CODE_OK && job->files) exit_code = output_make_folder_of(job->output);
   int count = 0;
   while (job->inputs[count] != NULL) count++;
@@ -191,6 +193,8 @@ static hl_status write_sheet(views_job *job, hl_error *error) {
   figure.width = ((double)job->count * (wide + gap) - gap) * pixel;
   figure.height = panels[0].height;
   if (job->overlay.font_points > 0) figure.font_points = job->overlay.font_points;
+  hl_status status = hl_figure_add_strip(job->host.context, &figure, error);
+  if (status != HL_OK) return status;
   hl_image_write_options options;
   hl_image_write_options_defaults(&options);
   options.pixels_per_inch = job->overlay.pixels_per_inch > 0 || job->overlay.width > 0

@@ -122,6 +122,18 @@ static hl_status spread_rows(hl_context *context, rows *r, const double old[2], 
   return HL_OK;
 }
 
+hl_range_scale hl_transfer_function_scale(const hl_transfer_function *function) {
+  const size_t count = function != NULL ? function->color_count : 0;
+  if (count < PIECES + 1 || !(function->color[0].value > 0)) return HL_RANGE_LINEAR;
+  const double low = function->color[0].value, length = log(function->color[count - 1].value / low);
+  size_t p = 0;
+  for (int piece = 1; piece < PIECES; piece++) {
+    while (p + 1 < count && log(function->color[p].value / low) * PIECES < (piece - 1e-6) * length) p++;
+    if (log(function->color[p].value / low) * PIECES > (piece + 1e-6) * length) return HL_RANGE_LINEAR;
+  }
+  return length > 0 ? HL_RANGE_LOG : HL_RANGE_LINEAR;
+}
+
 /* Moves all points to a new range. old: the values of colours that become the range's ends; held: the values
  * of opacities that do. */
 static hl_status spread_all(hl_context *context, const hl_transfer_function *from, const double old[2],

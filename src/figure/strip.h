@@ -1,0 +1,26 @@
+/* figure/strip.h - draws the strip of a legend: a transfer function's colours over the values, with a curve
+ * of the opacity at its left and numbers at its right. */
+#ifndef HL_FIGURE_STRIP_H
+#define HL_FIGURE_STRIP_H
+
+#include "core/error.h"
+#include "figure/ink.h"
+#include "scene/function/transfer_function.h"
+
+/* The values along a strip, from its lower end to its upper end. */
+typedef struct hl_strip_scale {
+  double low, high; /* low < high; above 0 if `logarithmic` */
+  bool logarithmic; /* whether equal ways along the strip are equal ratios of values, not equal differences */
+} hl_strip_scale;
+
+/* The scale on which a function's colours are spread evenly, with these values at its ends. */
+hl_strip_scale hl_strip_scale_of(const hl_transfer_function *function, const double range[2]);
+
+/* The width of a strip with its curve and its numbers; points. height: the strip's height, points. */
+double hl_strip_width(const hl_ink *ink, const hl_strip_scale *scale, double height);
+
+/* Draws a strip. right: the right edge of the numbers. */
+void hl_strip_draw(const hl_ink *ink, const hl_transfer_function *function, const hl_strip_scale *scale,
+                   double right, double top, double height);
+
+#endif
