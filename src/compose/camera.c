@@ -6,6 +6,7 @@
 #include "compose/composer.h"
 #include "core/context.h"
 #include "core/vector.h"
+#include "guess/cut_view.h"
 #include "guess/looks.h"
 #include "scene/geometry/camera.h"
 
@@ -93,6 +94,13 @@ static hl_status tell_of_side(const hl_composer *composer, const hl_scene_descri
   return HL_OK;
 }
 
+/* Returns whether the view turns to the faces of cuts: of a bare volume whose view no option chooses. */
+static bool turns_to_cuts(const hl_composer *composer, const hl_scene_description *description) {
+  const hl_asked *asked = composer->asked;
+  return hl_cuts_bare_volume(composer, description) && !asked[HL_ASK_VIEW].given &&
+         !asked[HL_ASK_AZIMUTH].given && !asked[HL_ASK_ELEVATION].given;
+}
+
 /* Finds the view to change. It is the view that "view" and "up" ask for. Without these options it is the view
  * of the scene's camera; for a bare volume it is the automatic view. */
 static hl_status choose_view(const hl_composer *composer, const hl_scene_description *description,
@@ -113,7 +121,10 @@ static hl_status choose_view(const hl_composer *composer, const hl_scene_descrip
                    up->text);
   hl_status status = hl_blame_options(
       hl_view_choose(description, side, up->given ? vector : NULL, view, composer->error));
-  return status == HL_OK ? tell_of_side(composer, description, view) : status;
+  if (status == HL_OK) status = tell_of_side(composer, description, view);
+  if (status == HL_OK && turns_to_cuts(composer, description))
+    hl_view_turn_to_cuts(&description->volumes[0], hl_count_cuts(asked), view);
+  return status;
 }
 
 /* Sets the angles that options give. Returns false if the options do not change the view. */
@@ -163,7 +174,7 @@ hl_status hl_compose_camera(const hl_composer *composer, bool seen, hl_scene_des
   bool turned = asked[HL_ASK_AZIMUTH].given || asked[HL_ASK_ELEVATION].given || asked[HL_ASK_ROLL].given;
   bool reshaped = asked[HL_ASK_SIZE].given || asked[HL_ASK_FOVY].given || asked[HL_ASK_ORTHO].given;
   bool framed = asked[HL_ASK_ZOOM].given || asked[HL_ASK_VIEW].given || asked[HL_ASK_UP].given ||
-                (composer->bare && (reshaped || seen));
+                (composer->bare && (reshaped || seen)) || turns_to_cuts(composer, description);
   if (turned || framed) return place(composer, framed, description);
   bool taken_in = composer->bare && (composer->flags & HL_COMPOSE_MESHES) != 0;
   return taken_in ? hl_frame_anew(description, composer->error) : HL_OK;

@@ -97,6 +97,9 @@ hl_status hl_check_cut_names(const hl_composer *composer, const hl_scene_descrip
 /* The number of cuts that the options ask for. */
 size_t hl_count_cuts(const hl_asked *asked);
 
+/* Returns whether the options cut a bare volume. */
+bool hl_cuts_bare_volume(const hl_composer *composer, const hl_scene_description *description);
+
 /* Adds the options' cuts that name volume number `index` to its own cuts. alone: the scene has no other
  * volume, and cuts without a name are the volume's, too. cuts: an array with room for all; the volume borrows
  * it. */

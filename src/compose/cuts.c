@@ -128,6 +128,11 @@ size_t hl_count_cuts(const hl_asked *asked) {
   return count;
 }
 
+bool hl_cuts_bare_volume(const hl_composer *composer, const hl_scene_description *description) {
+  return composer->bare && description->volume_count == 1 &&
+         (hl_count_cuts(composer->asked) > 0 || composer->asked[HL_ASK_CLIP].given);
+}
+
 /* Places a cut. low, high: the box around the volume's voxels. metres: as hl_metres_of_volume() gives it; 0
  * in the world of a scene. If the text gives no end for a side of a cut box, the box ends beyond the voxels
  * on this side. */

@@ -60,8 +60,7 @@ static hl_status expose_anew(const hl_composer *composer, hl_scene_description *
   if (!composer->bare || description->volume_count != 1 || hl_is_maximum(composer, description) ||
       (composer->flags & HL_COMPOSE_LIGHTS) != 0)
     return HL_OK;
-  bool cut = hl_count_cuts(composer->asked) > 0 || composer->asked[HL_ASK_CLIP].given ||
-             (composer->flags & HL_COMPOSE_CUT) != 0;
+  bool cut = hl_cuts_bare_volume(composer, description) || (composer->flags & HL_COMPOSE_CUT) != 0;
   bool rigged = composer->asked[HL_ASK_LIGHT_RIG].given, glows = composer->asked[HL_ASK_SCATTERING].given;
   if (!cut && !rigged && !glows && description->volumes[0].iso_count == 0) return HL_OK;
   const char *look = hl_asked_look(composer);

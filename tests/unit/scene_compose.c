@@ -180,6 +180,23 @@ static void bare_label_maps_have_their_labels(void **state) {
   hl_scene_release(bare);
 }
 
+/* The eye stands at least 34 degrees above the face that a cut of a bare volume leaves, whichever side is cut
+ * off. An option that chooses the view keeps it. */
+static void views_turn_to_cuts(void **state) {
+  (void)state;
+  static const char *const cuts[] = {"x=0.5", "x=:0.5", "y=0.5", "y=:0.5", "z=0.5", "z=:0.5"};
+  for (int n = 0; n < 12; n++) {
+    const hl_option options[] = {{"cut-plane", cuts[n % 6]}, {"azimuth", "17"}};
+    hl_scene *made = compose(options, n < 6 ? 1 : 2, HL_COMPOSE_BARE, NULL);
+    const hl_camera *camera = &hl_scene_describe(made)->camera;
+    const vec3 to_eye = vec3_normalise(vec3_subtract(vec3_of(camera->position), vec3_of(camera->target)));
+    const double along[] = {to_eye.x, to_eye.y, to_eye.z}, seen = (n % 2 ? -1 : 1) * along[n % 6 / 2];
+    if (n < 6) assert_true(seen > sin(34 * HL_PI / 180));
+    else assert_true(fabs(atan2(to_eye.x, -to_eye.y) - 17 * HL_PI / 180) < 1e-6);
+    hl_scene_release(made);
+  }
+}
+
 static void options_are_described(void **state) {
   (void)state;
   size_t count = 0;
@@ -278,6 +295,7 @@ int main(void) {
       cmocka_unit_test(the_order_of_the_list_does_not_matter),
       cmocka_unit_test(bare_scenes_follow),
       cmocka_unit_test(errors_name_the_option),
+      cmocka_unit_test(views_turn_to_cuts),
       cmocka_unit_test(options_are_described),
       cmocka_unit_test(bare_label_maps_have_their_labels),
       cmocka_unit_test(light_rigs_expose_bare_volumes),
