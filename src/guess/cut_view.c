@@ -2,12 +2,16 @@
 #include "guess/cut_view.h"
 
 #include "core/vector.h"
+#include "guess/for_volume.h"
 #include "scene/geometry/camera.h"
 #include "scene/geometry/cut.h"
 #include "scene/geometry/placement.h"
 
 /* The elevation from which the three faces at a corner of a cube look alike. */
 static const double ISOMETRIC = 35.26438968275465;
+
+/* Faces whose normals rise by more than this in all look up. */
+static const double SOME_RISE = 0.5;
 
 /* The normals of faces, away from the matter that remains. */
 typedef struct face_normals {
@@ -52,28 +56,38 @@ static void add_cut(face_normals *faces, const cut_shape *cut) {
         add_face(faces, vec3_scale(rows->row[axis], -kept * side));
 }
 
+/* Adds the faces of the clip box that lie more than half a voxel within the grid. */
 static void add_clip(face_normals *faces, const hl_scene_volume *volume) {
   double low[3], high[3];
   hl_scene_volume_box(volume, low, high);
   for (int a = 0; a < 3; a++) {
     const vec3 along = {a == 0, a == 1, a == 2};
-    if (low[a] > faces->low[a]) add_face(faces, vec3_scale(along, -1));
-    if (high[a] < faces->high[a]) add_face(faces, along);
+    if (low[a] > faces->low[a] + 0.5) add_face(faces, vec3_scale(along, -1));
+    if (high[a] < faces->high[a] - 0.5) add_face(faces, along);
   }
 }
 
-/* The sum of the cosines at which an eye sees the faces that it sees from their front. */
-static double shown(const face_normals *faces, const hl_view *view) {
+/* The sum, over the faces that an eye sees from their front, of the cosines at which the eye and a key light
+ * see them. The light goes with the eye. */
+static double shown(const face_normals *faces, const hl_light *light, const hl_view *view) {
   vec3 right, up, forward;
   hl_view_axes(view, &right, &up, &forward);
+  const vec3 to_eye = vec3_scale(forward, -1), from_light = vec3_of(light->direction),
+             aside = vec3_add(vec3_scale(right, from_light.x), vec3_scale(up, from_light.y)),
+             to_light = vec3_scale(vec3_add(aside, vec3_scale(to_eye, from_light.z)), -1);
   double sum = 0;
-  for (int f = 0; f < faces->count; f++) sum += fmax(-vec3_dot(faces->normals[f], forward), 0);
+  for (int f = 0; f < faces->count; f++) {
+    const double seen = vec3_dot(faces->normals[f], to_eye);
+    if (seen > 0) sum += seen + fmax(vec3_dot(faces->normals[f], to_light), 0);
+  }
   return sum;
 }
 
 void hl_view_turn_to_cuts(const hl_scene_volume *volume, size_t count, hl_view *view) {
   vec3 normals[MOST_FACES];
   face_normals faces = {.normals = normals};
+  hl_light light;
+  hl_scene_key_light(&light);
   if (!affine3_invert(hl_scene_volume_index_to_world(volume), &faces.world_to_index)) return;
   hl_scene_volume whole = *volume;
   whole.clipped = 0;
@@ -83,14 +97,16 @@ void hl_view_turn_to_cuts(const hl_scene_volume *volume, size_t count, hl_view *
     const cut_shape cut = hl_cut_shape(volume, i);
     add_cut(&faces, &cut);
   }
-  const double azimuth = view->azimuth_deg, elevations[] = {view->elevation_deg, ISOMETRIC, -ISOMETRIC};
-  double most = shown(&faces, view) + 1e-6;
-  for (int e = 0; e < 3; e++)
-    for (int n = 0; n < 8; n++) {
-      hl_view other = *view;
-      other.azimuth_deg = 90 * (n / 2) + (n % 2 ? -azimuth : azimuth);
-      other.elevation_deg = elevations[e];
-      const double sum = shown(&faces, &other);
-      if (sum > most) *view = other, most = sum + 1e-6;
-    }
+  double rise = 0; /* how far the faces look up */
+  for (int f = 0; f < faces.count; f++) rise += vec3_dot(faces.normals[f], vec3_of(view->up));
+  if (rise > SOME_RISE) view->elevation_deg = fmax(view->elevation_deg, ISOMETRIC);
+  if (rise < -SOME_RISE) view->elevation_deg = fmin(view->elevation_deg, -ISOMETRIC);
+  const double azimuth = view->azimuth_deg;
+  double most = shown(&faces, &light, view) + 1e-6;
+  for (int n = 1; n < 8; n++) {
+    hl_view other = *view;
+    other.azimuth_deg = 90 * (n / 2) + (n % 2 ? -azimuth : azimuth);
+    const double sum = shown(&faces, &light, &other);
+    if (sum > most) *view = other, most = sum + 1e-6;
+  }
 }

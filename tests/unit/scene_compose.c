@@ -184,14 +184,19 @@ static void bare_label_maps_have_their_labels(void **state) {
  * off. An option that chooses the view keeps it. */
 static void views_turn_to_cuts(void **state) {
   (void)state;
-  static const char *const cuts[] = {"x=0.5", "x=:0.5", "y=0.5", "y=:0.5", "z=0.5", "z=:0.5"};
-  for (int n = 0; n < 12; n++) {
-    const hl_option options[] = {{"cut-plane", cuts[n % 6]}, {"azimuth", "17"}};
-    hl_scene *made = compose(options, n < 6 ? 1 : 2, HL_COMPOSE_BARE, NULL);
+  static const char *const cuts[] = {"x=0.5", "x=:0.5", "y=0.5", "y=:0.5", "z=0.5", "z=:0.5"},
+                           *const clips[] = {"x=0:0.5", "x=0.5:1", "y=0:0.5",
+                                             "y=0.5:1", "z=0:0.5", "z=0.5:1"};
+  for (int n = 0; n < 18; n++) {
+    const hl_option options[] = {
+        n < 12 ? (hl_option){"cut-plane", cuts[n % 6]} : (hl_option){"clip", clips[n % 6]},
+        {"azimuth", "17"}};
+    const bool turned = n < 6 || n >= 12;
+    hl_scene *made = compose(options, turned ? 1 : 2, HL_COMPOSE_BARE, NULL);
     const hl_camera *camera = &hl_scene_describe(made)->camera;
     const vec3 to_eye = vec3_normalise(vec3_subtract(vec3_of(camera->position), vec3_of(camera->target)));
     const double along[] = {to_eye.x, to_eye.y, to_eye.z}, seen = (n % 2 ? -1 : 1) * along[n % 6 / 2];
-    if (n < 6) assert_true(seen > sin(34 * HL_PI / 180));
+    if (turned) assert_true(seen > sin(34 * HL_PI / 180));
     else assert_true(fabs(atan2(to_eye.x, -to_eye.y) - 17 * HL_PI / 180) < 1e-6);
     hl_scene_release(made);
   }
