@@ -80,21 +80,21 @@ void hl_write_matter(hl_function_writer *w) {
   if (a->material_count > 1) color_materials(w);
 }
 
-/* Writes the colours of skin, with flesh and bone inside. On the faces of cuts flesh has the shades of a
- * slice: in CT from fluid, which has 0 Hounsfield units or a few less, to muscle, which has 60; in MR from
- * dark to light tissue. */
+/* Writes the colours of skin, with flesh and bone inside; the faces of cuts show the difference between flesh
+ * and bone. In CT flesh has the shades of a slice, from fluid, which has 0 Hounsfield units or a few less, to
+ * muscle, which has 60. In other scans flesh takes a part of the way between the distances solid and dense.
+ */
 void hl_write_body(hl_function_writer *w) {
   const hl_data_analysis *a = w->analysis;
-  const double fluid = -20 - a->background, muscle = 60 - a->background;
-  const shade ct[] = {{a->faint, {0.62, 0.36, 0.25}},    {a->solid, {0.76, 0.50, 0.37}},
-                      {fluid, {0.44, 0.20, 0.13}},       {muscle, {0.76, 0.44, 0.34}},
-                      {dense_of(a), {0.89, 0.80, 0.65}}, {top_of(a), {0.93, 0.91, 0.86}}};
-  const shade mr[] = {{a->faint, {0.62, 0.36, 0.25}},
-                      {a->light_mean, {0.70, 0.45, 0.34}},
-                      {dense_of(a), {0.95, 0.91, 0.85}},
-                      {top_of(a), {0.97, 0.95, 0.92}}};
-  if (w->hounsfield && a->solid < fluid && muscle < a->dense) write_solid(w, ct, sizeof ct / sizeof *ct);
-  else write_solid(w, mr, sizeof mr / sizeof *mr);
+  const double fluid = -20 - a->background, muscle = 60 - a->background, way = dense_of(a) - a->solid;
+  const bool ct = w->hounsfield && a->solid < fluid && muscle < a->dense;
+  const shade flesh[2][2] = {
+      {{a->solid + 0.4 * way, {0.64, 0.33, 0.23}}, {a->solid + 0.65 * way, {0.64, 0.33, 0.23}}},
+      {{fluid, {0.44, 0.20, 0.13}}, {muscle, {0.76, 0.44, 0.34}}}};
+  const shade shades[] = {
+      {a->faint, {0.62, 0.36, 0.25}},    {a->solid, {0.76, 0.50, 0.37}}, flesh[ct][0], flesh[ct][1],
+      {dense_of(a), {0.89, 0.80, 0.65}}, {top_of(a), {0.93, 0.91, 0.86}}};
+  write_solid(w, shades, sizeof shades / sizeof *shades);
 }
 
 /* Writes the colours of a brain. Grey matter has nearly the colour of the surface, and white matter is nearly
