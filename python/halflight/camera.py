@@ -2,7 +2,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, fields
 from typing import Any
 
@@ -10,7 +10,7 @@ import numpy as np
 
 from . import _settings
 from ._library import lib, warn
-from ._words import suggests
+from ._words import check_keywords, suggests
 
 __all__ = ["Camera"]
 
@@ -104,6 +104,25 @@ class Camera:
 
 
 Camera.__init__ = suggests(Camera.__init__)  # type: ignore[method-assign]
+
+
+_OF_VIEWS = ("view", "up", "azimuth", "elevation", "roll", "zoom", "fovy", "ortho")
+
+
+def view_options(camera: Mapping[str, Any]) -> dict[str, str]:
+    """The options of the program that a mapping of the camera's view stands for."""
+    check_keywords("camera", camera, _OF_VIEWS)
+    options: dict[str, str] = {}
+    for word, value in camera.items():
+        if word == "ortho":
+            if not isinstance(value, (bool, np.bool_)):
+                raise TypeError(f"camera: ortho: {value!r} is not True or False")
+            if value:
+                options[word] = ""
+        elif value is not None:
+            plain = isinstance(value, str) or np.ndim(value) == 0
+            options[word] = str(value) if plain else ",".join(repr(float(one)) for one in value)
+    return options
 
 
 def camera_from(struct: Any) -> Camera:

@@ -10,7 +10,7 @@ from . import _settings, colors, cuts
 from . import marks as scene_marks
 from ._library import call, composed, context, ffi, lib, made
 from ._words import check_keywords, choice
-from .camera import Camera
+from .camera import Camera, view_options
 from .keywords import SkySettings
 from .lights import Light
 from .mesh import Mesh
@@ -112,7 +112,7 @@ def _set_camera(struct: Any, camera: Any) -> None:
     elif isinstance(camera, str):
         _frame(struct, SIDES.index(camera), None)
     else:
-        if isinstance(camera, (dict, set)) or not hasattr(camera, "__len__"):
+        if isinstance(camera, set) or not hasattr(camera, "__len__"):
             raise TypeError(f"camera: {camera!r} is no Camera, side or (azimuth, elevation)")
         if len(camera) == 3 and all(hasattr(one, "__len__") for one in camera):
             Camera.from_cpos(camera, struct.camera.fovy_deg)._fill(struct.camera)
@@ -135,7 +135,9 @@ def _options(settings: Mapping[str, Any], volumes: Sequence[Volume], flags: int)
     if (size := settings.get("size")) is not None:
         width, height = _settings.size_of("size", size)
         options["size"] = f"{width}x{height}"
-    if isinstance(camera := settings.get("camera"), str) and camera not in SIDES_BY_AXES:
+    if isinstance(camera := settings.get("camera"), Mapping):
+        options.update(view_options(camera))
+    elif isinstance(camera, str) and camera not in SIDES_BY_AXES:
         if choice("camera", camera, SIDES) != "automatic":
             options["view"] = camera
     if isinstance(rig := settings.get("lights"), str):
@@ -211,7 +213,7 @@ def build_scene(base: Any, volumes: Sequence[Volume], settings: Mapping[str, Any
     _settings.fill("", struct, lib.HL_SETTINGS_SCENE, _settings.taken(rest, _TOP))
     _settings.fill("", struct.render, lib.HL_SETTINGS_RENDER, _settings.taken(rest, _RENDER))
     options = _options(settings, volumes, flags)
-    if (camera := settings.get("camera")) is not None and "view" not in options:
+    if (camera := settings.get("camera")) is not None and "view" not in options and not isinstance(camera, Mapping):
         if "size" in options:
             struct.width, struct.height = map(int, options["size"].split("x"))
         _set_camera(struct, camera)

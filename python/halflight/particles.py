@@ -20,6 +20,7 @@ _STEPS = 256
 
 class Particles:
     """Particles that are spread into volumes by the cubic spline kernel, which reaches to twice the smoothing length.
+    Where a volume is wanted, as by `render`, they stand for ``volume()``.
 
     Parameters
     ----------
@@ -115,6 +116,10 @@ class Particles:
         else:
             volume = self._mean(self._numbers("values", quantity), np.nan, spacing, size)
         return volume.replace(**look)
+
+    def _as_volume(self) -> Volume:
+        """What stands for the particles where a volume is wanted."""
+        return self.volume()
 
     def _on_grid(self, spacing: float | None, size: int | None) -> Any:
         struct = self._describe()

@@ -6,7 +6,8 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from .colors import to_srgb
+from ._library import ffi, lib
+from .colors import srgb, to_srgb
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -24,6 +25,20 @@ def world_height(image: Image) -> float:
     return 2 * math.dist(camera.position, camera.target) * math.tan(math.radians(camera.fovy_deg) / 2)
 
 
+def ink_over(image: Image, axis: Axes) -> str:
+    """Black or white, whichever is seen better on the ground of the picture: as in figures, the limit is the middle of
+    sRGB's scale.
+    """
+    from matplotlib.colors import to_rgba
+
+    description = lib.hl_scene_describe(image.scene._handle)
+    ground = np.array(list(description.background))
+    if description.background_transparent:
+        red, green, blue, alpha = to_rgba(axis.figure.get_facecolor())
+        ground = alpha * np.array(srgb(red, green, blue)) + (1 - alpha)
+    return "white" if float(ground @ (0.2126, 0.7152, 0.0722)) < 0.214 else "black"
+
+
 def round_length(longest: float) -> float:
     """The greatest of 1, 2 and 5 times a power of ten that is not longer."""
     power = 10.0 ** math.floor(math.log10(longest))
@@ -34,7 +49,7 @@ def plot(image: Image, ax: Axes | None, colorbar: bool, scale_bar: bool, unit: s
     """See `Image.plot`."""
     from matplotlib import pyplot
     from matplotlib.cm import ScalarMappable
-    from matplotlib.colors import ListedColormap, Normalize
+    from matplotlib.colors import ListedColormap, LogNorm, Normalize
 
     axis: Any = pyplot.subplots()[1] if ax is None else ax
     axis.imshow(image.to_srgb8())
@@ -44,15 +59,18 @@ def plot(image: Image, ax: Axes | None, colorbar: bool, scale_bar: bool, unit: s
         pixel = world_height(image) / height
         length = round_length(_LONGEST * width * pixel)
         x, y = 0.05 * width, 0.95 * height
-        axis.plot([x, x + length / pixel], [y, y], color="white", linewidth=3, solid_capstyle="butt")
+        ink = ink_over(image, axis)
+        axis.plot([x, x + length / pixel], [y, y], color=ink, linewidth=3, solid_capstyle="butt")
         axis.annotate(f"{length:g} {unit}".strip(), (x + length / pixel / 2, y), xytext=(0, 4),
-                      textcoords="offset points", color="white", ha="center", va="bottom")
+                      textcoords="offset points", color=ink, ha="center", va="bottom")
     if colorbar:
         points = image.scene.volumes[0].look["transfer_function"].color
         low, high = points[0, 0], points[-1, 0]
         if low < high:
-            values = np.linspace(low, high, 256)
+            function = lib.hl_scene_describe(image.scene._handle).volumes[0].transfer_function
+            log = lib.hl_transfer_function_scale(ffi.addressof(function)) == lib.HL_RANGE_LOG
+            values = (np.geomspace if log else np.linspace)(low, high, 256)
             shown = to_srgb(np.stack([np.interp(values, points[:, 0], points[:, c]) for c in (1, 2, 3)], 1))
-            bar = ScalarMappable(Normalize(low, high), ListedColormap(shown.tolist()))
+            bar = ScalarMappable((LogNorm if log else Normalize)(low, high), ListedColormap(shown.tolist()))
             axis.figure.colorbar(bar, ax=axis)
     return axis

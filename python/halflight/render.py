@@ -8,7 +8,7 @@ from typing import Any, Literal, Unpack
 
 import numpy as np
 
-from . import _settings, arrays, transfer
+from . import arrays
 from ._library import call, context, ffi, lib, made, text_of
 from ._words import check_keywords, suggests, suggests_also
 from .camera import Camera
@@ -18,6 +18,7 @@ from .lights import Light
 from .mesh import Mesh
 from .progress import Progress, told
 from .scene import Scene, Settings, Side
+from .values import VALUES, function_for
 from .volume import Look, Source, Volume, as_volume
 
 __all__ = ["Renderer", "reference", "render"]
@@ -191,59 +192,12 @@ def reference(scene: Scene, *, light_points: int = 1024, step: float = 0.25, ray
     return image
 
 
-def _clim(clim: Any, volume: Volume) -> list[float] | None:
-    if clim is None:
-        return None
-    ends = clim if isinstance(clim, str) or not hasattr(clim, "__len__") else \
-        [_percentile(end, volume) if isinstance(end, str) else end for end in clim]
-    low, high = _settings.numbers_of("clim", ends, 2)
-    if not low < high:
-        raise ValueError(f"clim: {low:g} is not below {high:g}")
-    return [low, high]
-
-
-def _percentile(text: str, volume: Volume) -> float:
-    """The data value that a text such as "99.5%" stands for."""
-    try:
-        percent = float(text.removesuffix("%")) if text.endswith("%") else -1.0
-    except ValueError:
-        percent = -1.0
-    if not 0 <= percent <= 100:
-        raise ValueError(f"clim: '{text}' is no number and no percentile from '0%' to '100%'")
-    return volume.percentile(percent)
-
-
-def _look(volume: Volume, projected: bool, cmap: Any, clim: Any, log_scale: Any, opacity: Any, unit_distance: float | None,
-          tf: Any) -> Volume:
-    """The volume with the transfer function that the keywords ask for. projected: whether the picture is a maximum
-    projection.
+def _look(volume: Volume, projected: bool, words: Mapping[str, Any]) -> Volume:
+    """The volume with the transfer function that keywords of `Values` ask for. projected: whether the picture is a
+    maximum projection.
     """
-    range_wanted, log = _clim(clim, volume), bool(log_scale)
-    if log and range_wanted is None:
-        raise ValueError("log_scale: it spreads over clim: give clim=(low, high), too")
-    if all(one is None for one in (cmap, clim, opacity, unit_distance, tf)):
-        return volume
-    by_values = volume if "labels" in volume._changes else volume.replace(labels=False)
-    function: transfer.TransferFunction = by_values.look["transfer_function"]
-    info = volume.info()
-    if tf is not None:
-        function = transfer.named_function(tf, volume._handle, function)
-    if opacity is not None:
-        values = range_wanted or list(info.range)
-        distance = float(info.spacing.min()) if unit_distance is None else unit_distance
-        color = function.color
-        if range_wanted is not None and cmap is None:
-            color = transfer.spread(function, cmap, range_wanted, log, volume._handle, projected).color
-        function = transfer.TransferFunction(transfer.opacity_points(opacity, values, log), color, distance)
-    elif range_wanted is not None:
-        function = transfer.spread(function, cmap, range_wanted, log, volume._handle, projected)
-    if unit_distance is not None:
-        function = transfer.TransferFunction(function.opacity, function.color,
-                                             _settings.number("opacity_unit_distance", unit_distance),
-                                             function.gradient_opacity)
-    if cmap is not None:
-        function = transfer.recolored(function, cmap, range_wanted, log, volume._handle, projected)
-    return volume.replace(transfer_function=function)
+    function = function_for(volume, projected, **words)
+    return volume if function is None else volume.replace(transfer_function=function)
 
 
 def _given(**words: Any) -> dict[str, Any]:
@@ -253,7 +207,7 @@ def _given(**words: Any) -> dict[str, Any]:
 Words = Literal["off", "hard", "soft"]
 Shade = Literal["phong", "none", "flat"]
 Looked = Literal["auto", "surface", "translucent", "xray", "smoke", "vessels", "mip"]
-View = Camera | Side | str | Sequence[float] | Sequence[Sequence[float]]
+View = Camera | Side | str | Sequence[float] | Sequence[Sequence[float]] | Mapping[str, Any]
 
 
 class Asked(FurtherSettings, total=False):
@@ -302,7 +256,6 @@ _MATERIAL = ("ambient", "diffuse", "specular", "shininess", "iso", "cuts", "mask
              *(word for word in FurtherSettings.__annotations__ if word in Look.__annotations__))
 _SETTINGS = ("shadows", "lights", "camera", "size", "background", "threads", "meshes", "sky",
              *(word for word in FurtherSettings.__annotations__ if word in Settings.__annotations__))
-_LOOK = ("cmap", "clim", "log_scale", "opacity", "opacity_unit_distance", "tf")
 
 
 def scene_for(volume: Source, **asked: Unpack[Asked]) -> Scene:
@@ -315,7 +268,7 @@ def scene_for(volume: Source, **asked: Unpack[Asked]) -> Scene:
         material["shading"] = ("phong" if shade else "flat") if isinstance(shade, (bool, np.bool_)) else shade
     if isinstance(settings.get("shadows"), (bool, np.bool_)):
         settings["shadows"] = "soft" if settings["shadows"] else "off"
-    look = {word: words[word] for word in _LOOK if word in words}
+    look = {word: words[word] for word in VALUES if word in words}
     return _scene_of(volume, place, material, settings, look, words.get("labels"))
 
 
@@ -376,8 +329,9 @@ def render(volume: Source = None, *, spacing: arrays.Spacing | None = None, orig
         "off", "hard" or "soft"; True is "soft".
     lights : a light or a list of them, optional
         See `halflight.lights`.
-    camera : Camera, str, (azimuth, elevation) or (position, focal point, up), optional
-        A side ("front", "left", "top", "iso", "xy", ...) and angles in degrees frame the volume.
+    camera : Camera, str, (azimuth, elevation), a mapping or (position, focal point, up), optional
+        A side ("front", "left", "top", "iso", "xy", ...) and angles in degrees frame the volume. So does a mapping of the
+        program's options, such as ``{"view": "front", "up": "+z", "ortho": True, "zoom": 1.2}``: see `Settings`.
     size : (width, height), int or "640x480", optional
         Pixels; default (512, 512).
     background : colour or "transparent", optional
@@ -435,17 +389,15 @@ def render(volume: Source = None, *, spacing: arrays.Spacing | None = None, orig
     return Renderer(device).render(scene, layers=layers, progress=progress)
 
 
-def _look_for(look: Mapping[str, Any], index: int, count: int) -> tuple[Any, ...]:
+def _look_for(look: Mapping[str, Any], index: int, count: int) -> dict[str, Any]:
     """The keywords of one of several volumes: lists have one for each."""
-    found = []
-    for word in _LOOK:
-        value = look.get(word)
+    found = dict(look)
+    for word, value in look.items():
         if count > 1 and isinstance(value, list):
             if len(value) != count:
                 raise ValueError(f"{word}: a list of {len(value)} for {count} volumes: give one for each, or one for all")
-            value = value[index]
-        found.append(value)
-    return tuple(found)
+            found[word] = value[index]
+    return found
 
 
 def _label_volume(labels: Any) -> Volume:
@@ -476,14 +428,14 @@ def _scene_of(volume: Any, place: Mapping[str, Any], material: dict[str, Any], s
         if "look" in named:
             settings.setdefault("compositing", "maximum" if named["look"] == "mip" else "light")
         projected = settings.get("compositing", scene.settings["compositing"]) == "maximum"
-        changed = [_look(one.replace(**named), projected, *_look_for(look, n, count)).replace(**material) for n, one in enumerate(scene.volumes)]
+        changed = [_look(one.replace(**named), projected, _look_for(look, n, count)).replace(**material) for n, one in enumerate(scene.volumes)]
         return scene.replace(changed if labels is None else [*changed, _label_volume(labels)], **settings)
     if isinstance(channels := place.get("channel"), (str, Sequence)):
         return _scene_of_channels(volume, channels, place, material, settings, look, labels)
     given = volume if isinstance(volume, list) else [volume] if volume is not None or not settings.get("meshes") else []
     sources = [one for one in given if not isinstance(one, Mesh)]
     projected = named.get("look") == "mip"
-    volumes = [_look(Volume(one, **place).replace(**named), projected, *_look_for(look, n, len(sources))).replace(**material)
+    volumes = [_look(Volume(one, **place).replace(**named), projected, _look_for(look, n, len(sources))).replace(**material)
                for n, one in enumerate(sources)]
     if not volumes:
         for word in (*place, *look, *material):
@@ -504,7 +456,7 @@ def _scene_of_channels(path: Any, channels: str | Sequence[int], place: Mapping[
     shown = {word: value for word, value in material.items() if word != "look"}
     count = len(scene.volumes)
     projected = material.get("look") == "mip"
-    volumes = [_look(one, projected, *_look_for(look, n, count)).replace(**shown) for n, one in enumerate(scene.volumes)]
+    volumes = [_look(one, projected, _look_for(look, n, count)).replace(**shown) for n, one in enumerate(scene.volumes)]
     chosen = [*(look.get(word) for word in ("clim", "opacity", "opacity_unit_distance", "tf")), shown.get("iso")]
     is_own = material.get("look", "auto") != "auto" or any(one is not None for one in chosen)
     return scene._changed(volumes if labels is None else [*volumes, _label_volume(labels)], settings, True,

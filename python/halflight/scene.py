@@ -29,9 +29,11 @@ class Settings(PictureSettings, RenderSettings, total=False):
 
     Parameters
     ----------
-    camera : Camera, str, (azimuth, elevation) or (position, focal point, up)
+    camera : Camera, str, (azimuth, elevation), a mapping or (position, focal point, up)
         "front", "back", "left", "right", "top", "bottom" and "iso" are sides, "xy", "xz", ... PyVista's: the axes to the
-        picture's right and top; angles in degrees. Three points are PyVista's ``camera_position``.
+        picture's right and top; angles in degrees. Three points are PyVista's ``camera_position``. A mapping has the
+        program's options of the camera: `view` (a side), `up` ("+z" or a vector), `azimuth`, `elevation`, `roll`, `zoom`,
+        `fovy` and `ortho`, as ``{"view": "front", "up": "+z", "ortho": True, "zoom": 1.2}``.
     lights : a light, a list of them, or the name of a rig
         See `halflight.lights`. "studio", "raking", "rim" and "overcast" are lights that go with the camera, and a sky.
     ambient : float, (r, g, b) or str
@@ -56,7 +58,7 @@ class Settings(PictureSettings, RenderSettings, total=False):
         of linear RGB, ``{"type": "image", "pixels": array}``.
     """
 
-    camera: Camera | Side | str | Sequence[float] | Sequence[Sequence[float]]
+    camera: Camera | Side | str | Sequence[float] | Sequence[Sequence[float]] | Mapping[str, Any]
     lights: Light | Sequence[Light] | LightRig
     ambient: float | Sequence[float] | str
     size: tuple[int, int] | int | str

@@ -11,6 +11,7 @@ from . import _settings, arrays, cuts, grids, isosurface, mask, neighbours, piec
 from ._library import call, choices_of, composed, context, ffi, lib, made, text_of
 from ._words import check_keywords, choice
 from .transfer import function_from
+from .values import VALUES, function_for
 from .volume_info import FileArray, FileChannel, FileSegment, FileSeries, Info, read_info
 from .volume_look import Look, fill_look
 
@@ -35,7 +36,7 @@ class Volume:
     source : path, array, or an object that has one
         A file (NRRD, MetaImage, NIfTI, VTK, NumPy, raw), anything with ``__array__``, the buffer protocol or
         DLPack, images of nibabel, SimpleITK and ITK, pynrrd's ``(data, header)``, xarray, PyVista and VTK image
-        data, zarr, h5py and dask arrays.
+        data, zarr, h5py and dask arrays. `Particles` stand for their logarithm of density.
     spacing : float or 3 floats, optional
         World units between voxels, in the order of `axes`.
     origin : (x, y, z), optional
@@ -56,8 +57,9 @@ class Volume:
         Smooth the voxels by a Gaussian of so many voxels along each axis; 0: not at all. By default, 0.8 for brains
         without their skull, which end in a cliff of voxels, and for thick slices; 0 for all else.
     **look : Look
-        How it looks and where it stands: `name`, `transfer_function`, `clip`, `scale`, and the keywords of
-        `halflight.keywords.VolumeSettings` and `MaterialSettings`.
+        How it looks and where it stands: `name`, `transfer_function`, `clip`, `scale`, the keywords of
+        `halflight.keywords.VolumeSettings` and `MaterialSettings`, and `cmap`, `clim`, `opacity` and others as for
+        `halflight.render`.
 
     Examples
     --------
@@ -85,23 +87,26 @@ class Volume:
         self._order: tuple[int, ...] | None = None
         self._colored: Any = None  # the array, if its voxels are colours
         self._shapes: str | None = None  # the text that the voxels were made from
-        self._changes: dict[str, Any] = dict(look)
+        self._changes: dict[str, Any] = {word: value for word, value in look.items() if word not in VALUES}
         place = {"spacing": spacing, "origin": origin, "direction": direction, "affine": affine}
         chosen = {"array": array, "component": component, "series": series, "time": time, "channel": channel,
                   "level": level}
+        if hasattr(source, "_as_volume"):
+            source = source._as_volume()
         if isinstance(source, Volume):
             for word, value in {**place, **chosen, "axes": axes, "copy": copy or None}.items():
                 if value is not None:
                     raise TypeError(f"{word} is for arrays and files: a Volume has been read already")
             self._share(source)
-            if smooth is not None:
-                self._smooth(smooth)
-            return
-        if axes is not None:
-            arrays.check_axes(axes)
-        self._read(source, axes, place, {word: value for word, value in chosen.items() if value is not None}, copy)
+        else:
+            if axes is not None:
+                arrays.check_axes(axes)
+            self._read(source, axes, place, {word: value for word, value in chosen.items() if value is not None}, copy)
         if smooth is not None:
             self._smooth(smooth)
+        values: Any = {word: look[word] for word in VALUES if word in look}  # type: ignore[literal-required]
+        if (function := function_for(self, self._changes.get("look") == "mip", **values)) is not None:
+            self._changes["transfer_function"] = function
 
     def _smooth(self, sigma: float) -> None:
         """Take smoothed voxels in place of the volume's."""

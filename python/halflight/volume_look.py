@@ -11,13 +11,14 @@ from ._library import call, choices_of, context, ffi, lib
 from ._words import choice
 from .keywords import MaterialSettings, VolumeSettings
 from .transfer import TransferFunction
+from .values import Values
 
 __all__ = ["Look", "fill_look"]
 
 _MATERIAL = _settings.names(lib.HL_SETTINGS_MATERIAL)
 
 
-class Look(VolumeSettings, MaterialSettings, total=False):
+class Look(VolumeSettings, MaterialSettings, Values, total=False):
     """Keywords of `Volume` for the volume's look and its place. Keywords that are not given are chosen from the data.
 
     Parameters
@@ -26,6 +27,8 @@ class Look(VolumeSettings, MaterialSettings, total=False):
         The volume's name.
     transfer_function : TransferFunction
         The opacities and colours of values.
+    cmap, clim, log_scale, opacity, opacity_unit_distance, tf
+        Changes of this function, or of the one that is chosen from the data, as for `halflight.render`.
     clip : ((x, y, z), (x, y, z)) or None
         The corners of the box that is kept, in the world before the transform.
     scale : float or 3 floats

@@ -239,6 +239,29 @@ def test_plot(small):
     pyplot.close("all")
 
 
+@pytest.mark.parametrize(("background", "face", "ink"), [("white", "black", "black"), ("black", "white", "white"),
+                                                         ("transparent", "white", "black"), ("transparent", "navy", "white")])
+def test_scale_bars_of_plots_are_seen(small, background, face, ink):
+    pyplot = pytest.importorskip("matplotlib.pyplot")
+    pyplot.switch_backend("agg")
+    figure, axis = pyplot.subplots(facecolor=face)
+    Renderer().render(small.replace(background=background)).plot(axis)
+    assert axis.lines[0].get_color() == axis.texts[0].get_color() == ink
+    pyplot.close("all")
+
+
+def test_colour_bars_of_plots_are_logarithmic():
+    pyplot = pytest.importorskip("matplotlib.pyplot")
+    pyplot.switch_backend("agg")
+    field = np.geomspace(1e-4, 10, 512).reshape(8, 8, 8)
+    for log in False, True:
+        figure, axis = pyplot.subplots()
+        halflight.render(field, cmap="viridis", clim=(1e-4, 10), log_scale=log, size=32).plot(axis)
+        assert figure.axes[1].get_yscale() == ("log" if log else "linear")
+        assert figure.axes[1].get_ylim() == pytest.approx((1e-4, 10))
+        pyplot.close("all")
+
+
 def test_import_loads_little_and_needs_numpy_alone():
     code = ("import sys, numpy; before = set(sys.modules); import halflight; "
             "print(*sorted(set(sys.modules) - before))")

@@ -32,6 +32,17 @@ def test_mass_and_density():
     assert max(particles.volume(size=16).dimensions) <= 17
 
 
+def test_particles_are_volumes():
+    """Where a volume is wanted, particles are the volume of their density."""
+    particles = Particles(np.random.default_rng(3).normal(size=(400, 3)), h=0.4)
+    expected = halflight.render(particles.volume(), size=32)
+    for shown in particles, [particles], halflight.Volume(particles), halflight.Scene(particles):
+        assert np.array_equal(halflight.render(shown, size=32), expected)
+    assert np.array_equal(halflight.render(particles, cmap="magma", size=32), halflight.render(particles.volume(), cmap="magma", size=32))
+    with pytest.raises(TypeError, match="spacing is for arrays"):
+        halflight.render(particles, spacing=2)
+
+
 def test_lengths_are_found():
     rng = np.random.default_rng(4)
     places = rng.random((2000, 3))

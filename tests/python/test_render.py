@@ -25,6 +25,10 @@ CASES = [
     ({"size": (96, 64), "shadows": "hard"}, ["--size", "96x64", "--shadows", "hard"]),
     ({"size": (64, 64), "cmap": "viridis", "clim": (10, 200)},
      ["--size", "64x64", "--colormap", "viridis", "--range", "10,200"]),
+    ({"size": (64, 64), "camera": {"view": "left", "up": "+y", "ortho": True, "zoom": 1.2, "roll": 15}},
+     ["--size", "64x64", "--view", "left", "--up", "+y", "--ortho", "--zoom", "1.2", "--roll", "15"]),
+    ({"size": (64, 64), "camera": {"azimuth": 40, "up": (0, 1, 1), "ortho": False, "fovy": 12}},
+     ["--size", "64x64", "--azimuth", "40", "--up", "0,1,1", "--fovy", "12"]),
     ({"size": (64, 64), "clim": (10, 200)}, ["--size", "64x64", "--range", "10,200"]),
     ({"size": (64, 64), "cmap": ["gray"], "clim": (2, 250)}, ["--size", "64x64", "--range", "2,250", "--colormap", "#808080"]),
     ({"size": (64, 64), "cmap": "gray", "clim": (0, 255)}, ["--size", "64x64", "--range", "0,255", "--colormap", "gray"]),
@@ -125,6 +129,20 @@ def test_cmap_takes_colours_in_srgb_and_numbers_in_linear_light(blob):
     assert np.allclose(pixels(blob, cmap=(0.5, 0, 0), **flat)[24, 32, :3], [0.5, 0, 0], atol=1e-3)
     grey = pixels(blob, cmap=["black", "white"], clim=(0, 255), **flat)
     assert np.allclose(grey[..., 0], grey[..., 1])
+
+
+@pytest.mark.parametrize("words", [{"cmap": "inferno", "clim": (10, 200)}, {"opacity": "linear", "clim": ("5%", "99%"), "opacity_unit_distance": 3},
+                                   {"tf": "ct-bone"}, {"clim": (1, 200), "log_scale": True, "cmap": "viridis"}, {"look": "mip", "cmap": "gold"}])
+def test_a_volume_takes_the_keywords_of_its_values(blob, words):
+    volume = halflight.Volume(blob, **words)
+    assert np.array_equal(pixels(volume), pixels(blob, **words))
+    assert np.array_equal(pixels(halflight.Volume(blob).replace(**words)), pixels(blob, **words))
+
+
+def test_a_scene_s_camera_is_turned_by_the_program_s_options(blob):
+    scene = halflight.Scene(blob, size=64, camera={"view": "front", "ortho": True})
+    nearer = scene.replace(camera={"zoom": 2}).camera
+    assert nearer.height == pytest.approx(scene.camera.height / 2, rel=0.02) and nearer.up == pytest.approx(scene.camera.up)
 
 
 def test_percentiles_are_those_of_numpy(blob):
