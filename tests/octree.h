@@ -70,7 +70,8 @@ static inline void octree_build(hl_context *context, int threads, octree *data, 
   hl_pool *pool = NULL;
   for (int axis = 0; axis < 3; axis++) source.dimension[axis] = dimension[axis];
   assert_int_equal(hl_pool_create(context, threads, &pool, NULL), HL_OK);
-  assert_int_equal(hl_bricks_choose(context, &source, octree_choose, data, &leaves, &count, NULL), HL_OK);
+  assert_int_equal(hl_bricks_choose(context, &source, octree_choose, data, "a field", &leaves, &count, NULL),
+                   HL_OK);
   assert_int_equal(hl_bricks_build(context, pool, &source, leaves, count, "octree", bricks, NULL), HL_OK);
   hl_release(context, leaves);
   hl_pool_destroy(pool);

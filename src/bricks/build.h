@@ -58,11 +58,13 @@ typedef enum hl_bricks_choice { HL_BRICKS_NOTHING, HL_BRICKS_LEAF, HL_BRICKS_SPL
 /* Lists leaves by descending from the bricks of the coarsest level: `choose` is called for a brick and tells
  * whether it is a leaf, is split into the eight bricks of the next finer level, or is left out. A brick of
  * level 0 that `choose` would split is a leaf. source: its `fill` may be null. *leaves is in the order of the
- * descent, and is owned by the caller (hl_release). Fails for lack of memory, also where the memory limit has
- * no room for the field's directory or for the leaves' coefficients, and when cancelled. */
+ * descent, and is owned by the caller (hl_release). subject: starts error lines. Fails for lack of memory,
+ * also where the memory limit has no room for the field's directory or for the leaves' coefficients, and when
+ * cancelled. */
 hl_status hl_bricks_choose(hl_context *context, const hl_bricks_source *source,
                            hl_bricks_choice (*choose)(void *data, int level, const size_t brick[3]),
-                           void *data, hl_bricks_leaf **leaves, size_t *count, hl_error *error);
+                           void *data, const char *subject, hl_bricks_leaf **leaves, size_t *count,
+                           hl_error *error);
 
 /* Makes the bricks of the leaves. A leaf may lie partly beyond the source's dimension. Two leaves that cover
  * the same place are refused. A brick whose coefficients are all the same number becomes a constant of the

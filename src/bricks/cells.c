@@ -448,7 +448,8 @@ static hl_status build(cell_field *field, hl_pool *pool, hl_bricks *bricks, hl_c
   hl_status status = choose_lattice(field, error);
   if (status == HL_OK) status = make_tree(field, error);
   if (status == HL_OK)
-    status = hl_bricks_choose(field->context, &field->source, choose, field, &leaves, &count, error);
+    status = hl_bricks_choose(field->context, &field->source, choose, field, field->subject, &leaves, &count,
+                              error);
   if (status == HL_OK)
     status = hl_bricks_build(field->context, pool, &field->source, leaves, count, field->subject, bricks,
                              error);

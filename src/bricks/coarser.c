@@ -84,7 +84,7 @@ hl_status hl_bricks_make_coarser(hl_context *context, hl_pool *pool, const hl_br
                                 .fill = fill,
                                 .data = &c};
   for (int a = 0; a < 3; a++) c.source.dimension[a] = bricks->dimension[a] / 2 + 1;
-  hl_status status = hl_bricks_choose(context, &c.source, choose, &c, &leaves, &count, error);
+  hl_status status = hl_bricks_choose(context, &c.source, choose, &c, subject, &leaves, &count, error);
   if (status == HL_OK)
     status = hl_bricks_build(context, pool, &c.source, leaves, count, subject, coarser, error);
   hl_release(context, leaves);

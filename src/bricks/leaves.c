@@ -11,6 +11,7 @@ typedef struct descent {
   const hl_bricks_source *source;
   hl_bricks_choice (*choose)(void *data, int level, const size_t brick[3]);
   void *data;
+  const char *subject;
   hl_bricks_leaf *leaves; /* owned; [room] */
   size_t count, room;
   size_t visited; /* bricks that the descent has visited */
@@ -21,11 +22,11 @@ typedef struct descent {
 static hl_status add_leaf(descent *d, int level, const size_t brick[3]) {
   if (d->count == d->most)
     return hl_fail_memory(d->error, (d->count + 1) * brick_points(d->source->shift) * sizeof(float),
-                          "a field in bricks");
+                          d->subject);
   if (d->count == d->room) {
     size_t room = 2 * d->room + 64;
     hl_bricks_leaf *grown = hl_reallocate(d->context, d->leaves, room, sizeof *grown);
-    if (grown == NULL) return hl_fail_memory(d->error, room * sizeof *grown, "the list of bricks");
+    if (grown == NULL) return hl_fail_memory(d->error, room * sizeof *grown, d->subject);
     d->leaves = grown;
     d->room = room;
   }
@@ -41,7 +42,7 @@ static size_t bricks_along(const hl_bricks_source *source, int level, int axis) 
 static hl_status descend(descent *d, int level, const size_t brick[3]) {
   enum { BRICKS_AT_ONCE = 1024 }; /* number of bricks between two checks for cancellation */
   if (d->visited++ % BRICKS_AT_ONCE == 0 && hl_cancelled(d->context))
-    return hl_fail(d->error, HL_ERROR_CANCELLED, "cancelled");
+    return hl_fail(d->error, HL_ERROR_CANCELLED, "%s: cancelled", d->subject);
   for (int axis = 0; axis < 3; axis++)
     if (brick[axis] >= bricks_along(d->source, level, axis)) return HL_OK;
   hl_bricks_choice choice = d->choose(d->data, level, brick);
@@ -58,24 +59,31 @@ static hl_status descend(descent *d, int level, const size_t brick[3]) {
 
 /* Refuses a field whose directory is larger than the memory limit, before the descent, which would visit each
  * of its coarsest bricks. */
-static hl_status check_directory(hl_context *context, const hl_bricks_source *source, hl_error *error) {
+static hl_status check_directory(hl_context *context, const hl_bricks_source *source, const char *subject,
+                                 hl_error *error) {
   const uint64_t limit = context->options.memory_limit;
   size_t bytes = sizeof(hl_brick_entry);
   bool fits = true;
   for (int axis = 0; axis < 3; axis++)
     fits = fits && hl_multiply(bytes, bricks_along(source, 0, axis), &bytes);
   if (fits && (limit == 0 || bytes <= limit)) return HL_OK;
-  return hl_fail_memory(error, fits ? bytes : SIZE_MAX, "the directory of a field's bricks");
+  return hl_fail_memory(error, fits ? bytes : SIZE_MAX, subject);
 }
 
 hl_status hl_bricks_choose(hl_context *context, const hl_bricks_source *source,
                            hl_bricks_choice (*choose)(void *data, int level, const size_t brick[3]),
-                           void *data, hl_bricks_leaf **leaves, size_t *count, hl_error *error) {
-  descent d = {.context = context, .source = source, .choose = choose, .data = data, .error = error};
+                           void *data, const char *subject, hl_bricks_leaf **leaves, size_t *count,
+                           hl_error *error) {
+  descent d = {.context = context,
+               .source = source,
+               .choose = choose,
+               .data = data,
+               .subject = subject,
+               .error = error};
   const uint64_t limit = context->options.memory_limit;
   int level = source->levels - 1;
   d.most = limit > 0 ? (size_t)(limit / (brick_points(source->shift) * sizeof(float))) : SIZE_MAX;
-  hl_status status = check_directory(context, source, error);
+  hl_status status = check_directory(context, source, subject, error);
   size_t b[3];
   *leaves = NULL;
   *count = 0;

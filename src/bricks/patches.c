@@ -396,7 +396,7 @@ hl_status hl_patches_build(hl_patches *patches, hl_pool *pool, const char *subje
   *bricks = (hl_bricks){.shift = 0};
   hl_status status = average(patches, subject, error);
   if (status == HL_OK)
-    status = hl_bricks_choose(patches->context, &source, choose, patches, &leaves, &count, error);
+    status = hl_bricks_choose(patches->context, &source, choose, patches, subject, &leaves, &count, error);
   if (status == HL_OK)
     status = hl_bricks_build(patches->context, pool, &source, leaves, count, subject, bricks, error);
   for (int axis = 0; axis < 3; axis++) bricks->origin[axis] = 0.5;

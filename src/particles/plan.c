@@ -189,8 +189,8 @@ static hl_status choose_leaves(planning *p) {
   for (int a = 0; a < 3; a++) source.dimension[a] = plan->lattice.cells[a] + 1;
   mark_coarser(p);
   if (p->status != HL_OK) return p->status;
-  hl_status status = hl_bricks_choose(p->context, &source, choose, p, &plan->leaves, &plan->leaf_count,
-                                      p->error);
+  hl_status status = hl_bricks_choose(p->context, &source, choose, p, p->subject, &plan->leaves,
+                                      &plan->leaf_count, p->error);
   return status == HL_OK ? p->status : status;
 }
 

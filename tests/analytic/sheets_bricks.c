@@ -53,7 +53,8 @@ static hl_volume *in_bricks(hl_context *context, hl_volume *volume, int shift) {
   hl_volume *made = NULL;
   for (int a = 0; a < 3; a++) source.dimension[a] = volume->dimension[a] + 2;
   assert_int_equal(hl_pool_create(context, 2, &pool, NULL), HL_OK);
-  assert_int_equal(hl_bricks_choose(context, &source, take_all, NULL, &leaves, &count, NULL), HL_OK);
+  assert_int_equal(hl_bricks_choose(context, &source, take_all, NULL, "a field", &leaves, &count, NULL),
+                   HL_OK);
   assert_int_equal(hl_bricks_build(context, pool, &source, leaves, count, "bricks", &bricks, NULL), HL_OK);
   hl_release(context, leaves);
   hl_pool_destroy(pool);

@@ -77,7 +77,7 @@ static void build(hl_context *context, int threads, test_source *data, const siz
   hl_pool *pool = NULL;
   memcpy(source.dimension, dimension, sizeof source.dimension);
   assert_int_equal(hl_pool_create(context, threads, &pool, NULL), HL_OK);
-  assert_int_equal(hl_bricks_choose(context, &source, choose, data, &leaves, &count, NULL), HL_OK);
+  assert_int_equal(hl_bricks_choose(context, &source, choose, data, "a field", &leaves, &count, NULL), HL_OK);
   assert_int_equal(hl_bricks_build(context, pool, &source, leaves, count, "test", bricks, NULL), HL_OK);
   hl_release(context, leaves);
   hl_pool_destroy(pool);
@@ -317,14 +317,16 @@ static void lists_keep_within_the_limit(void **state) {
   size_t count = 0, asked = 0;
   hl_error error;
   assert_int_equal(hl_context_limit_memory(context, 8 * LIMIT, NULL, NULL), HL_OK);
-  assert_int_equal(hl_bricks_choose(context, &source, count_and_split, &asked, &leaves, &count, &error),
-                   HL_ERROR_MEMORY);
+  assert_int_equal(
+      hl_bricks_choose(context, &source, count_and_split, &asked, "a field", &leaves, &count, &error),
+      HL_ERROR_MEMORY);
   assert_null(leaves);
   assert_true(asked > 8 * LIMIT / BRICK_BYTES && asked < 10 * LIMIT / BRICK_BYTES);
   for (int axis = 0; axis < 3; axis++) source.dimension[axis] = 1 << 30;
   asked = 0;
-  assert_int_equal(hl_bricks_choose(context, &source, count_and_split, &asked, &leaves, &count, &error),
-                   HL_ERROR_MEMORY);
+  assert_int_equal(
+      hl_bricks_choose(context, &source, count_and_split, &asked, "a field", &leaves, &count, &error),
+      HL_ERROR_MEMORY);
   assert_int_equal(asked, 0);
   assert_int_equal(hl_context_limit_memory(context, 0, NULL, NULL), HL_OK);
 }
