@@ -68,25 +68,58 @@ static json_t *step_into(json_t *at, const char *name) {
   return json_array_get(at, strtoul(name, NULL, 10));
 }
 
-/* Returns whether a scene has a setting with this name and type. */
-static bool is_setting(const char *name, hl_setting_type type) {
-  const hl_setting *setting;
-  for (int kind = 0; (setting = hl_setting_get((hl_setting_kind)kind, 0)) != NULL; kind++) {
-    setting = hl_setting_find((hl_setting_kind)kind, name);
-    if (setting != NULL && setting->type == type) return true;
-  }
+/* Finds the table of the settings of an object in a scene, by the object's name, which need not end at
+ * `letters`. Returns false if there is no such table. */
+static bool find_table(const char *name, size_t letters, hl_setting_kind *kind) {
+  static const struct {
+    const char *name;
+    hl_setting_kind kind;
+  } tables[] = {{"image", HL_SETTINGS_IMAGE},       {"camera", HL_SETTINGS_CAMERA},
+                {"lights", HL_SETTINGS_LIGHT},      {"volumes", HL_SETTINGS_VOLUME},
+                {"material", HL_SETTINGS_MATERIAL}, {"transfer_function", HL_SETTINGS_TRANSFER_FUNCTION},
+                {"render", HL_SETTINGS_RENDER},     {"meshes", HL_SETTINGS_MESH},
+                {"sky", HL_SETTINGS_SKY},           {"iso", HL_SETTINGS_ISO},
+                {"cuts", HL_SETTINGS_CUT}};
+  for (size_t t = 0; t < sizeof tables / sizeof *tables; t++)
+    if (strlen(tables[t].name) == letters && strncmp(tables[t].name, name, letters) == 0) {
+      *kind = tables[t].kind;
+      return true;
+    }
   return false;
 }
 
-/* Returns whether a scene takes only whole numbers for this name. The text of the scene does not tell it,
- * because it has 7 for a size of 7.0 degrees, too. */
-static bool is_whole(const char *name) {
+/* Finds the setting that the first `length` bytes of a path name. In "volumes.0.scattering.albedo.0" it is
+ * the one with the key "scattering/albedo" in the table of volumes. Returns null if they name no setting. */
+static const hl_setting *setting_of(const char *path, size_t length) {
+  hl_setting_kind kind = HL_SETTINGS_SCENE;
+  char key[128] = "";
+  for (size_t at = 0; at < length; at++) { /* steps over the dot */
+    const char *name = path + at;
+    size_t letters = strcspn(name, "."), used = strlen(key);
+    if (letters > length - at) letters = length - at;
+    at += letters;
+    if (find_table(name, letters, &kind)) key[0] = '\0';
+    else if (strspn(name, "0123456789") < letters) {
+      if (used + letters + 2 > sizeof key) return NULL;
+      snprintf(key + used, sizeof key - used, "%s%.*s", used > 0 ? "/" : "", (int)letters, name);
+    }
+  }
+  return hl_setting_find(kind, key);
+}
+
+static bool has_type(const hl_setting *setting, hl_setting_type type) {
+  return setting != NULL && setting->type == type;
+}
+
+/* Returns whether a scene takes only whole numbers at a key's path, whose last part is `name`. The text of
+ * the scene does not tell it, because it has 7 for a size of 7.0 degrees, too. */
+static bool is_whole(const film_key *key, const char *name) {
   /* The names that are no settings: parts of a volume's file, and numbers of shapes. */
   static const char *const others[] = {"component", "time", "channel", "level", "octaves",
                                        "seed",      "n",    "l",       "m"};
   for (size_t o = 0; o < sizeof others / sizeof *others; o++)
     if (strcmp(name, others[o]) == 0) return true;
-  return is_setting(name, HL_SETTING_WHOLE);
+  return has_type(setting_of(key->path, strlen(key->path)), HL_SETTING_WHOLE);
 }
 
 /* Makes the value of a key at a frame as JSON: a number, which is rounded where only whole numbers are taken,
@@ -95,7 +128,28 @@ static json_t *value_at(const film_key *key, int frame, const char *name) {
   const double value = film_key_value(key, frame, 0);
   if (key->components == 3)
     return json_pack("[f, f, f]", value, film_key_value(key, frame, 1), film_key_value(key, frame, 2));
-  return is_whole(name) ? json_integer(llround(value)) : json_real(value);
+  return is_whole(key, name) ? json_integer(llround(value)) : json_real(value);
+}
+
+/* Makes a part that the scene leaves out, with its defaults: three numbers, or an object without keys. The
+ * part is named by the first `length` bytes of the path. Returns null if the path names no setting, or if the
+ * part is a list. */
+static json_t *part_with_defaults(const char *path, size_t length) {
+  const hl_setting *setting = setting_of(path, length);
+  if (has_type(setting, HL_SETTING_COLOR) || has_type(setting, HL_SETTING_POINT) ||
+      has_type(setting, HL_SETTING_DIRECTION))
+    return json_pack("[f, f, f]", setting->standard[0], setting->standard[1], setting->standard[2]);
+  const bool is_list = strspn(path + length + 1, "0123456789") > 0;
+  return is_list || setting_of(path, strlen(path)) == NULL ? NULL : json_object();
+}
+
+/* Steps into a part of the scene that is not the last one of the path, and adds it if its object leaves it
+ * out. length: the number of bytes of the path up to the end of `name`. */
+static json_t *step_or_add(json_t *at, const char *name, const char *path, size_t length) {
+  json_t *part = step_into(at, name);
+  if (part != NULL || !json_is_object(at)) return part;
+  part = part_with_defaults(path, length);
+  return part != NULL && json_object_set_new(at, name, part) == 0 ? part : NULL;
 }
 
 /* Writes a key's value at its path. A key that is absent from its object is added, because the scene has the
@@ -105,9 +159,11 @@ static hl_status write_value(json_t *root, const film_key *key, int frame, hl_er
   if (names == NULL) return no_memory(error);
   const bool color = key->components == 3;
   json_t *at = root;
-  while ((name = strsep(&rest, ".")) != NULL && rest != NULL && at != NULL) at = step_into(at, name);
+  while ((name = strsep(&rest, ".")) != NULL && rest != NULL && at != NULL)
+    at = step_or_add(at, name, key->path, (size_t)(name - names) + strlen(name));
   json_t *before = at != NULL ? step_into(at, name) : NULL;
-  bool good = color            ? json_is_object(at) && is_setting(name, HL_SETTING_COLOR)
+  bool good = color
+                  ? json_is_object(at) && has_type(setting_of(key->path, strlen(key->path)), HL_SETTING_COLOR)
               : before != NULL ? json_is_number(before)
                                : json_is_object(at) && name[0] != '\0';
   int written = -1;

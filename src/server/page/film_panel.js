@@ -19,6 +19,12 @@ export function numberPaths(value, path = "") {
 
 export const numberAt = (scene, path) => path.split(".").reduce((at, key) => at?.[key], scene);
 
+// Whether a scene has a place for the number of a path. What an object leaves out has its defaults, but not the elements of a list.
+function hasPlace(scene, path) {
+  const names = path.split("."), present = names.findIndex((_, n) => numberAt(scene, names.slice(0, n + 1).join(".")) === undefined);
+  return present < 0 || !names.slice(present).some((name) => /^\d+$/.test(name));
+}
+
 export const animateCommand = (scene, title, { turntable, frames, keys, fps, format }) =>
   [`halflight animate - --frames ${frames} ${turntable > 0 ? `--turntable ${turntable} ` : ""}`, ...keys.map((key) => `--key ${quoted(key)} `),
     `--fps ${fps} -o ${fileWord(title, format === "zip" ? "" : `.${format}`)} <<'END'\n${sceneText(scene)}END\n`].join("");
@@ -64,10 +70,8 @@ class Film {
     else this.#viewer.store.setPage({ film: this.#kept });
   }
 
-  // A track of a number for which the scene has no place, as of the scattering of a volume that scatters no longer.
-  get #gone() {
-    return this.tracks.find(({ path }) => path !== CAMERA && typeof numberAt(this.scene, path.split(".").slice(0, -1).join(".")) !== "object");
-  }
+  // A track of a number for which the scene has no place, as of a light that was removed.
+  get #gone() { return this.tracks.find(({ path }) => path !== CAMERA && !hasPlace(this.scene, path)); }
 
   get #isEmpty() { return this.tracks.length === 0 && !this.turns; }
 
