@@ -54,7 +54,8 @@ HL_API HL_WARN_UNUSED hl_status hl_mesh_create(hl_context *context, const hl_mes
 /* Reads PLY (ASCII and binary), STL (ASCII and binary), OBJ with the colours of its materials, glTF 2.0 files
  * (.gltf, .glb: the scene's triangles with base colours; textures are left out), VTK's PolyData (.vtp, legacy
  * .vtk) and the surfaces of VTK's unstructured grids (.vtu). Faces of more than three corners, also concave
- * faces, are divided into triangles. Colours of 8 bits are taken as sRGB, as other programs do.
+ * faces, are divided into triangles. Colours of 8 bits are taken as sRGB, as other programs do. The points of
+ * a PLY file without faces become spheres, as the vertices of PolyData do.
  *
  * PolyData: vertices become spheres, and lines become tubes. The radii of both come from the point array
  * "radius"; without this array, each radius is a 400th of the diagonal of the box around all points. Colours

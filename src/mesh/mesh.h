@@ -94,6 +94,12 @@ hl_status hl_mesh_note_polygon(mesh_parts *parts, size_t first, hl_error *error)
  * vertices must have been added. */
 hl_status hl_mesh_clip_polygons(mesh_parts *parts, hl_error *error);
 
+/* The radius of spheres and tubes for files that give none, in a box around all points; world units. */
+double hl_mesh_usual_radius(const double low[3], const double high[3]);
+
+/* Makes spheres of the vertices if there are no triangles. */
+hl_status hl_mesh_show_points(mesh_parts *parts, hl_error *error);
+
 /* Adds the triangles of the tubes around the lines. */
 hl_status hl_mesh_add_tubes(mesh_parts *parts, hl_error *error);
 

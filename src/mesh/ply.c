@@ -1,5 +1,6 @@
 /* mesh/ply.c - reads PLY files (Turk 1994), ASCII and binary of either byte order: vertices with normals and
- * colours, and faces with colours. Other elements and properties are ignored. */
+ * colours, and faces with colours. Other elements and properties are ignored. A file without faces is a cloud
+ * of points. */
 #include <math.h>
 #include <string.h>
 
@@ -393,5 +394,5 @@ hl_status hl_mesh_read_ply(mesh_text text, mesh_parts *parts, hl_error *error) {
   static const float none[4] = {1, 1, 1, 1};
   if (status == HL_OK && parts->face_colors != NULL && reader.colored < parts->triangle_count)
     status = color_faces(&reader, parts->triangle_count, none);
-  return status;
+  return status == HL_OK ? hl_mesh_show_points(parts, error) : status;
 }

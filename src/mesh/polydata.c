@@ -15,10 +15,6 @@
 #include "image/srgb.h"
 #include "volume/io/text.h"
 
-/* The radius of spheres and tubes in files that give none, as a fraction of the diagonal of the box around
- * all points. */
-static const double RADIUS_PART = 1.0 / 400;
-
 static bool is_color(const cell_values *shape) {
   return shape->type == HL_VOXEL_U8 && (shape->components == 3 || shape->components == 4);
 }
@@ -293,16 +289,15 @@ static hl_status convert_surface(const conversion *c) {
 
 /* The radius of spheres and tubes for files that give none; world units. */
 static double usual_radius(const polydata *data) {
-  double square = 0;
+  double low[3], high[3];
   for (size_t axis = 0; axis < 3; axis++) {
-    double low = INFINITY, high = -INFINITY;
+    low[axis] = INFINITY, high[axis] = -INFINITY;
     for (size_t p = 0; p < data->point_count; p++) {
       double at = data->points[3 * p + axis];
-      if (isfinite(at)) low = fmin(low, at), high = fmax(high, at);
+      if (isfinite(at)) low[axis] = fmin(low[axis], at), high[axis] = fmax(high[axis], at);
     }
-    if (high > low) square += (high - low) * (high - low);
   }
-  return square > 0 ? sqrt(square) * RADIUS_PART : 1;
+  return hl_mesh_usual_radius(low, high);
 }
 
 hl_status hl_polydata_to_parts(const polydata *data, mesh_parts *parts, hl_error *error) {

@@ -11,6 +11,7 @@
 
 #include <cmocka.h>
 
+#include "../asserts.h"
 #include "mesh/mesh.h"
 
 static char folder[] = "/tmp/halflight-mesh-XXXXXX";
@@ -70,6 +71,29 @@ static void test_ply(void **state) {
   hl_mesh_release(mesh);
   for (size_t length = 0; length < sizeof PLY - 9; length++) /* without the last face all is refused */
     assert_null(load(context, "a.ply", PLY, length, ""));
+  assert_int_equal(hl_context_memory_held(context), 0);
+  hl_context_destroy(context);
+}
+
+/* A file without faces is a cloud of points: each is a sphere of a 400th of the diagonal of their box. */
+static void test_ply_points(void **state) {
+  (void)state;
+  static const char text[] =
+      "ply\nformat ascii 1.0\nelement vertex 3\nproperty float x\nproperty float y\n"
+      "property float z\nproperty uchar red\nproperty uchar green\nproperty uchar blue\n"
+      "end_header\n0 0 0 255 0 0\n3 0 0 0 255 0\n0 4 12 0 0 255\n";
+  hl_context *context = NULL;
+  assert_int_equal(hl_context_create(NULL, &context, NULL), HL_OK);
+  hl_mesh *mesh = load(context, "p.ply", text, sizeof text - 1, NULL);
+  const hl_mesh_description *d = hl_mesh_describe(mesh);
+  assert_int_equal(d->triangle_count, 0);
+  assert_int_equal(d->sphere_count, 3);
+  for (size_t n = 0; n < 3; n++) {
+    assert_near(d->spheres[n][3], 13.0 / 400, 1e-7);
+    for (size_t c = 0; c < 3; c++) assert_near(d->sphere_colors[n][c], c == n ? 1 : 0, 1e-7);
+  }
+  assert_true(d->spheres[2][0] == 0 && d->spheres[2][1] == 4 && d->spheres[2][2] == 12);
+  hl_mesh_release(mesh);
   assert_int_equal(hl_context_memory_held(context), 0);
   hl_context_destroy(context);
 }
@@ -443,6 +467,7 @@ static void test_round(void **state) {
 
 int main(void) {
   const struct CMUnitTest tests[] = {cmocka_unit_test(test_ply),
+                                     cmocka_unit_test(test_ply_points),
                                      cmocka_unit_test(test_ply_faces),
                                      cmocka_unit_test(test_cube_is_closed),
                                      cmocka_unit_test(test_empty_pieces),

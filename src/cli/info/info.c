@@ -152,6 +152,15 @@ static int info_of_light(cli_host *host, const cli_value *values, const char *pa
   return exit_code;
 }
 
+/* What has colours in a mesh; null if nothing has. */
+static const char *colored_part(const hl_mesh_description *mesh) {
+  return mesh->colors != NULL          ? "vertices"
+         : mesh->face_colors != NULL   ? "faces"
+         : mesh->sphere_colors != NULL ? "spheres"
+         : mesh->line_colors != NULL   ? "lines"
+                                       : NULL;
+}
+
 static void print_json_mesh(const char *path, const hl_mesh_description *mesh, const double low[3],
                             const double high[3]) {
   json_writer json = {0};
@@ -162,7 +171,7 @@ static void print_json_mesh(const char *path, const hl_mesh_description *mesh, c
   json_whole_number(&json, "spheres", mesh->sphere_count);
   json_whole_number(&json, "lines", mesh->line_count);
   json_bool(&json, "normals", mesh->normals != NULL);
-  json_text(&json, "colors", mesh->colors != NULL ? "vertices" : mesh->face_colors != NULL ? "faces" : NULL);
+  json_text(&json, "colors", colored_part(mesh));
   json_open_object(&json, "box");
   json_numbers(&json, "min", low, 3);
   json_numbers(&json, "max", high, 3);
@@ -175,10 +184,11 @@ static void print_mesh(const char *path, const hl_mesh_description *mesh, const 
   printf("%s\n  mesh        %zu triangles of %zu vertices", path, mesh->triangle_count, mesh->vertex_count);
   if (mesh->sphere_count > 0) printf(", %zu spheres", mesh->sphere_count);
   if (mesh->line_count > 0) printf(", %zu lines, whose tubes are among the triangles", mesh->line_count);
-  printf("\n  normals     %s\n", mesh->normals != NULL ? "of the file" : "none: faces and edges are found");
-  printf("  colours     %s\n", mesh->colors != NULL        ? "of vertices"
-                               : mesh->face_colors != NULL ? "of faces"
-                                                           : "none");
+  printf("\n");
+  if (mesh->triangle_count > 0)
+    printf("  normals     %s\n", mesh->normals != NULL ? "of the file" : "none: faces and edges are found");
+  const char *colored = colored_part(mesh);
+  printf("  colours     %s%s\n", colored != NULL ? "of " : "none", colored != NULL ? colored : "");
   printf("  world box   x %.9g to %.9g, y %.9g to %.9g, z %.9g to %.9g\n", low[0], high[0], low[1], high[1],
          low[2], high[2]);
 }
