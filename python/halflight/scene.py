@@ -172,9 +172,15 @@ class Scene:
         return self._text(None)
 
     def _text(self, folder: str | None) -> str:
-        """The text, for a picture in a folder: files in it, or below, are named relative to it."""
-        text = ffi.new("char **")
-        call(lib.hl_scene_to_json_beside, context, self._handle,
+        """The text, for a picture in a folder: files in it, or below, are named relative to it. A picture's text does not
+        tell the number of threads, which changes no picture.
+        """
+        text, handle = ffi.new("char **"), self._handle
+        if folder is not None and lib.hl_scene_describe(handle).render.threads != 0:
+            plain = ffi.new("hl_scene_description *", lib.hl_scene_describe(handle)[0])
+            plain.render.threads = 0
+            handle = made(lib.hl_scene_create, "hl_scene", lib.hl_scene_release, context, plain)
+        call(lib.hl_scene_to_json_beside, context, handle,
              ffi.NULL if folder is None else ffi.new("char[]", os.fsencode(folder)), text)
         try:
             return text_of(text[0])

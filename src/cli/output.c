@@ -82,6 +82,13 @@ int output_to_stdout(const unsigned char *bytes, size_t length) {
   return finish_stdout();
 }
 
+/* The scene without its number of threads, which changes no picture. The caller owns it. */
+static hl_status make_plain(hl_context *context, const hl_scene *scene, hl_scene **plain, hl_error *error) {
+  hl_scene_description description = *hl_scene_describe(scene);
+  description.render.threads = 0;
+  return hl_scene_create(context, &description, plain, error);
+}
+
 hl_status output_scene_text(hl_context *context, const hl_scene *scene, const char *path, char **text,
                             hl_error *error) {
   char *folder = strdup(path);
@@ -90,7 +97,12 @@ hl_status output_scene_text(hl_context *context, const hl_scene *scene, const ch
     return HL_ERROR_MEMORY;
   }
   folder[base_name(folder) - folder] = '\0';
-  hl_status status = hl_scene_to_json_beside(context, scene, folder, text, error);
+  hl_scene *plain = NULL;
+  hl_status status = HL_OK;
+  if (hl_scene_describe(scene)->render.threads != 0) status = make_plain(context, scene, &plain, error);
+  if (status == HL_OK)
+    status = hl_scene_to_json_beside(context, plain != NULL ? plain : scene, folder, text, error);
+  hl_scene_release(plain);
   free(folder);
   return status;
 }

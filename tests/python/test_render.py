@@ -64,6 +64,13 @@ def test_a_png_is_the_program_s_too(program, tmp_path, blob):
     assert (tmp_path / "python.png").read_bytes() == (tmp_path / "program.png").read_bytes()
 
 
+def test_a_png_does_not_tell_its_threads(tmp_path, blob):
+    halflight.Volume(blob).save(tmp_path / "blob.nrrd")
+    for threads in 0, 2:
+        halflight.render(str(tmp_path / "blob.nrrd"), size=32, threads=threads).save(tmp_path / f"{threads}.png")
+    assert (tmp_path / "0.png").read_bytes() == (tmp_path / "2.png").read_bytes()
+
+
 def test_a_png_tells_no_more_than_it_is_asked_to(program, tmp_path, blob):
     source = tmp_path / "blob.npy"
     np.save(source, blob)

@@ -8,3 +8,9 @@ for shadows in off hard soft; do
     cmp first.npy again.npy
   done
 done
+# The scene in a picture does not tell the threads that made it.
+for threads in 0 1 3; do
+  halflight render ball_20x20x20_uint8.raw --size 20x16 --quiet --threads $threads -o picture.png
+  [ $threads != 0 ] || cp picture.png first.png
+  cmp first.png picture.png
+done
