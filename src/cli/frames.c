@@ -98,6 +98,20 @@ void frames_draw_bar(cli_host *host, int done, int wanted, int rendered, double 
   host_draw_bar(host, (double)done / wanted, text);
 }
 
+/* Writes a picture with its overlays. */
+static hl_status write_picture(const cli_host *host, const hl_image *image, const hl_scene *scene,
+                               const frames_style *style, const char *path, hl_image_write_options *options,
+                               hl_error *error) {
+  cli_overlay overlay;
+  if (style->overlay == NULL) return overlay_write(host->context, NULL, image, scene, path, options, error);
+  hl_status status = HL_ERROR_MEMORY;
+  if (overlay_for_picture(style->overlay, style->number, style->file, &overlay))
+    status = overlay_write(host->context, &overlay, image, scene, path, options, error);
+  else snprintf(error->message, sizeof error->message, "out of memory for a text");
+  overlay_release(&overlay);
+  return status;
+}
+
 hl_status frames_render(const cli_host *host, hl_renderer *renderer, const hl_scene *scene,
                         frames_style style, const char *path, hl_error *error) {
   const hl_scene_description *d = hl_scene_describe(scene);
@@ -113,9 +127,8 @@ hl_status frames_render(const cli_host *host, hl_renderer *renderer, const hl_sc
     hl_scene_write_options(scene, &options);
     options.scene_json = text;
     if (style.opaque) options.background_transparent = 0;
-    status = host_interrupted()
-                 ? HL_ERROR_CANCELLED
-                 : overlay_write(host->context, style.overlay, image, scene, path, &options, error);
+    status = host_interrupted() ? HL_ERROR_CANCELLED
+                                : write_picture(host, image, scene, &style, path, &options, error);
   }
   hl_text_release(host->context, text);
   hl_image_destroy(image);

@@ -48,6 +48,8 @@ typedef struct frames_style {
   bool opaque;      /* whether pictures are opaque even if the scene's background is transparent */
   bool no_metadata; /* whether pictures do not carry their scenes */
   const struct cli_overlay *overlay; /* the overlays that are drawn over each picture; may be null */
+  int number;                        /* the picture's number, from 0 */
+  const char *file;                  /* the path of the picture's volume or mesh; may be null */
 } frames_style;
 
 /* Renders a scene to a picture. */

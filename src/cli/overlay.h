@@ -33,6 +33,12 @@ bool overlay_is_any(const cli_overlay *overlay);
  * asked have their usual ones. */
 void overlay_hold(cli_overlay *overlay);
 
+/* Copies an overlay for one picture of a series or a film. In the copy's annotations, "%d" and "%04d" are
+ * replaced by the picture's number, and "%s" by the name of its file, without folder and extension. file: may
+ * be null; "%s" then stays. Returns false if memory is short. Call overlay_release() on the copy, also after
+ * a failure. */
+bool overlay_for_picture(const cli_overlay *overlay, int number, const char *file, cli_overlay *copy);
+
 /* Finds out, before a picture of the scene is made, whether all overlays can be drawn over it. */
 hl_status overlay_check_scene(hl_context *context, const cli_overlay *overlay, const hl_scene *scene,
                               hl_error *error);

@@ -43,7 +43,9 @@ static hl_status do_frame(animate_frames *frames, hl_renderer *renderer, int fra
   if (overlay_is_any(frames->style.overlay) || !animate_frame_is_there(frames, frame)) {
     animate_frame_path(frames, frame, path, sizeof path);
     hl_status status = film_scene(frames->film, frame, &scene, error);
-    if (status == HL_OK) status = frames_render(frames->host, renderer, scene, frames->style, path, error);
+    frames_style style = frames->style;
+    style.number = frame;
+    if (status == HL_OK) status = frames_render(frames->host, renderer, scene, style, path, error);
     hl_scene_release(scene);
     if (status != HL_OK) return status;
     frames->rendered++;

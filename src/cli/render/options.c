@@ -122,8 +122,10 @@ const cli_option render_options[RENDER_OPTION_COUNT] = {
     [RENDER_ANNOTATE] = {.name = "annotate",
                          .kind = OPTION_TEXT,
                          .argument = "TEXT@X,Y[,Z]",
-                         .help = "a text at fractions of the picture from its upper\nleft, or beside a point "
-                                 "X,Y,Z of the world; give the\noption again for more texts",
+                         .help =
+                             "a text at fractions of the picture from its upper\nleft, or beside a point "
+                             "X,Y,Z of the world; in a\nseries and in a film %d is the picture's number, and "
+                             "%s\nthe name of a series' file; give the option again for more\ntexts",
                          .repeatable = true},
     [RENDER_PLACE] =
         {.name = "place",

@@ -246,7 +246,10 @@ static int make_picture(series_job *job, hl_renderer *renderer, int number) {
   }
   hl_status status = move(job, number, &scene, &error);
   bool there = status == HL_OK && is_there(job, number, scene, path); /* for a label map */
-  const frames_style style = {.no_metadata = job->values[RENDER_NO_METADATA].given, .overlay = &job->overlay};
+  const frames_style style = {.no_metadata = job->values[RENDER_NO_METADATA].given,
+                              .overlay = &job->overlay,
+                              .number = number,
+                              .file = job->files.names[number]};
   if (status == HL_OK && !there) status = frames_render(&job->host, renderer, scene, style, path, &error);
   hl_scene_release(scene);
   if (status == HL_ERROR_CANCELLED) return EXIT_CODE_INTERRUPTED;
