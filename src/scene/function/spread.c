@@ -123,6 +123,7 @@ static hl_status spread_rows(hl_context *context, rows *r, const double old[2], 
 }
 
 hl_range_scale hl_transfer_function_scale(const hl_transfer_function *function) {
+  HL_DOOR;
   const size_t count = function != NULL ? function->color_count : 0;
   if (count < PIECES + 1 || !(function->color[0].value > 0)) return HL_RANGE_LINEAR;
   const double low = function->color[0].value, length = log(function->color[count - 1].value / low);
