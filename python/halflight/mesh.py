@@ -15,6 +15,7 @@ from ._words import check_keywords
 from .arrays import matrix_of
 from .keywords import MaterialSettings, MeshSettings
 from .mesh_sources import Surface
+from .volume import as_volume
 
 __all__ = ["Mesh", "MeshLook"]
 
@@ -249,6 +250,40 @@ class Mesh:
         place = ffi.new("hl_mesh **")
         call(lib.hl_scene_make_floor, context, lib.hl_scene_describe(scene._handle), ffi.NULL, size, place)
         return cls._of(ffi.gc(place[0], lib.hl_mesh_release), None, {"color": 0.5, "specular": 0.0, "cut": False, **look})
+
+    @classmethod
+    def isosurface(cls, volume: Any, value: float, **look: Unpack[MeshLook]) -> Mesh:
+        """The surface on which a volume has a value, as triangles in the world of the volume's file.
+
+        Parameters
+        ----------
+        volume : Volume, path or array
+            The volume. What cuts it in pictures does not cut the surface.
+        value : float
+            The value on the surface. Triangles show their fronts to the lesser values.
+        **look : MeshLook
+            As for `Mesh`.
+
+        Examples
+        --------
+        >>> x, y, z = np.ogrid[-8:9, -8:9, -8:9]
+        >>> ball = Mesh.isosurface((6 - np.sqrt(x * x + y * y + z * z)).astype(np.float32), 0)
+        >>> ball.triangle_count > 500
+        True
+        """
+        handle = made(lib.hl_mesh_of_isosurface, "hl_mesh", lib.hl_mesh_release, context, as_volume(volume)._handle,
+                      _settings.number("value", value))
+        return cls._of(handle, None, dict(look))
+
+    def save(self, path: str | os.PathLike[str]) -> None:
+        """Write the triangles as .ply (with normals and colours), .stl or .obj (with normals), in the world's units.
+
+        Raises
+        ------
+        UnsupportedError
+            If the name has another ending, or the mesh has no triangles.
+        """
+        call(lib.hl_mesh_save, context, self._handle, os.fsencode(path))
 
     def replace(self, **look: Unpack[MeshLook]) -> Mesh:
         """The same triangles with another look."""

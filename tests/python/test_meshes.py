@@ -94,3 +94,20 @@ def test_spheres_lines_and_floors(clear):
                         ({"spheres": [(0, 0, 0, 1)], "sphere_colors": [(1, 1, 1)] * 2}, "2 rows for 1 spheres")):
         with pytest.raises((TypeError, ValueError), match=text):
             Mesh(**wrong)
+
+
+def test_surfaces_of_volumes_are_written(tmp_path):
+    """The kernel turns the distance r from the middle into r + 1 / (3 r) (derived: a sixth of the Laplacian, 2 / r, is added)."""
+    x, y, z = np.ogrid[-9:10, -9:10, -9:10]
+    ball = Mesh.isosurface(Volume((6 - np.sqrt(x * x + y * y + z * z)).astype(np.float32), spacing=2), 0, color="gold")
+    vertices, arrays = ball._arrays()
+    one, two, three = (vertices[arrays["triangles"][:, corner]].astype(float) for corner in range(3))
+    radius = (6 + np.sqrt(36 - 4 / 3)) / 2 * 2  # of the two solutions the greater one, in voxels of 2
+    assert abs(np.einsum("ij,ij", one, np.cross(two, three))) / 6 == pytest.approx(4 / 3 * np.pi * radius**3, rel=0.01)
+    for name in ("ball.stl", "ball.ply", "ball.obj"):
+        ball.save(tmp_path / name)
+        assert Mesh(tmp_path / name).triangle_count == ball.triangle_count
+    with pytest.raises(NotImplementedError, match=r"ball\.step"):
+        ball.save(tmp_path / "ball.step")
+    with pytest.raises(ValueError, match="value"):
+        Mesh.isosurface(np.zeros((4, 4, 4), np.float32), 3)
