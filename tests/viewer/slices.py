@@ -56,7 +56,8 @@ def area(name):
 def still(browser):
     """The slices and the readout are those of the crosshair."""
     rest(browser)
-    browser.run("new Promise((done) => setTimeout(done, 300))")
+    browser.run("new Promise((done) => requestAnimationFrame(() => requestAnimationFrame(done)))")  # the planes have their sizes
+    browser.wait("!halflight.slices.isBusy")
 
 
 def readout(browser):
@@ -324,7 +325,7 @@ def clicks_in_the_picture(browser):
     middle = world((20, 25, 15))
     for step in ((0, 0), (35, 20), (-30, 25)):
         browser.click((x + step[0], y + step[1]))
-        browser.wait(f"JSON.stringify(halflight.slices.cursor) !== {json.dumps(json.dumps(middle, separators=(',', ':')))}")
+        browser.wait(f"Math.hypot(...halflight.slices.cursor.map((x, k) => x - {json.dumps(middle)}[k])) > 1")
         still(browser)
         cursor = browser.run("halflight.slices.cursor")
         far = math.dist(cursor, middle)

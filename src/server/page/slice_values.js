@@ -70,6 +70,9 @@ export class SliceValues {
     if (!this.#busy) this.#load();
   }
 
+  // Whether values are still to come.
+  get isBusy() { return this.#busy; }
+
   // Finer voxels have taken the place of those that are known. An answer that is on its way is of the old ones and is dropped.
   forget() {
     this.#known = new Map();

@@ -29,6 +29,7 @@ export class Slices {
   #cross = make("svg:path", { class: "crosshair in-picture", "aria-hidden": "true" });
   #reading = null; // the place whose readouts are asked for
   #readout = null;
+  #reads = 0; // number of readouts that are still to come
   #onReadout = () => {};
   #pickNumber = 0;
 
@@ -150,6 +151,9 @@ export class Slices {
     this.#cross.setAttribute("d", at === null ? "" : `M${at[0] - ARM} ${at[1]}h${ARM - 4}m8 0h${ARM - 4}M${at[0]} ${at[1] - ARM}v${ARM - 4}m0 8v${ARM - 4}`);
   }
 
+  // Whether values of planes or of the crosshair are still to come.
+  get isBusy() { return this.#reads > 0 || [...this.#values.values()].some((values) => values.isBusy); }
+
   view(name) { return this.#views.find((view) => view.name === name); }
   shown(name) { return this.#values.get(name)?.shown ?? null; }
   drawMarks(view) { this.#marks.drawPlane(view); }
@@ -193,6 +197,7 @@ export class Slices {
     const { channel } = this.#viewer, { source, cursor } = this, key = JSON.stringify([source.volume, cursor]);
     if (this.#reading === key) return;
     this.#reading = key;
+    this.#reads++;
     const index = voxelAt(source.grid, source.transform, cursor);
     try {
       const read = async ({ volume, of = "voxels", grid, transform }) => {
@@ -211,6 +216,8 @@ export class Slices {
     } catch (error) {
       this.#reading = null;
       this.#viewer.failed(error);
+    } finally {
+      this.#reads--;
     }
   }
 }
