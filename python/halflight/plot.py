@@ -25,7 +25,7 @@ def world_height(image: Image) -> float:
     return 2 * math.dist(camera.position, camera.target) * math.tan(math.radians(camera.fovy_deg) / 2)
 
 
-def ink_over(image: Image, axis: Axes) -> str:
+def ink_over(image: Image, axis: Any) -> str:
     """Black or white, whichever is seen better on the ground of the picture: as in figures, the limit is the middle of
     sRGB's scale.
     """
@@ -34,7 +34,8 @@ def ink_over(image: Image, axis: Axes) -> str:
     description = lib.hl_scene_describe(image.scene._handle)
     ground = np.array(list(description.background))
     if description.background_transparent:
-        red, green, blue, alpha = to_rgba(axis.figure.get_facecolor())
+        paper: Any = to_rgba(axis.figure.get_facecolor())
+        red, green, blue, alpha = paper
         ground = alpha * np.array(srgb(red, green, blue)) + (1 - alpha)
     return "white" if float(ground @ (0.2126, 0.7152, 0.0722)) < 0.214 else "black"
 
@@ -71,6 +72,7 @@ def plot(image: Image, ax: Axes | None, colorbar: bool, scale_bar: bool, unit: s
             log = lib.hl_transfer_function_scale(ffi.addressof(function)) == lib.HL_RANGE_LOG
             values = (np.geomspace if log else np.linspace)(low, high, 256)
             shown = to_srgb(np.stack([np.interp(values, points[:, 0], points[:, c]) for c in (1, 2, 3)], 1))
-            bar = ScalarMappable((LogNorm if log else Normalize)(low, high), ListedColormap(shown.tolist()))
+            norm: Any = LogNorm if log else Normalize
+            bar = ScalarMappable(norm(low, high), ListedColormap(shown.tolist()))
             axis.figure.colorbar(bar, ax=axis)
     return axis
