@@ -298,7 +298,10 @@ static hl_status take_voxels(const making *m, const hl_volume_description *grid,
   if (voxels == NULL) return hl_fail_memory(m->error, count * sizeof *voxels, m->subject);
   hl_particle_field_copy(field, m->pool, voxels);
   hl_particle_field_release(m->context, field);
-  return hl_volume_adopt(m->context, grid, m->subject, voxels, volume, m->error);
+  if (!hl_pool_cancelled(m->pool))
+    return hl_volume_adopt(m->context, grid, m->subject, voxels, volume, m->error);
+  hl_release(m->context, voxels);
+  return hl_fail(m->error, HL_ERROR_CANCELLED, "%s: stopped", m->subject);
 }
 
 static hl_status take_field(const making *m, hl_particle_field *field, hl_volume **volume) {
