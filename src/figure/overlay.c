@@ -451,6 +451,8 @@ hl_status hl_overlay_strip(const hl_ink *ink, const hl_overlay *overlay, const h
     status = find_box(ink, &place, hl_overlay_legend, &box, error);
   } while (status == HL_OK && box.left + box.width > strip.left + strip.width - place.margin &&
            place.legend.height < box.height + 2 * place.legend.strip_height);
+  place.legend.height = fmax(place.legend.height, box.height); /* no column is lower than it may be */
+  if (status == HL_OK) status = find_box(ink, &place, hl_overlay_legend, &box, error);
   *height = box.height + 2 * place.margin;
   return status == HL_OK && draws ? hl_overlay_legend(ink, &place, error) : status;
 }

@@ -297,6 +297,12 @@ def legends_below():
     high = float(re.search(r"x ([\d.]+) mm", done.stderr).group(1))
     size = re.search(r"Page size:\s+\S+ x (\S+)", tool("pdfinfo", "page.pdf")).group(1)
     check(abs(float(size) / 72 * 25.4 - high) < 0.1, f"{size} points, and {high} mm are told")
+    few = labels * (labels < 4)  # beside a strip of colours there is room for three rows in one column
+    nifti("few.nii", few, 1.0)
+    nifti("scan.nii", np.hypot(*np.mgrid[-1:1:32j, -1:1:32j, -1:1:32j][:2]).astype(np.float32), 1.0)
+    halflight("scan.nii", "--look", "xray", "--labels", "few.nii", "--label-table", "table.csv", "--width", "183mm", "--dpi", "72", "--quiet", *legend, "--place", "legend=below", "-o", "few.pdf")
+    lefts = re.findall(r'xMin="([\d.]+)"[^>]*>Region', tool("pdftotext", "-bbox", "few.pdf", "-"))
+    check(len(lefts) == 3 and len(set(lefts)) == 1, f"{lefts}")
     said = halflight(*look, "--scale-bar", "auto", "--ortho", "--place", "scale-bar=below", "-o", "no.png", exit_code=2)
     check("no PART=CORNER" in said, said)
 
