@@ -137,10 +137,18 @@ static void measure_objects(const distances *d, hl_data_analysis *a) {
   a->depth = (double)beyond;
 }
 
+/* Limits all distances to `most`. A few voxels that are a hundred times as bright as the objects, such as hot
+ * pixels and dust, would otherwise have most of the variance between classes, and objects would count as
+ * background. */
+static void limit_to(const distances *d, double most) {
+  for (size_t n = d->count; n > 0 && (double)d->values[n - 1] > most; n--) d->values[n - 1] = (float)most;
+}
+
 /* Finds the thresholds, and measures of the objects, relative to the sample's range. d: the distances to one
  * side of the background. noise: a distance that the noise at the border hardly reaches. */
 static void find_thresholds(const distances *d, double noise, hl_data_analysis *a) {
   a->top = fmax(hl_quantile(d->values, d->count, 0.9999), 1e-9);
+  limit_to(d, a->top);
   a->solid = hl_threshold_otsu(d->values, d->count, -1);
   a->faint = fmin(hl_threshold_cross_entropy(d->values, d->count, FLOOR * a->top), a->solid);
   a->faint = fmin(fmax(fmax(a->faint, noise), 0.3 * a->solid), 0.8 * a->solid);

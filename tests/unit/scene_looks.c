@@ -346,6 +346,31 @@ static double opacity_of_ball(hl_context *context, double radius) {
   return opacity;
 }
 
+/* The value beyond which a ball of 100 in noisy air surely is matter, of a volume in which `hot` voxels are a
+ * thousand times as bright. */
+static double solid_beside_hot_voxels(hl_context *context, int hot) {
+  hl_data_analysis a;
+  for (int v = 0; v < COUNT; v++)
+    values[v] = (float)(100 / (1 + exp((distance(v % N, v / N % N, v / N / N, 24, 24, 24) - 15) / 0.7)) +
+                        10 * noise(v % N, v / N % N, v / N / N));
+  for (int n = 0; n < hot; n++) values[(n * 10007 + 31) % COUNT] = 1e5f;
+  hl_volume *volume = make_volume(context, N, values);
+  assert_int_equal(hl_data_analyse(volume, &a, NULL), HL_OK);
+  assert_int_equal(a.kind, HL_DATA_SURFACES);
+  hl_volume_release(volume);
+  return a.background + a.solid;
+}
+
+/* Ten hot voxels of 110,592 do not hide the object. */
+static void hot_voxels_hide_no_objects(void **state) {
+  (void)state;
+  hl_context *context = make_context();
+  const double without = solid_beside_hot_voxels(context, 0);
+  assert_true(without > 35 && without < 65);
+  assert_near(solid_beside_hot_voxels(context, 10), without, 2);
+  hl_context_destroy(context);
+}
+
 /* In coarse grids an edge absorbs more: the same matter is as opaque however few voxels it has. */
 static void coarse_matter_is_as_opaque(void **state) {
   (void)state;
@@ -541,6 +566,7 @@ int main(void) {
       cmocka_unit_test(dark_skin_is_whole),
       cmocka_unit_test(cut_faces_tell_flesh_from_bone),
       cmocka_unit_test(cut_faces_tell_tissues),
+      cmocka_unit_test(hot_voxels_hide_no_objects),
       cmocka_unit_test(coarse_matter_is_as_opaque),
       cmocka_unit_test(skin_is_for_bodies),
       cmocka_unit_test(labels_have_colors_of_their_own),
