@@ -363,6 +363,12 @@ HL_API HL_WARN_UNUSED hl_status hl_scene_for_volume_look(hl_context *context, hl
                                                          const char *file, const char *look, hl_scene **scene,
                                                          hl_error *error);
 
+/* Makes a scene of meshes without a volume. Like a bare volume they get a camera that frames them, a soft key
+ * light, a sky and a dark grey background. meshes: [count], each with its mesh; the scene keeps references to
+ * the meshes. *scene is owned by the caller, who releases it. */
+HL_API HL_WARN_UNUSED hl_status hl_scene_for_meshes(hl_context *context, const hl_scene_mesh *meshes,
+                                                    size_t count, hl_scene **scene, hl_error *error);
+
 /* Joins several scenes that hl_scene_for_volume() has made of one volume each. All volumes stand in one
  * world, each with its own look. Light, background and render settings are taken from the first scene. The
  * distance between sheets is the least distance of all scenes, and the camera shows all volumes. A volume

@@ -124,9 +124,11 @@ def _set_camera(struct: Any, camera: Any) -> None:
 
 
 def scene_for_meshes() -> Any:
-    """An empty scene with the camera and the light that the program gives to meshes alone."""
-    text = (b'{"halflight": 1, "meshes": [{"vertices": [[0, 0, 0], [1, 0, 0], [0, 1, 1]], "triangles": [[0, 1, 2]]}]}')
-    return made(lib.hl_scene_from_json, "hl_scene", lib.hl_scene_release, context, text, len(text), ffi.NULL, b"meshes")
+    """A scene of one small triangle, with the camera and the light that the program gives to meshes alone."""
+    keep: list[Any] = []
+    array = ffi.new("hl_scene_mesh[1]")
+    Mesh([(0, 0, 0), (1, 0, 0), (0, 1, 1)], [(0, 1, 2)])._fill(array[0], keep, "")
+    return made(lib.hl_scene_for_meshes, "hl_scene", lib.hl_scene_release, context, array, 1)
 
 
 def _options(settings: Mapping[str, Any], volumes: Sequence[Volume], flags: int) -> dict[str, str]:

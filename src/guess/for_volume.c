@@ -29,9 +29,6 @@
 #define ASIDE_ELEVATION 40
 #define FILL_AZIMUTH    0 /* fill light from the eye: it suits a key light from any direction */
 #define FILL_ELEVATION  0
-/* The memory that the memory limit must leave free beside a volume, so that the scene gets a sky. The sky's
- * field, and the work of making it, take less than half of this. */
-#define ROOM_FOR_SKY (512u << 20)
 /* Constant light that takes the place of a sky, as a fraction of the sky's strength. */
 #define INSTEAD 0.35
 /* Number of sheets across the grid's diagonal. Shaded surfaces need more sheets than media, because one
@@ -102,6 +99,11 @@ void hl_scene_choose_sky(double strength, hl_scene_description *description) {
   memcpy(sky->horizon, horizon, sizeof horizon);
   memcpy(sky->ground, ground, sizeof ground);
   memcpy(sky->up, description->camera.up, sizeof sky->up);
+}
+
+void hl_scene_choose_background(hl_scene_description *description) {
+  static const double dark_grey[3] = {0.022, 0.025, 0.030};
+  memcpy(description->background, dark_grey, sizeof dark_grey);
 }
 
 void hl_scene_level_sky(hl_scene_description *description) {
@@ -237,12 +239,11 @@ static hl_status make_scene_of(hl_context *context, hl_volume *volume, const cha
   if (status == HL_OK) {
     choose_lights(look, lights, &description.light_count);
     description.lights = lights;
-    if (!look->on_black)
-      memcpy(description.background, (double[3]){0.022, 0.025, 0.030}, sizeof description.background);
+    if (!look->on_black) hl_scene_choose_background(&description);
     hl_scene_choose_sky(look->sky, &description);
     description.render.kernel = labelled ? HL_KERNEL_BSPLINE : look->kernel; /* smooth labels are splines */
     status = expose(look, &analysis, lights, &description, error);
-    if (!has_room(volume, ROOM_FOR_SKY)) hl_scene_level_sky(&description);
+    if (!has_room(volume, HL_ROOM_FOR_SKY)) hl_scene_level_sky(&description);
   }
   if (status == HL_OK) status = hl_scene_create(context, &description, scene, error);
   hl_transfer_function_release(context, &scene_volume.transfer_function);

@@ -12,6 +12,13 @@ hl_status hl_scene_frame(const hl_scene_description *description, hl_camera *cam
  * camera. */
 void hl_scene_key_light(hl_light *light);
 
+/* The memory that the memory limit must leave free beside voxels, so that a scene gets a sky. The sky's
+ * field, and the work of making it, take less than half of this. */
+#define HL_ROOM_FOR_SKY (512u << 20)
+
+/* Chooses the background of a scene that gives none: a dark grey. */
+void hl_scene_choose_background(hl_scene_description *description);
+
 /* Constant light beside a sky, as a fraction of the sky's strength, so that no hollow is black. */
 #define BESIDE_SKY 0.04
 

@@ -24,11 +24,11 @@ static void set_apart(hl_scene_mesh *meshes, size_t count) {
       memcpy(meshes[m].color, grey_blue, sizeof grey_blue);
 }
 
-/* Replaces *scene by a copy with more meshes. replaced: whether the scene's own meshes are left out. */
+/* Replaces *scene by a copy with more meshes. */
 static hl_status add_meshes(hl_context *context, const hl_scene_mesh *added, size_t count, bool bare,
-                            bool replaced, hl_scene **scene, hl_error *error) {
+                            hl_scene **scene, hl_error *error) {
   hl_scene_description description = *hl_scene_describe(*scene);
-  size_t before = replaced ? 0 : description.mesh_count;
+  const size_t before = description.mesh_count;
   hl_scene_mesh *meshes = malloc((before + count) * sizeof *meshes);
   hl_scene *made = NULL;
   if (meshes == NULL) {
@@ -49,15 +49,6 @@ static hl_status add_meshes(hl_context *context, const hl_scene_mesh *added, siz
   return HL_OK;
 }
 
-/* Makes a scene for meshes without a volume. It has the default camera and light, and one triangle as a
- * placeholder, which the meshes will replace. */
-static hl_status begin_scene(hl_context *context, hl_scene **scene, hl_error *error) {
-  static const char text[] =
-      "{\"halflight\": 1, \"meshes\": [{\"vertices\": [[0, 0, 0], [1, 0, 0], [0, 1, 1]], "
-      "\"triangles\": [[0, 1, 2]]}]}";
-  return hl_scene_from_json(context, text, sizeof text - 1, NULL, "meshes", scene, error);
-}
-
 hl_status load_mesh(hl_context *context, const char *path, size_t index, hl_scene_mesh *mesh,
                     hl_error *error) {
   hl_scene_mesh_defaults(mesh);
@@ -72,9 +63,8 @@ hl_status load_mesh(hl_context *context, const char *path, size_t index, hl_scen
 
 hl_status join_meshes(hl_context *context, const hl_scene_mesh *added, size_t count, bool bare,
                       hl_scene **scene, hl_error *error) {
-  bool alone = *scene == NULL;
-  hl_status status = alone ? begin_scene(context, scene, error) : HL_OK;
-  return status == HL_OK ? add_meshes(context, added, count, bare, alone, scene, error) : status;
+  return *scene == NULL ? hl_scene_for_meshes(context, added, count, scene, error)
+                        : add_meshes(context, added, count, bare, scene, error);
 }
 
 /* ---- scenes ---- */

@@ -79,6 +79,7 @@ VALUES = {
     "const hl_image_write_options *": "&write_options", "const hl_reference_options *": "&reference_options",
     "const hl_shapes_options *": "&shapes_options", "const hl_reslice_options *": "&reslice_options",
     "const hl_figure *": "&figure", "hl_figure *": "&other_figure", "hl_figure_panel *": "&panel", "hl_overlay *": "&overlay",
+    "const hl_scene_mesh *": "&scene_mesh",
     "hl_mesh *": "mesh", "const hl_mesh *": "mesh", "hl_mesh **": "&any",
     "const hl_mesh_description *": "&mesh_description",
     "const hl_cells_description *": "&cells_description", "const hl_amr_description *": "&amr_description",
@@ -102,6 +103,7 @@ static hl_preview *preview;
 static hl_renderer *renderer;
 static hl_image *image;
 static hl_mesh *mesh;
+static hl_scene_mesh scene_mesh;
 static hl_mesh_description mesh_description;
 static hl_cells_description cells_description;
 static hl_amr_description amr_description;
@@ -146,6 +148,8 @@ static int make(void) {
   mesh_description.positions = corners, mesh_description.vertex_count = 3;
   mesh_description.triangles = triangle, mesh_description.triangle_count = 1;
   if (hl_mesh_create(context, &mesh_description, &mesh, &error) != HL_OK) return 0;
+  hl_scene_mesh_defaults(&scene_mesh);
+  scene_mesh.mesh = mesh;
   static const double points[4][3] = {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {0, 0, 1}}, values[4] = {0, 1, 2, 3};
   static const unsigned char tetrahedron[1] = {10};
   static const int64_t ends[1] = {4}, names[4] = {0, 1, 2, 3};

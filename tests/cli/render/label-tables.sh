@@ -24,7 +24,7 @@ printf '%s\n' 'Name;Label;Red;Green;Blue' 'Left Cortex;13;0;255;0' 'b;42;0;0;255
 printf '%s\n' '"name","id","color"' '"Cortex, left",13,#00ff00' 'b,42,n/a' >quoted.csv
 printf '%s\n' 'label,name,color' '13,Left Cortex,#00ff00' '42,b,#0000ff' >hex.csv
 printf '%s\n' '13,Left Cortex,#00ff00' '42,b,#0000ff' >bare.csv
-for table in columns.csv quoted.csv hex.csv bare.csv; do shown $table | head -n 1; done
+for table in columns.csv quoted.csv hex.csv bare.csv; do shown $table | sed -n 1p; done
 printf '%s\n' 'label,name,color' '13,Left Cortex,greenish' >wrong.csv
 if halflight render labels.npy --label-table wrong.csv -o p.png 2> refused.txt; then exit 1; fi
 grep -o 'wrong.csv: line 2: is no label' refused.txt
