@@ -36,9 +36,9 @@ hl_mpi launcher_mpi(void) {
 
 /* ---- waiting for the others to join ---- */
 
-/* A process waits in hl_ranks_join() until all processes of its launcher have come. One that never comes, as
- * its command line lacks the option, would hold up the others without end: MPICH's launcher does not miss it.
- * A thread therefore ends the process when the wait is too long. */
+/* A process waits in hl_ranks_join() until all processes of its launcher have joined. A process whose command
+ * line lacks the option never joins. MPICH's launcher does not end such a job, so that the others would wait
+ * without end. A thread therefore ends the process when the wait is too long. */
 static struct {
   long seconds;
   int exit_code;

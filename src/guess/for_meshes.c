@@ -3,8 +3,8 @@
 #include "core/door.h"
 #include "guess/for_volume.h"
 
-/* The intensities of the key light, of the fill light from the eye and of the sky. Their ratios are the ones
- * of scanned matter (looks.c). A white face that looks at the key light and at the sky has 1.6. */
+/* The intensities of the key light, of the fill light and of the sky. Their ratios are the ratios for scanned
+ * matter (looks.c). A white face that looks at the key light and at the sky sends about 1.6. */
 #define KEY  1.1
 #define FILL 0.04
 #define SKY  0.47
@@ -12,11 +12,8 @@
 static void choose_light(hl_context *context, hl_light lights[2], hl_scene_description *description) {
   hl_scene_key_light(&lights[0]);
   lights[0].intensity = KEY;
-  hl_light_defaults(&lights[1]);
-  lights[1].frame = HL_LIGHT_FRAME_CAMERA;
-  hl_light_direction_beside(0, 0, lights[1].direction);
+  hl_scene_fill_light(&lights[1]);
   lights[1].intensity = FILL;
-  lights[1].shadows = HL_SHADOWS_OFF;
   description->lights = lights;
   description->light_count = 2;
   hl_scene_choose_background(description);

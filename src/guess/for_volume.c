@@ -54,6 +54,13 @@ void hl_scene_key_light(hl_light *light) {
   light->intensity = 1.7;
 }
 
+void hl_scene_fill_light(hl_light *light) {
+  hl_light_defaults(light);
+  light->frame = HL_LIGHT_FRAME_CAMERA;
+  hl_light_direction_beside(FILL_AZIMUTH, FILL_ELEVATION, light->direction);
+  light->shadows = HL_SHADOWS_OFF;
+}
+
 hl_status hl_scene_frame(const hl_scene_description *description, hl_camera *camera, hl_error *error) {
   hl_view view;
   hl_outline outline = {0};
@@ -63,18 +70,14 @@ hl_status hl_scene_frame(const hl_scene_description *description, hl_camera *cam
   return status;
 }
 
-/* Chooses the key light and, where the look asks for it, a fill light from the eye without shadows. *count: 1
- * or 2. */
+/* Chooses the key light and, where the look asks for it, a fill light. *count: 1 or 2. */
 static void choose_lights(const hl_look *look, hl_light lights[2], size_t *count) {
   hl_scene_key_light(&lights[0]);
   if (look->aside) hl_light_direction_beside(ASIDE_AZIMUTH, ASIDE_ELEVATION, lights[0].direction);
   lights[0].intensity = look->key;
   *count = look->fill > 0 ? 2 : 1;
-  hl_light_defaults(&lights[1]);
-  lights[1].frame = HL_LIGHT_FRAME_CAMERA;
-  hl_light_direction_beside(FILL_AZIMUTH, FILL_ELEVATION, lights[1].direction);
+  hl_scene_fill_light(&lights[1]);
   lights[1].intensity = look->fill;
-  lights[1].shadows = HL_SHADOWS_OFF;
 }
 
 /* Returns true if the memory limit leaves room for a number of bytes beside the voxels and the copy of them

@@ -12,6 +12,9 @@ hl_status hl_scene_frame(const hl_scene_description *description, hl_camera *cam
  * camera. */
 void hl_scene_key_light(hl_light *light);
 
+/* A fill light from the eye, without shadows. The caller sets its intensity. */
+void hl_scene_fill_light(hl_light *light);
+
 /* The memory that the memory limit must leave free beside voxels, so that a scene gets a sky. The sky's
  * field, and the work of making it, take less than half of this. */
 #define HL_ROOM_FOR_SKY (512u << 20)
