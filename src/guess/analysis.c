@@ -498,11 +498,10 @@ static int compare_values(const void *a, const void *b) {
 }
 
 /* Lists the labels in rising order: all values but the background. If there are more labels than
- * HL_FEW_LABELS, only some of them are listed. The background is 0 if any value is 0 or less. Returns whether
- * there are two or more labels, and most of them lie in blocks. */
-static bool list(const value_table *table, double least, hl_data_analysis *a) {
+ * HL_FEW_LABELS, only some of them are listed. Returns whether there are labels, and most of them lie in
+ * blocks. */
+static bool list(const value_table *table, double background, hl_data_analysis *a) {
   size_t found = 0, in_blocks = 0;
-  double background = least <= 0 ? 0 : a->background;
   for (size_t t = 0; t < TALLIES && found < HL_FEW_LABELS; t++) {
     const tally *own = &table->tallies[t];
     if (own->seen == 0 || (double)own->value == background) continue;
@@ -513,7 +512,13 @@ static bool list(const value_table *table, double least, hl_data_analysis *a) {
   a->label_count = 0;
   for (size_t n = 0; n < found; n++) /* doubles round large labels */
     if (n == 0 || a->labels[n] > a->labels[n - 1]) a->labels[a->label_count++] = a->labels[n];
-  return found > 1 && 2 * in_blocks > found;
+  return found > 0 && 2 * in_blocks > found;
+}
+
+/* Returns whether two values are the least and the greatest of the volume. Voxels between the places of the
+ * lattice may have other values. */
+static bool has_ends(const hl_volume *volume, double a, double b) {
+  return fmin(a, b) == volume->minimum && fmax(a, b) == volume->maximum;
 }
 
 hl_status hl_data_find_labels(const hl_volume *volume, hl_data_analysis *analysis, hl_error *error) {
@@ -521,9 +526,11 @@ hl_status hl_data_find_labels(const hl_volume *volume, hl_data_analysis *analysi
   value_table *table = hl_allocate_zeroed(volume->context, 1, sizeof *table);
   if (table == NULL) return hl_fail_memory(error, sizeof *table, "a count of labels");
   bool are_few = count_neighbours(volume, table), are_many = table->count > HL_FEW_LABELS,
-       in_blocks = list(table, volume->minimum, analysis),
+       in_blocks = list(table, hl_data_no_label(volume, analysis), analysis),
        some_named = volume->says_labels && (are_few || are_many) && analysis->label_count > 0;
-  if (some_named || (are_few && in_blocks)) analysis->kind = HL_DATA_LABELS;
+  analysis->is_mask = !some_named && are_few && in_blocks && analysis->label_count == 1 &&
+                      has_ends(volume, analysis->labels[0], hl_data_no_label(volume, analysis));
+  if (some_named || (are_few && in_blocks && !analysis->is_mask)) analysis->kind = HL_DATA_LABELS;
   else analysis->label_count = 0;
   hl_release(volume->context, table);
   return HL_OK;

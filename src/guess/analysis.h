@@ -54,8 +54,9 @@ typedef struct hl_data_analysis {
   double middle;    /* the commonest data value */
   double lower, upper; /* the greatest distances of values below and above the middle, apart from a few
                         * voxels */
-  double labels[HL_FEW_LABELS]; /* ascending data values, without the background */
+  double labels[HL_FEW_LABELS]; /* ascending data values, without the background of labels */
   size_t label_count;
+  bool is_mask; /* one value lies in blocks beside the background: the volume is also a map of one label */
   double valleys[HL_MOST_MATERIALS - 1]; /* distances that divide materials, rising; [material_count - 1] */
   int material_count; /* number of materials of scanned objects; 0 if they were not looked for */
 } hl_data_analysis;
@@ -114,17 +115,28 @@ static inline bool hl_is_hounsfield(const hl_volume *volume) {
 
 /* ---- label maps: volumes whose values are names of regions ---- */
 
-/* If the volume is a label map, sets the kind to HL_DATA_LABELS and lists labels; otherwise changes nothing.
- * The values of a label map are whole numbers: the background and 2 to HL_FEW_LABELS labels. Most labels lie
- * in blocks, so that a voxel's neighbours mostly have its value. If the file says that its values are labels,
- * one label is enough, labels need not lie in blocks, and there may be more labels than the list has room
- * for. Fails for lack of memory. */
+/* The value that is no label: 0 if any value is 0 or less. */
+static inline double hl_data_no_label(const hl_volume *volume, const hl_data_analysis *analysis) {
+  return volume->minimum <= 0 ? 0 : analysis->background;
+}
+
+/* If the volume is a map of several labels, sets the kind to HL_DATA_LABELS and lists labels. If the volume
+ * is a mask, sets is_mask. Otherwise changes nothing. The values of a label map are whole numbers: the
+ * background and 1 to HL_FEW_LABELS labels. Most labels lie in blocks, so that a voxel's neighbours mostly
+ * have its value. If the file says that its values are labels, labels need not lie in blocks, and there may
+ * be more labels than the list has room for. Fails for lack of memory. */
 hl_status hl_data_find_labels(const hl_volume *volume, hl_data_analysis *analysis, hl_error *error);
 
-/* Returns whether a volume's values are names of regions, because its file names segments or because the
- * values look like labels. */
-static inline bool hl_data_is_label_map(const hl_volume *volume, const hl_data_analysis *analysis) {
+/* Returns whether a volume's values are names, which have no mean, because its file names segments or because
+ * the values look like labels. */
+static inline bool hl_data_is_named(const hl_volume *volume, const hl_data_analysis *analysis) {
   return volume->segment_count > 0 || analysis->kind == HL_DATA_LABELS;
+}
+
+/* Returns whether a volume is drawn by its labels if nothing else is asked for. A mask is, though its two
+ * values have a mean: the fraction of its object. */
+static inline bool hl_data_is_label_map(const hl_volume *volume, const hl_data_analysis *analysis) {
+  return hl_data_is_named(volume, analysis) || analysis->is_mask;
 }
 
 #endif

@@ -221,7 +221,8 @@ static hl_status make_scene_of(hl_context *context, hl_volume *volume, const cha
   hl_label *labels = NULL;
   if (style == NULL) status = find_labels(context, &scene_volume, &labels, error);
   bool labelled = status == HL_OK && scene_volume.label_count > 0;
-  if (!labelled) hl_look_material(look, &scene_volume);
+  if (labelled) look = hl_look_automatic(volume, file, &analysis);
+  else hl_look_material(look, &scene_volume);
   if (status == HL_OK)
     status = labelled ? hl_labels_function(context, &scene_volume, &scene_volume.transfer_function, error)
                       : hl_look_write(base, style, context, volume, &analysis,
@@ -308,7 +309,7 @@ hl_status hl_scene_light_factor(const hl_scene_description *description, const c
   hl_status status = hl_style_named(look, &style, error);
   if (status == HL_OK) status = hl_data_analyse(volume->volume, &analysis, error);
   if (status != HL_OK) return status;
-  if (style == NULL) style = hl_look_for(volume->volume, volume->file, &analysis);
+  if (style == NULL) style = hl_look_automatic(volume->volume, volume->file, &analysis);
   status = hl_cuts_place(context, &placed, &cuts, error);
   if (status == HL_OK) status = judge_exposure(style, &analysis, &placed, &exposure, error);
   if (status == HL_OK) *factor = exposure.factor;

@@ -101,6 +101,11 @@ const hl_look *hl_look_for(const hl_volume *volume, const char *file, const hl_d
   return &looks[is];
 }
 
+const hl_look *hl_look_automatic(const hl_volume *volume, const char *file,
+                                 const hl_data_analysis *analysis) {
+  return hl_data_is_label_map(volume, analysis) ? &looks[LABELS] : hl_look_for(volume, file, analysis);
+}
+
 void hl_look_material(const hl_look *look, hl_scene_volume *volume) {
   volume->shading = look->shading;
   volume->material = (hl_material){.ambient = 1, .diffuse = 0.85, .specular = 0.15, .shininess = 24};
@@ -145,13 +150,11 @@ hl_status hl_transfer_function_automatic(hl_context *context, const hl_volume *v
                        error);
 }
 
-/* Finds the look that shows a volume if no look is asked for. Label maps have a row of their own in the
- * table. */
 static hl_status find_look(const hl_volume *volume, const char *file, const hl_look **look, hl_error *error) {
   hl_data_analysis analysis;
   hl_status status = hl_data_analyse(volume, &analysis, error);
   if (status != HL_OK) return status;
-  *look = volume->segment_count > 0 ? &looks[LABELS] : hl_look_for(volume, file, &analysis);
+  *look = hl_look_automatic(volume, file, &analysis);
   return HL_OK;
 }
 

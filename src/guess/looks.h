@@ -5,7 +5,11 @@
 #include "guess/analysis.h"
 #include "guess/look.h"
 
-/* The look for a volume and its analysis; file: as in hl_scene_volume. */
+/* The look that shows a volume if no look is asked for. A label map has the look of labels. file: as in
+ * hl_scene_volume. */
+const hl_look *hl_look_automatic(const hl_volume *volume, const char *file, const hl_data_analysis *analysis);
+
+/* The look for a volume's values; file: as in hl_scene_volume. */
 const hl_look *hl_look_for(const hl_volume *volume, const char *file, const hl_data_analysis *analysis);
 
 /* Returns true for the scan of a body, with or without its skull. file: as in hl_scene_volume. */

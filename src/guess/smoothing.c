@@ -48,7 +48,7 @@ static hl_status refuse(const hl_volume *volume, const hl_data_analysis *analysi
     return hl_fail(error, HL_ERROR_ARGUMENT,
                    "%.9g voxels of smoothing are out of range: give a number from 0 to %d", sigma,
                    GREATEST_SIGMA);
-  if (hl_data_is_label_map(volume, analysis))
+  if (hl_data_is_named(volume, analysis))
     return hl_fail(error, HL_ERROR_ARGUMENT,
                    "a label map cannot be smoothed: its numbers are names and have no mean: show its labels, "
                    "which are smooth");
@@ -80,7 +80,8 @@ hl_status hl_volume_smooth(hl_volume *volume, double sigma, hl_volume **smoothed
     (*smoothed)->smoothing = hypot(sigma, volume->smoothing);
     status = hl_volume_keep_unsmoothed(*smoothed, volume, error);
     /* The smoothed volume keeps the analysis of the unsmoothed one, because smoothing removes the noise by
-     * which scans are told from fields. */
+     * which scans are told from fields. A smoothed mask has more than two values. */
+    analysis.is_mask = false;
     if (status == HL_OK) status = hl_data_keep(*smoothed, &analysis, error);
     if (status != HL_OK) {
       hl_volume_release(*smoothed);

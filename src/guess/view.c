@@ -72,6 +72,17 @@ static size_t places_of(const shape *s) {
   return (size_t)s->size[0] * (size_t)s->size[1] * (size_t)s->size[2];
 }
 
+/* Returns whether an object is where the volume has this value. All labels are objects. */
+static bool is_solid(const hl_volume *volume, const hl_data_analysis *analysis, double value) {
+  if (analysis->kind == HL_DATA_LABELS) return value != hl_data_no_label(volume, analysis);
+  return analysis->direction * (value - analysis->background) > analysis->solid;
+}
+
+/* Returns whether the volume holds objects that may stand on a bottom. */
+static bool holds_objects(const hl_data_analysis *analysis) {
+  return analysis->kind == HL_DATA_SURFACES || analysis->kind == HL_DATA_LABELS || analysis->is_mask;
+}
+
 static void fill(const hl_volume *volume, const hl_data_analysis *analysis, size_t step, shape *s) {
   unsigned char *solid = s->solid;
   for (int k = 0; k < s->size[2]; k++)
@@ -80,7 +91,7 @@ static void fill(const hl_volume *volume, const hl_data_analysis *analysis, size
         double value = hl_volume_value_within(volume, place_of(volume, s, step, 0, i),
                                               place_of(volume, s, step, 1, j),
                                               place_of(volume, s, step, 2, k));
-        *solid++ = analysis->direction * (value - analysis->background) > analysis->solid;
+        *solid++ = is_solid(volume, analysis, value);
       }
 }
 
@@ -267,7 +278,7 @@ hl_status hl_scene_upright(const hl_scene_volume *volume, const hl_data_analysis
                            hl_upright *upright, hl_error *error) {
   bool oriented = is_oriented(volume->volume), any = false;
   *upright = (hl_upright){axis_along(analysis->kind == HL_DATA_MEDIUM && !oriented ? 2 : 3), HL_VIEW_AZIMUTH};
-  if (oriented || analysis->kind != HL_DATA_SURFACES) return HL_OK;
+  if (oriented || !holds_objects(analysis)) return HL_OK;
   shape s;
   hl_status status = make_shape(volume->volume, analysis, &s, &any, error);
   if (status == HL_OK && any) {
@@ -319,8 +330,7 @@ hl_status hl_view_automatic(const hl_scene_description *description, hl_outline 
   }
   if (hl_is_body(first->volume, first->file, &analysis) && hl_data_is_cut_off(&analysis))
     view->elevation_deg = PORTRAIT_ELEVATION;
-  return decides && analysis.kind != HL_DATA_SURFACES ? hl_view_widen(description, outline, view, error)
-                                                      : HL_OK;
+  return decides && !holds_objects(&analysis) ? hl_view_widen(description, outline, view, error) : HL_OK;
 }
 
 /* The azimuth of a view from the left: from the body's left where the file tells the anatomy, otherwise from

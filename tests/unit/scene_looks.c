@@ -106,7 +106,7 @@ static void kinds_are_told_apart(void **state) {
                {cut_out, NULL, "scanned matter"},
                {twigs, "tree.nii", "scanned matter"},
                {regions, NULL, "labels"},
-               {mask, NULL, "scanned matter"},
+               {mask, NULL, "labels"},
                {waves, NULL, "signed field"},
                {density, NULL, "flow"},
                {gradient, NULL, "flow"},
@@ -535,7 +535,8 @@ static void looks_by_name(void **state) {
       assert_int_equal(hl_transfer_function_look(context, hl_look_name(l), volume, &f, &shading, &error),
                        HL_OK);
       assert_int_equal(shading, shown->shading);
-      const bool labelled = kinds[n] == regions && l == 0; /* "auto": their labels take no function */
+      const bool labelled = (kinds[n] == regions || kinds[n] == mask) &&
+                            l == 0; /* "auto": their labels take no function */
       assert_true((shown->label_count > 0) == labelled);
       if (!labelled) {
         assert_int_equal(f.opacity_count, shown->transfer_function.opacity_count);
