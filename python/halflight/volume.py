@@ -414,9 +414,11 @@ class Volume:
         return ffi.NULL if self._file is None else ffi.new("char[]", os.fsencode(self._file))
 
     def _is_of_values(self) -> bool:
-        """Whether a label map is drawn by its values instead of its labels, because settings ask for values."""
+        """Whether a label map has its values instead of its labels: settings ask for values, or it is not drawn and may only be
+        another volume's second number."""
         labels = self._changes.get("labels")
-        return labels is False or (labels is None and any(self._changes.get(word) is not None for word in _OF_VALUES))
+        undrawn = self._changes.get("visible") is False and self._changes.get("casts_shadow") is False
+        return labels is False or (labels is None and (undrawn or any(self._changes.get(word) is not None for word in _OF_VALUES)))
 
     def _base_scene(self) -> tuple[Any, int]:
         """A scene that has the volume, and the volume's number there."""

@@ -44,7 +44,8 @@ def test_a_plane_takes_half():
 
 def test_light_of_what_is_left(tmp_path):
     """Cuts of a volume or of its scene change all automatic light by one factor; lights that are given stay."""
-    ball = Volume(np.where(np.hypot(np.hypot(*np.mgrid[:20, :20] - 9.5), np.arange(20)[:, None, None] - 9.5) < 8, 200, 0).astype(np.uint8))
+    distance = np.hypot(np.hypot(*np.mgrid[:20, :20] - 9.5), np.arange(20)[:, None, None] - 9.5)
+    ball = Volume(np.clip(100 * (9 - distance), 0, 200).astype(np.uint8))
     plane = {"type": "plane", "point": (9.5, 9.5, 9.5), "normal": (0, -1, 1)}
     whole, own, of_scene = (Scene(*one, camera="front") if len(one) == 1 else Scene(one[0], camera="front", cuts=one[1])
                             for one in ((ball,), (ball.replace(cuts=plane),), (ball, plane)))

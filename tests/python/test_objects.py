@@ -156,7 +156,7 @@ def test_several_volumes_are_framed_together(blob):
 
 def test_sheets_of_several_volumes_are_as_close_as_the_closest():
     array = np.zeros((16, 16, 16), np.uint8)
-    array[4:12, 4:12, 4:12] = 200
+    array[4:12, 4:12, 4:12] = np.linspace(150, 200, 8)
     fine, coarse = Volume(np.kron(array, np.ones((4, 4, 4), np.uint8)), spacing=0.5), Volume(array, spacing=2)
     alone = [Scene(one).settings["sheet_spacing"] for one in (fine, coarse)]
     together = Scene([coarse, fine]).settings["sheet_spacing"]
