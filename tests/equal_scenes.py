@@ -1,4 +1,4 @@
-"""Scenes that another build must render as the program does, byte for byte: volumes as they are dropped on a page; those of the budgets, one for
+"""Scenes that another build must render as the program does, byte for byte: volumes and a mesh as they are dropped on a page; those of the budgets, one for
 each kind of work; the stored pictures'; the examples, in small pictures. Those over real volumes are left out where ../shared/data, or the folder
 HALFLIGHT_DATA, is not there.
 """
@@ -127,6 +127,7 @@ def write_dropped(folder, program):
     for name in names:
         subprocess.run([program, "convert", folder / "rings.nrrd", folder / name, "--quiet"], check=True)
     write_particles(folder / "particles.csv")
+    (folder / "tetrahedron.obj").write_text("v 0 0 0\nv 9 0 1\nv 2 8 0\nv 3 2 7\nf 1 3 2\nf 1 2 4\nf 2 3 4\nf 3 1 4\n")
     (folder / "series").mkdir()
     for place in range(9):
         (folder / "series" / f"{place}.dcm").write_bytes(dicom_slice(place))
@@ -140,7 +141,7 @@ def write_dropped(folder, program):
         store.writestr("0/.zarray", json.dumps(array))
         store.writestr("0/0.0.0", zlib.compress(bytes(n % 251 for n in range(480))))
     series = [f"series/{place}.dcm" for place in range(9)]
-    return [(name, [name]) for name in [*names, "image.ome.zarr.zip", "particles.csv"]] + [("series", series)]
+    return [(name, [name]) for name in [*names, "image.ome.zarr.zip", "particles.csv", "tetrahedron.obj"]] + [("series", series)]
 
 
 def write_all(folder, program):
