@@ -61,6 +61,17 @@ def try_chosen(browser, url, what, program, folder):
     check(same_pixels(program, folder, final_picture(browser), "saved.json"), f"{what}: the final picture is the program's")
 
 
+def try_lanes(browser, what):
+    """A frame of the main lane cancels what the worker makes for a picture at rest, and leaves the picture that is saved."""
+    source = base64.b64encode((ROOT / "src" / "web" / "page" / "worker_channel.js").read_bytes()).decode()
+    cancelled = browser.run(f"""import('data:text/javascript;base64,{source}').then(({{ WorkerChannel }}) => {{
+      const sent = [], channel = new WorkerChannel({{ addEventListener() {{}}, postMessage: (message) => sent.push(message) }});
+      for (const lane of ['-small', '-compared', '-probe', '-save']) channel.fetchFrame({{}}, {{ lane }});
+      channel.fetchFrame({{}}, {{ moving: true }});
+      return sent.filter(({{ kind }}) => kind === 'cancel').map(({{ number }}) => number); }})""")
+    check(cancelled == [1, 2, 3], f"{what}: pictures for a rest end where it moves: {cancelled}")
+
+
 def saved_scene(browser, folder, name):
     """The scene that the page shows, for the program, in the folder of its files."""
     scene = json.loads(browser.run("JSON.stringify(halflight.store.scene)"))
@@ -170,6 +181,7 @@ def try_chromium(url, what, program, folder):
         after = json.loads(browser.run("JSON.stringify(halflight.frames.statistics)"))
         check(after["cancelled"] > before["cancelled"] and after["finals"] == before["finals"],
               f"{what}: a picture that is wanted no longer ends")
+        try_lanes(browser, what)
         browser.wait("halflight.frames.statistics.stage === 'refining'")
         finals = browser.run("halflight.frames.statistics.finals")
         browser.run("halflight.store.setPage({ layout: 'four' })")

@@ -63,11 +63,12 @@ export class WorkerChannel {
     return (await this.#ask("depth", { scene })).found;
   }
 
-  // Cancels the unfinished frame of a lane, because a new frame of this lane begins. A new frame of the main lane also
-  // cancels the frame of the lane "-probe", because there is only one worker.
+  // Cancels the unfinished frame of a lane, because a new frame of this lane begins. There is only one worker: a new frame
+  // of the main lane also cancels the frames of the other lanes, which the page asks for again when the picture rests.
+  // Only the picture that is saved is not asked for again.
   #cancel(lane) {
     for (const [other, number] of this.#frames)
-      if (other === lane || (lane === "" && other === "-probe")) {
+      if (other === lane || (lane === "" && other !== "-save")) {
         this.#worker.postMessage({ kind: "cancel", number });
         this.#frames.delete(other);
       }
