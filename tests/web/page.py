@@ -24,6 +24,7 @@ import urllib.parse
 ROOT = pathlib.Path(__file__).resolve().parents[2]
 sys.path[:0] = [str(ROOT / "tests" / "viewer"), str(ROOT / "tests" / "budgets")]
 from browser import Browser  # noqa: E402
+from dicom_files import dicom_slice  # noqa: E402
 from firefox import Firefox  # noqa: E402
 from scenes import SCENES, balls, write_volumes  # noqa: E402
 
@@ -59,6 +60,19 @@ def try_chosen(browser, url, what, program, folder):
     browser.wait("globalThis.halflight?.frames.statistics.finals > 0")
     saved_scene(browser, folder, "saved.json")
     check(same_pixels(program, folder, final_picture(browser), "saved.json"), f"{what}: the final picture is the program's")
+
+
+def try_folder(browser, url, what, program, folder):
+    """A folder that is dropped is opened as DICOM."""
+    (folder / "series").mkdir(exist_ok=True)
+    for place in range(9):
+        (folder / "series" / f"{place}.dcm").write_bytes(dicom_slice(place))
+    browser.open(url)
+    browser.wait("globalThis.halflight === undefined && document.querySelector('.tab-welcome') !== null")
+    browser.drop((400, 200), [folder / "series"])
+    browser.wait("globalThis.halflight?.frames.statistics.finals > 0")
+    saved_scene(browser, folder, "saved.json")
+    check(same_pixels(program, folder, final_picture(browser), "saved.json"), f"{what}: a folder of DICOM is dropped")
 
 
 def try_lanes(browser, what):
@@ -191,6 +205,7 @@ def try_chromium(url, what, program, folder):
         try_slices(browser, what)
         try_reload(browser, folder, what)
         try_added(browser, program, folder, what)
+        try_folder(browser, url, what, program, folder)
         check(browser.problems == [], f"{what}: no problem in the console: {browser.problems}")
 
 

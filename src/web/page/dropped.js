@@ -6,14 +6,28 @@ const HEADERS = [".json", ".nhdr", ".nrrd", ".mhd", ".mha", ".vgi", ".hdr", ".pv
 const readEntries = (reader) => new Promise((resolve, reject) => reader.readEntries(resolve, reject));
 const fileOf = (entry) => new Promise((resolve, reject) => entry.file(resolve, reject));
 
-async function collect(entry, at, contents) {
+async function collectEntry(entry, at, contents) {
   if (entry.isFile) {
     contents[at + entry.name] = await fileOf(entry);
     return;
   }
   const reader = entry.createReader();
   for (let entries; (entries = await readEntries(reader)).length > 0;) // readEntries() gives only some of the entries at a time
-    for (const one of entries) await collect(one, `${at}${entry.name}/`, contents);
+    for (const one of entries) await collectEntry(one, `${at}${entry.name}/`, contents);
+}
+
+async function collectHandle(handle, at, contents) {
+  if (handle.kind === "file") contents[at + handle.name] = await handle.getFile();
+  else for await (const one of handle.values()) await collectHandle(one, `${at}${handle.name}/`, contents);
+}
+
+// Collects the files of a folder. In a page from a disk, Chromium refuses to read the entries of a folder, and reads its
+// handle. Firefox has no handles of items.
+async function folderOf(item, entry) {
+  const contents = {};
+  if (item.getAsFileSystemHandle) await collectHandle(await item.getAsFileSystemHandle(), "", contents);
+  else await collectEntry(entry, "", contents);
+  return { contents, path: entry.name, title: entry.name };
 }
 
 // Chooses the file that is opened. Of several files it is the one that names the others. If there is none, the folder
@@ -25,13 +39,9 @@ function chosen(names, folder) {
 
 // Returns { contents: { "folder/name": Blob }, path, title }, which WorkerChannel.open() takes.
 export async function droppedFiles(transfer) {
-  // This must come before the first wait, because the browser then empties the list.
-  const entries = [...transfer.items].map((item) => item.webkitGetAsEntry?.()).filter((entry) => entry);
-  if (entries.length === 1 && entries[0].isDirectory) {
-    const contents = {};
-    await collect(entries[0], "", contents);
-    return { contents, path: entries[0].name, title: entries[0].name };
-  }
+  // Nothing may wait before the items are asked, because the browser then empties the list.
+  const items = [...transfer.items].filter(({ kind }) => kind === "file"), entry = items[0]?.webkitGetAsEntry?.();
+  if (items.length === 1 && entry?.isDirectory) return folderOf(items[0], entry);
   return chosenFiles([...transfer.files]);
 }
 

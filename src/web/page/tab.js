@@ -105,7 +105,11 @@ async function take(files) {
 addEventListener("dragover", (event) => event.preventDefault());
 addEventListener("drop", async (event) => {
   event.preventDefault();
-  take(await droppedFiles(event.dataTransfer));
+  try {
+    await take(await droppedFiles(event.dataTransfer));
+  } catch (error) {
+    say(error.message);
+  }
 });
 choose.addEventListener("change", () => { if (choose.files.length > 0) open(chosenFiles([...choose.files])); });
 
