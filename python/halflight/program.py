@@ -67,8 +67,9 @@ def animate(source: Any, path: str | os.PathLike[str], *, turntable: int | None 
     Parameters
     ----------
     source : Scene, or what `render` takes
-        What is shown. path : path A .mp4, .mov, .mkv, .webm or .gif file, which the program ffmpeg makes, or a folder
-        for numbered pictures.
+        What is shown.
+    path : path
+        A .mp4, .mov, .mkv, .webm or .gif file, which the program ffmpeg makes, or a folder for numbered pictures.
     turntable : int, optional
         The number of frames in which the camera turns once about the picture's vertical axis.
     keys : mapping of str to mapping of frame to value, optional

@@ -136,6 +136,8 @@ class TransferFunction:
             The values that the colours spread over.
         opacity : optional
             As for `render`. The default is the colormap's alpha if it is below 1 anywhere, else "linear".
+        unit_distance : float
+            World units.
 
         Examples
         --------

@@ -186,8 +186,10 @@ class Volume:
         Parameters
         ----------
         points : array_like, shape (points, 3)
-            In the world. cells : array_like of int, shape (cells, corners) or flat Points, from 0, in VTK's order. A
-            flat list has each cell's number of corners before them, as PyVista's ``grid.cells``.
+            In the world.
+        cells : array_like of int, shape (cells, corners) or flat
+            Points, from 0, in VTK's order. A flat list has each cell's number of corners before them, as PyVista's
+            ``grid.cells``.
         types : int, or array_like of int, shape (cells,)
             VTK's numbers: 10 tetrahedra, 12 hexahedra, 13 wedges, 14 pyramids. Quadratic cells are read by their corners.
         values : array_like, shape (points,) or (cells,)
