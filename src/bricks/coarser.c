@@ -2,13 +2,21 @@
  * between its bricks are smooth, too. */
 #include "bricks/coarser.h"
 
+#include <math.h>
+
 #include "bricks/evaluate.h"
 #include "core/memory.h"
 
 typedef struct coarsening {
   const hl_bricks *fine;
+  bool is_continued; /* as for hl_bricks_make_coarser() */
   hl_bricks_source source;
 } coarsening;
+
+/* A continued field is known up to this number of points beyond the last known coefficient of the old field.
+ * A B-spline of the new field reaches four points of the old one. The outermost bricks of the old field hold
+ * at least two points more than the matter. */
+enum { BEYOND = 3, AROUND = 2 * BEYOND + 1 };
 
 /* The coefficient at a point of a level of the new field. It is the coefficient of the old brick if this
  * brick has the same spacing, else the old field's value. */
@@ -33,16 +41,38 @@ static float number_at(const hl_bricks *fine, int level, const ptrdiff_t point[3
   return hl_brick_pool(fine, entry->slot)[place];
 }
 
+/* The mean of the old field's known coefficients around a point; near ones count most. NAN if there are none.
+ */
+static float known_around(const hl_bricks *fine, int level, const ptrdiff_t point[3]) {
+  static const int64_t count[3] = {AROUND, AROUND, AROUND};
+  int64_t first[3];
+  double values[AROUND * AROUND * AROUND], sum = 0, weights = 0;
+  for (int a = 0; a < 3; a++) first[a] = (int64_t)point[a] * ((int64_t)1 << (level + 1)) - BEYOND;
+  hl_bricks_window(fine, first, count, values);
+  for (int n = 0; n < AROUND * AROUND * AROUND; n++) {
+    const int x = n % AROUND - BEYOND, y = n / AROUND % AROUND - BEYOND, z = n / AROUND / AROUND - BEYOND;
+    const int squared = x * x + y * y + z * z;
+    if (!isfinite(values[n]) || squared == 0) continue;
+    sum += values[n] / squared / squared;
+    weights += 1.0 / squared / squared;
+  }
+  return weights > 0 ? (float)(sum / weights) : NAN;
+}
+
 static void fill(void *data, int level, const ptrdiff_t first[3], const size_t count[3], float *out) {
   const coarsening *c = data;
   for (ptrdiff_t k = 0; k < (ptrdiff_t)count[2]; k++)
     for (ptrdiff_t j = 0; j < (ptrdiff_t)count[1]; j++)
-      for (ptrdiff_t i = 0; i < (ptrdiff_t)count[0]; i++)
-        *out++ = number_at(c->fine, level, (const ptrdiff_t[3]){first[0] + i, first[1] + j, first[2] + k});
+      for (ptrdiff_t i = 0; i < (ptrdiff_t)count[0]; i++, out++) {
+        const ptrdiff_t point[3] = {first[0] + i, first[1] + j, first[2] + k};
+        *out = number_at(c->fine, level, point);
+        if (c->is_continued && !isfinite(*out)) *out = known_around(c->fine, level, point);
+      }
 }
 
 static bool is_outside(const coarsening *c, const hl_brick_entry *entry) {
-  return entry->slot < 0 && entry->constant == c->source.outside;
+  const float outside = c->source.outside;
+  return entry->slot < 0 && (entry->constant == outside || (isnan(entry->constant) && isnan(outside)));
 }
 
 /* Splits a brick where the old field has a finer brick. Leaves a brick out where the old field has, in all of
@@ -73,8 +103,9 @@ static float number_outside(const hl_bricks *bricks) {
 }
 
 hl_status hl_bricks_make_coarser(hl_context *context, hl_pool *pool, const hl_bricks *bricks,
-                                 const char *subject, hl_bricks *coarser, hl_error *error) {
-  coarsening c = {.fine = bricks};
+                                 bool is_continued, const char *subject, hl_bricks *coarser,
+                                 hl_error *error) {
+  coarsening c = {.fine = bricks, .is_continued = is_continued};
   hl_bricks_leaf *leaves = NULL;
   size_t count = 0;
   *coarser = (hl_bricks){.shift = 0};

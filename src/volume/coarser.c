@@ -21,6 +21,7 @@ enum {
 typedef struct coarsening {
   const hl_volume *volume;
   hl_coarser_kind kind;
+  bool is_continued;     /* whether the volume is a field that is continued beyond walls */
   size_t factor[3];      /* 1 or 2 */
   size_t dimension[3];   /* the dimensions of the coarser volume */
   unsigned char *voxels; /* [dimension[2]][dimension[1]][dimension[0]]; stored values of the coarser volume */
@@ -158,8 +159,8 @@ static hl_status coarsen_bricks(const coarsening *c, hl_pool *pool, hl_volume **
   hl_volume_description description;
   hl_bricks bricks = {.shift = 0};
   place(c, &description);
-  hl_status status = hl_bricks_make_coarser(context, pool, c->volume->bricks, "a coarser volume", &bricks,
-                                            error);
+  hl_status status = hl_bricks_make_coarser(context, pool, c->volume->bricks, c->is_continued,
+                                            "a coarser volume", &bricks, error);
   return status == HL_OK
              ? hl_volume_take_bricks(context, &bricks, &description, "a coarser volume", coarser, error)
              : status;
@@ -188,9 +189,9 @@ static hl_status coarsen_voxels(coarsening *c, hl_pool *pool, hl_volume **coarse
   return hl_volume_adopt(context, &description, "a coarser volume", c->voxels, coarser, error);
 }
 
-hl_status hl_volume_make_coarser(const hl_volume *volume, hl_coarser_kind kind, hl_volume **coarser,
-                                 hl_error *error) {
-  coarsening c = {.volume = volume, .kind = kind};
+static hl_status make_coarser(const hl_volume *volume, hl_coarser_kind kind, bool is_continued,
+                              hl_volume **coarser, hl_error *error) {
+  coarsening c = {.volume = volume, .kind = kind, .is_continued = is_continued};
   hl_pool *pool = NULL;
   *coarser = NULL;
   choose_factors(&c);
@@ -200,5 +201,31 @@ hl_status hl_volume_make_coarser(const hl_volume *volume, hl_coarser_kind kind, 
                                     : coarsen_voxels(&c, pool, coarser, error);
   hl_pool_destroy(pool);
   if (status == HL_OK) inherit(volume, *coarser);
+  return status;
+}
+
+/* Makes the walls of a coarser mesh of cells. Matter rises across a wall over the distance of one voxel, and
+ * so over twice the distance where the depths that are kept go so far. */
+static hl_status coarsen_wall(const hl_volume *volume, hl_volume *made, hl_error *error) {
+  const hl_volume *wall = volume->wall;
+  if (wall == NULL) return HL_OK;
+  hl_status status = make_coarser(volume->continued, HL_COARSER_MEANS, true, &made->continued, error);
+  if (status == HL_OK) status = make_coarser(wall, HL_COARSER_MEANS, false, &made->wall, error);
+  if (status != HL_OK) return status;
+  const double deepest = wall->value_scale * UINT16_MAX + wall->value_offset - 0.5,
+               rise = deepest / 2 >= 0.5 ? 0.5 : 1;
+  made->wall->value_scale = rise * wall->value_scale;
+  made->wall->value_offset = 0.5 + rise * (wall->value_offset - 0.5);
+  made->wall->slope_scale = 2 * rise * wall->slope_scale;
+  return HL_OK;
+}
+
+hl_status hl_volume_make_coarser(const hl_volume *volume, hl_coarser_kind kind, hl_volume **coarser,
+                                 hl_error *error) {
+  hl_status status = make_coarser(volume, kind, false, coarser, error);
+  if (status == HL_OK) status = coarsen_wall(volume, *coarser, error);
+  if (status == HL_OK) return HL_OK;
+  hl_volume_release(*coarser);
+  *coarser = NULL;
   return status;
 }

@@ -8,19 +8,20 @@ import numpy as np
 import pytest
 
 import halflight as hl
+from halflight._library import context, lib, made
 
 AROUND, INNER, OUTER, HIGH, TURN = 96, 0.35, 1.0, 0.6, 0.013
 OPAQUE = hl.TransferFunction([(0, 0), (0.9, 0), (0.95, 0.999), (2, 0.999)], unit_distance=0.02)
 
 
-def ring() -> tuple[Any, Any]:
-    """Points and hexahedra of a ring: AROUND around, 10 outwards, 10 high."""
-    k, j, i = np.meshgrid(np.arange(11), np.arange(11), np.arange(AROUND), indexing="ij")
-    angle, radius = 2 * np.pi * i / AROUND + TURN, INNER + (OUTER - INNER) * j / 10
-    places = np.stack([radius * np.cos(angle), radius * np.sin(angle), HIGH * k / 10], -1).reshape(-1, 3)
-    k, j, i = (a.ravel() for a in np.meshgrid(np.arange(10), np.arange(10), np.arange(AROUND), indexing="ij"))
+def ring(around: int = AROUND, cells: int = 10) -> tuple[Any, Any]:
+    """Points and hexahedra of a ring: `cells` outwards, `cells` high."""
+    k, j, i = np.meshgrid(np.arange(cells + 1), np.arange(cells + 1), np.arange(around), indexing="ij")
+    angle, radius = 2 * np.pi * i / around + TURN, INNER + (OUTER - INNER) * j / cells
+    places = np.stack([radius * np.cos(angle), radius * np.sin(angle), HIGH * k / cells], -1).reshape(-1, 3)
+    k, j, i = (a.ravel() for a in np.meshgrid(np.arange(cells), np.arange(cells), np.arange(around), indexing="ij"))
     steps = [(0, 0), (0, 1), (1, 1), (1, 0)]
-    corners = [((k + up) * 11 + j + out) * AROUND + (i + on) % AROUND for up in (0, 1) for on, out in steps]
+    corners = [((k + up) * (cells + 1) + j + out) * around + (i + on) % around for up in (0, 1) for on, out in steps]
     return places, np.stack(corners, 1)
 
 
@@ -75,6 +76,46 @@ def test_the_wall_of_a_hole_is_lit_like_a_cylinder() -> None:
     away = np.abs(light / strength - cosines)[lit]
     print(f"light: {np.sqrt(np.mean(away**2)):.4f}, at most {away.max():.4f}")
     assert np.sqrt(np.mean(away**2)) < 0.008 and away.max() < 0.035
+
+
+def moving(scene: hl.Scene) -> hl.Scene:
+    """The scene with the coarser copies of its volumes, as the viewer shows it while something moves."""
+    preview = made(lib.hl_preview_create, "hl_preview", lib.hl_preview_destroy, context, scene._handle)
+    return hl.Scene._of(made(lib.hl_preview_scene, "hl_scene", lib.hl_scene_release, preview, scene._handle))
+
+
+@pytest.mark.parametrize("spacing", [1.5, 3])
+def test_coarser_copies_have_walls(spacing: float) -> None:
+    """While a camera moves, the wall stays a cylinder: steps of the coarser lattice turned its normals by 37 degrees."""
+    places, cells = ring(128, 14)
+    volume = volume_of(places, cells, np.ones(len(places)), transfer_function=OPAQUE, shading="phong")
+    position, target, size = (0.9, -1.6, 3.2), (0, 0.1, 0.3), (300, 225)
+    scene = hl.Scene(volume, size=size, shadows="off", camera=hl.Camera(position=position, target=target, up=(0, 0, 1), height=2.4),
+                     lights=[hl.Directional(direction=(-0.5, 0.8, -0.9))], sheet_spacing=spacing)
+    coarser = moving(scene)
+    assert coarser.volumes[0].dimensions != volume.dimensions
+    seen, truth = wall_of_hole(*parallel_rays(position, target, 2.4, size))
+    image = hl.Renderer().render(coarser, layers=True)
+    normals = image.layers["normal"][seen].astype(float)
+    assert len(normals) > 1000 and np.asarray(image)[..., 3][seen].min() > 0.99
+    turned = np.degrees(np.arccos(np.clip((normals * truth[seen]).sum(axis=1) / np.linalg.norm(normals, axis=1), -1, 1)))
+    print(f"normals: {np.sqrt(np.mean(turned**2)):.2f} degrees, at most {turned.max():.2f}")
+    assert np.sqrt(np.mean(turned**2)) < 3 and turned.max() < 10
+
+
+def test_coarser_copies_are_whole_up_to_the_wall() -> None:
+    """A copy of a quarter of the resolution has all of the matter, although values are needed beyond the walls for it. Where
+    they were missing, .03 more light passed, and .27 at single places."""
+    places, cells = ring(256, 28)
+    function = hl.TransferFunction([(0, 0), (1, 0.8)], unit_distance=0.7)
+    values = np.abs(2 * places[:, 2] / HIGH - 1)
+    volume = volume_of(places, cells, values, transfer_function=function, shading="flat")
+    camera = hl.Camera(position=(3, 1, 2), target=(0, 0, HIGH / 2), up=(0, 1, 0), height=2.2)
+    scene = hl.Scene(volume, size=(40, 40), camera=camera, shadows="off", sheet_spacing=3)
+    fine, coarse = (1 - np.asarray(hl.render(s.replace(sheet_spacing=0.5)))[..., 3] for s in (scene, moving(scene)))
+    inner = fine < 0.9
+    print(f"mean {(coarse - fine)[inner].mean():.4f}, greatest {np.abs(coarse - fine)[inner].max():.4f}")
+    assert abs((coarse - fine)[inner].mean()) < 0.01 and np.abs(coarse - fine)[inner].max() < 0.1
 
 
 def transmittance(volume: hl.Volume, position: Any, up: Any, pixels: int) -> Any:
