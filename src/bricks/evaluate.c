@@ -2,6 +2,7 @@
 #include "bricks/evaluate.h"
 
 #include <math.h>
+#include <string.h>
 
 enum { TAPS = 4 };
 
@@ -264,63 +265,50 @@ void hl_bricks_range(const hl_bricks *bricks, const int64_t first[3], const int6
 
 /* ---- ranges of a row of boxes ---- */
 
-/* What the range of a box of cells depends on: the bricks that the box meets, and the coefficients along x.
- * Along y and z the boxes of a row are the same, so that the bricks tell which coefficients count there. */
-typedef struct range_sources {
-  hl_brick_entry entry[4]; /* of the blocks along y and z */
-  int entries;             /* 0: the box meets other bricks than these; its range is found by itself */
-  int64_t from, to;        /* first and last cell along x, of the finest of the bricks' levels */
-} range_sources;
-
-/* Whether two blocks have the same brick, or the same constant. */
-static bool are_same(const hl_brick_entry *a, const hl_brick_entry *b) {
-  return a->slot == b->slot && (a->slot >= 0 ? a->level == b->level : a->constant == b->constant);
-}
-
-static void find_sources(const hl_bricks *bricks, const int64_t first[3], const int64_t last[3],
-                         range_sources *sources) {
+/* The level of the cells in which the first and the last cell of a box may move without a change of its
+ * range. It is that of the finest of its bricks, as each cell of this level lies in one brick. Constants may
+ * end with each block. */
+static int level_of_box(const hl_bricks *bricks, const int64_t first[3], const int64_t last[3]) {
   int64_t from[3], to[3], block[3];
   int level = BRICK_LEVELS_LIMIT;
   for (int axis = 0; axis < 3; axis++) {
     from[axis] = block_of(bricks, axis, first[axis]);
     to[axis] = block_of(bricks, axis, last[axis]);
   }
-  *sources = (range_sources){.entries = 0};
-  if (to[1] - from[1] > 1 || to[2] - from[2] > 1) return;
-  int entries = 0;
   for (block[2] = from[2]; block[2] <= to[2]; block[2]++)
-    for (block[1] = from[1]; block[1] <= to[1]; block[1]++, entries++) {
-      block[0] = from[0];
-      const hl_brick_entry *entry = hl_bricks_entry(bricks, block);
-      for (block[0] = from[0] + 1; block[0] <= to[0]; block[0]++)
-        if (!are_same(entry, hl_bricks_entry(bricks, block))) return;
-      if (entry->slot >= 0 && entry->level < level) level = entry->level;
-      sources->entry[entries] = *entry;
-    }
-  sources->entries = entries;
-  sources->from = first[0] >> level;
-  sources->to = last[0] >> level;
+    for (block[1] = from[1]; block[1] <= to[1]; block[1]++)
+      for (block[0] = from[0]; block[0] <= to[0]; block[0]++) {
+        const hl_brick_entry *entry = hl_bricks_entry(bricks, block);
+        const int own = entry->slot >= 0 ? entry->level : bricks->shift;
+        level = own < level ? own : level;
+      }
+  return level;
 }
 
-static bool have_one_range(const range_sources *a, const range_sources *b) {
-  bool same = a->entries > 0 && a->entries == b->entries && a->from == b->from && a->to == b->to;
-  for (int n = 0; same && n < a->entries; n++) same = are_same(&a->entry[n], &b->entry[n]);
-  return same;
+/* The last cell of the farthest box, along an axis, whose first and last cell lie in the cells of a level in
+ * which those of a box lie. */
+static int64_t farthest_last(int64_t first, int64_t last, int level) {
+  const int64_t size = (int64_t)1 << level, left = size - 1 - (first & (size - 1)),
+                further = size - 1 - (last & (size - 1));
+  return last + (left < further ? left : further);
 }
 
 void hl_bricks_ranges(const hl_bricks *bricks, const int64_t first[3], const int64_t last[3], int64_t step,
-                      size_t count, float (*ranges)[2]) {
-  range_sources before = {.entries = 0}, sources;
-  for (size_t n = 0; n < count; n++, before = sources) {
+                      size_t count, hl_bricks_row *row) {
+  for (size_t n = 0; n < count; n += row->boxes[n]) {
+    if (row->boxes[n] > 0 && last[1] <= row->until[n]) continue;
     const int64_t along = (int64_t)n * step, low[3] = {first[0] + along, first[1], first[2]},
                   high[3] = {last[0] + along, last[1], last[2]};
-    find_sources(bricks, low, high, &sources);
-    if (n > 0 && have_one_range(&sources, &before)) {
-      ranges[n][0] = ranges[n - 1][0];
-      ranges[n][1] = ranges[n - 1][1];
-    } else {
-      hl_bricks_range(bricks, low, high, ranges[n]);
+    const int level = level_of_box(bricks, low, high);
+    size_t boxes = 1 + (size_t)((farthest_last(low[0], high[0], level) - high[0]) / step);
+    if (boxes > count - n) boxes = count - n;
+    hl_bricks_range(bricks, low, high, row->ranges[n]);
+    for (size_t m = n + 1; m < n + boxes; m++) {
+      memcpy(row->ranges[m], row->ranges[n], sizeof row->ranges[m]);
+      row->boxes[m] = 0;
     }
+    row->boxes[n] = boxes;
+    row->until[n] = farthest_last(low[1], high[1], level);
   }
 }
 

@@ -55,11 +55,23 @@ double hl_bricks_value(const hl_bricks *bricks, const double point[3]);
  * The field's values in these cells lie between these two numbers. */
 void hl_bricks_range(const hl_bricks *bricks, const int64_t first[3], const int64_t last[3], float range[2]);
 
-/* The ranges of a row of boxes. The first box has the cells first .. last, and each further box begins `step`
- * cells behind the box before it, along x. Where boxes depend on the same coefficients, as in coarse bricks,
- * their range is found once. ranges: [count]. */
+/* The ranges of a row of boxes, and how far they hold. A row starts as {0}. */
+enum { HL_BRICKS_ROW = 64 };
+typedef struct hl_bricks_row {
+  float ranges[HL_BRICKS_ROW][2];
+  size_t boxes[HL_BRICKS_ROW];  /* the number of boxes, from this one on, that have one range; 0: this box
+                                 * belongs to those before it */
+  int64_t until[HL_BRICKS_ROW]; /* where `boxes` is set: these boxes' range holds as long as their last cell
+                                 * along y is not above this cell */
+} hl_bricks_row;
+
+/* Finds the ranges of a row of boxes. The first box has the cells first .. last, and each further box begins
+ * `step` cells behind the box before it, along x. Where boxes depend on the same coefficients, as in coarse
+ * bricks, their range is found once, also for several rows. row: the result for a row of as many boxes, with
+ * smaller coordinates along y and else the same ones, or {0}; it becomes the result. count: at most
+ * HL_BRICKS_ROW. */
 void hl_bricks_ranges(const hl_bricks *bricks, const int64_t first[3], const int64_t last[3], int64_t step,
-                      size_t count, float (*ranges)[2]);
+                      size_t count, hl_bricks_row *row);
 
 /* Whether all coefficients and constants are finite. Numbers that are not finite stand for places without
  * data. */

@@ -126,23 +126,22 @@ void hl_bricks_lay_out(grid *grid, hl_layout *layout) {
  * cells are the cells of the field's lattice. */
 static void bound_layer_of_field(void *data, size_t index, int worker) {
   (void)worker;
-  enum { RUN = 64 };
   const grid *grid = ((const brick_job *)data)->grid;
   const size_t width = (size_t)grid->brick_count[0];
-  for (size_t by = 0; by < (size_t)grid->brick_count[1]; by++)
-    for (size_t bx = 0; bx < width; bx += RUN) {
-      const size_t count = width - bx < RUN ? width - bx : RUN,
-                   at = (index * (size_t)grid->brick_count[1] + by) * width + bx;
-      const size_t brick[3] = {bx, by, index};
+  for (size_t bx = 0; bx < width; bx += HL_BRICKS_ROW) {
+    const size_t count = width - bx < HL_BRICKS_ROW ? width - bx : HL_BRICKS_ROW;
+    hl_bricks_row row = {.boxes = {0}};
+    for (size_t by = 0; by < (size_t)grid->brick_count[1]; by++) {
+      const size_t brick[3] = {bx, by, index}, at = (index * (size_t)grid->brick_count[1] + by) * width + bx;
       int64_t first[3], last[3];
-      float bounds[RUN][2];
       for (int axis = 0; axis < 3; axis++) {
         first[axis] = (int64_t)brick[axis] * HL_BRICK_CELLS - 1;
         last[axis] = ((int64_t)brick[axis] + 1) * HL_BRICK_CELLS;
       }
-      hl_bricks_ranges(grid->bricks, first, last, HL_BRICK_CELLS, count, bounds);
-      for (size_t n = 0; n < count; n++) store_bounds(grid, at + n, bounds[n][0], bounds[n][1]);
+      hl_bricks_ranges(grid->bricks, first, last, HL_BRICK_CELLS, count, &row);
+      for (size_t n = 0; n < count; n++) store_bounds(grid, at + n, row.ranges[n][0], row.ranges[n][1]);
     }
+  }
 }
 
 /* Lays out the scratch memory of all threads for bounds of bricks. */
