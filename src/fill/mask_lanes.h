@@ -85,6 +85,14 @@ LANES_INLINE lanes mask_factor(const mask_lattice *lattice, lanes3 point, uint32
   return lanes_select(p.outside, lanes_set(lattice->rest), factor);
 }
 
+/* How far points of frame space lie behind the walls of a mesh of cells, whose depths the mask's lattice has:
+ * the factor before it is held between 0 and 1, less 1/2. Negative beyond the walls. */
+LANES_INLINE lanes depth_behind_walls(const mask_lattice *lattice, lanes3 point) {
+  mask_places p = places_in_mask(lattice, point);
+  lanes depth = lanes_line(steps_between_points(lattice, &p), lattice->scale, lattice->offset) - 0.5f;
+  return lanes_select(p.outside, lanes_set(-0.5f), depth);
+}
+
 /* Interpolates the slopes of the mask's factor linearly between the lattice's points. A slope is the change
  * of the factor per step of the lattice along an axis. */
 LANES_INLINE void slopes_between_points(const mask_lattice *lattice, const mask_places *p, lanes sum[3]) {

@@ -14,8 +14,12 @@ typedef struct search {
                            * value is shown yet */
 } search;
 
+static vec3 point_at(const crossing *part, double at) {
+  return vec3_add(part->origin, vec3_scale(part->direction, at));
+}
+
 static double value_at(const crossing *part, double at) {
-  return hl_reference_value(part->volume, vec3_add(part->origin, vec3_scale(part->direction, at)));
+  return hl_reference_value(part->volume, point_at(part, at));
 }
 
 /* The least opacity at which a value counts as shown. Smaller opacities can come from the rounding of voxels
@@ -28,10 +32,13 @@ static bool is_shown(const crossing *part, double value) {
 }
 
 /* Notes the volume's value at this distance along the ray if the transfer function shows the value. Returns
- * whether the function shows it. */
+ * whether the function shows it. Beyond the walls of a mesh of cells, where a mask takes more than half of
+ * the matter away, nothing is shown. */
 static bool ask(search *found, double at) {
   double value = value_at(found->part, at);
-  if (!is_shown(found->part, value)) return false;
+  if (!is_shown(found->part, value) ||
+      hl_reference_mask_factor(found->part->volume, point_at(found->part, at)) < 0.5)
+    return false;
   if (value > found->greatest) {
     found->greatest = value;
     found->where = at;
@@ -68,8 +75,7 @@ static double greatest_between(const crossing *part, double step) {
   bool before = ask(&found, part->enter);
   for (double next = 1; next <= steps; next++) {
     double at = part->enter + next * length;
-    double clear = hl_reference_clearance(
-        part->volume, vec3_add(part->origin, vec3_scale(part->direction, at)), part->direction);
+    double clear = hl_reference_clearance(part->volume, point_at(part, at), part->direction);
     /* jumps over the samples in bricks without visible values */
     next += floor(fmax(clear / length - 1e-6, 0));
     bool shown = clear <= 0 && ask(&found, at);

@@ -156,23 +156,16 @@ typedef struct preparation {
   hl_pool *pool;
   const grid_functions *functions;
   hl_kernel kernel;
-  bool projected; /* whether the picture is a maximum projection */
 } preparation;
 
-static void set_up_mask(const preparation *with, prepared_volume *prepared, const hl_scene_volume *scene) {
-  if (with->projected) prepared->classifier.mask = (mask_lattice){0};
-  else hl_mask_lattice_set_up(&prepared->classifier.mask, scene);
-}
-
-/* Keeps the volume's mask; a maximum projection ignores masks. The mask is retained so that no other mask can
- * get its address: the address is part of the keys of kept light. Returns whether the mask is the same as in
- * the frame before. */
-static bool hold_mask(const preparation *with, prepared_volume *prepared, const hl_scene_volume *scene) {
+/* Keeps the volume's mask. The mask is retained so that no other mask can get its address: the address is
+ * part of the keys of kept light. Returns whether the mask is the same as in the frame before. */
+static bool hold_mask(prepared_volume *prepared, const hl_scene_volume *scene) {
   const mask_lattice before = prepared->classifier.mask;
   hl_volume_retain(scene->mask.volume);
   hl_volume_release(prepared->mask);
   prepared->mask = scene->mask.volume;
-  set_up_mask(with, prepared, scene);
+  hl_mask_lattice_set_up(&prepared->classifier.mask, scene);
   const mask_lattice *now = &prepared->classifier.mask;
   return now->factors == before.factors && now->rest == before.rest;
 }
@@ -228,12 +221,12 @@ static hl_status prepare_volume(const preparation *with, const hl_scene_volume *
   if (!hl_grid_place(&prepared->grid, index_to_frame))
     return hl_fail(error, HL_ERROR_INPUT, "a volume's axes are singular: the three must span space");
   hold_second(prepared, second);
-  if (hold_mask(with, prepared, scene) && same) return HL_OK;
+  if (hold_mask(prepared, scene) && same) return HL_OK;
   release_function(context, prepared);
   if (!same_cut) release_iso(context, prepared);
   if (!same_cut && (status = keep_cuts(context, prepared, scene, error)) != HL_OK) return status;
   status = hl_classifier_create(context, scene, second, &prepared->grid, &prepared->classifier, error);
-  set_up_mask(with, prepared, scene);
+  hl_mask_lattice_set_up(&prepared->classifier.mask, scene);
   if (status == HL_OK) status = keep_key(context, prepared, scene, error);
   prepared->plane_mark = plane_mark;
   if (status != HL_OK) return status;
@@ -246,8 +239,7 @@ static hl_status prepare_volume(const preparation *with, const hl_scene_volume *
 hl_status hl_prepare_volumes(hl_context *context, hl_pool *pool, const hot_functions *hot,
                              const hl_scene_description *scene, const uint64_t *plane_marks,
                              prepared_volume *prepared, hl_error *error) {
-  const preparation with = {context, pool, hot->grid, scene->render.kernel,
-                            scene->render.compositing == HL_COMPOSITING_MAXIMUM};
+  const preparation with = {context, pool, hot->grid, scene->render.kernel};
   for (size_t i = 0; i < scene->volume_count; i++) {
     const hl_scene_volume *second = second_of(scene, &scene->volumes[i]);
     hl_status status = prepare_volume(&with, &scene->volumes[i], second, plane_marks[i], &prepared[i], error);

@@ -78,6 +78,26 @@ def test_the_wall_of_a_hole_is_lit_like_a_cylinder() -> None:
     assert np.sqrt(np.mean(away**2)) < 0.008 and away.max() < 0.035
 
 
+def test_maximum_projections_end_at_the_wall() -> None:
+    """A ring of one value is of one colour up to a round edge. It had the steps of the lattice, and a rim of other values."""
+    places, cells = ring()
+    function = hl.TransferFunction([(0, 0), (0.2, 0.5)], color=[(0, 1, 0, 0), (1, 0, 1, 0)])
+    volume = volume_of(places, cells, 0.5 + places[:, 2] / HIGH / 2, transfer_function=function)
+    camera = hl.Camera(position=(0, 0, 5), target=(0, 0, HIGH / 2), up=(0, 1, 0), height=2.2)
+    image = np.asarray(hl.render(volume, size=(400, 400), camera=camera, compositing="maximum", background="transparent"))
+    at = (np.arange(400) + 0.5 - 200) * 2.2 / 400
+    radius = np.hypot(at[None, :], at[:, None])
+    inner, outside = (radius > INNER + 0.003) & (radius < OUTER - 0.003), (radius < INNER - 0.003) | (radius > OUTER + 0.003)
+    print("least and greatest", image[inner].min(axis=0), image[inner].max(axis=0))
+    assert (image[outside] == 0).all()
+    np.testing.assert_allclose(image[inner], np.broadcast_to((0, 1, 0, 1), image[inner].shape), atol=0.02)  # the upper wall's
+    oblique = hl.Scene(volume, size=(96, 72), camera=hl.Camera(position=(0.9, -1.6, 3.2), target=(0, 0.1, 0.3), up=(0, 0, 1), height=2.4),
+                       compositing="maximum", background="transparent")
+    away = np.abs(np.asarray(hl.render(oblique)) - np.asarray(hl.reference(oblique))).max(axis=-1)
+    print(f"away from the reference by more than .01: {np.count_nonzero(away > 0.01)} of {away.size} pixels")
+    assert np.count_nonzero(away > 0.01) < 8
+
+
 def moving(scene: hl.Scene) -> hl.Scene:
     """The scene with the coarser copies of its volumes, as the viewer shows it while something moves."""
     preview = made(lib.hl_preview_create, "hl_preview", lib.hl_preview_destroy, context, scene._handle)

@@ -181,10 +181,15 @@ static hl_status draw_map(hl_context *context, hl_scene_description *placed, con
   return status == HL_OK ? draw_skins(context, placed, &whole, points, error) : status;
 }
 
+/* Maximum projections ignore masks. */
+static bool is_projected(const hl_scene_description *placed) {
+  return placed->render.compositing == HL_COMPOSITING_MAXIMUM;
+}
+
 /* Returns whether a mask ends the volume at the walls of its mesh of cells. */
 static bool has_wall(const hl_scene_description *placed, const hl_scene_volume *volume) {
-  return volume->volume->wall != NULL && volume->mask.volume == NULL && volume->iso_count == 0 &&
-         placed->render.compositing != HL_COMPOSITING_MAXIMUM;
+  return volume->volume->wall != NULL && volume->iso_count == 0 &&
+         (volume->mask.volume == NULL || is_projected(placed));
 }
 
 /* Adds a volume whose mask is replaced by its lattice, or a mesh of cells whose walls become a lattice. */
@@ -192,7 +197,7 @@ static hl_status draw_masked(hl_context *context, hl_scene_description *placed, 
                              hl_error *error) {
   const bool walled = has_wall(placed, volume);
   hl_volume *lattice = NULL;
-  if (volume->mask.volume != NULL) {
+  if (volume->mask.volume != NULL && !is_projected(placed)) {
     hl_mask whole = volume->mask;
     hl_status status = hl_volume_in_memory(volume->mask.volume, &whole.volume, error);
     if (status == HL_OK) status = hl_label_mask(context, placed->render.threads, &whole, &lattice, error);
