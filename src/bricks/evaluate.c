@@ -184,40 +184,85 @@ float hl_bricks_coefficient(const hl_bricks *bricks, const int64_t point[3]) {
 
 /* ---- values ---- */
 
+/* Sums of a brick's coefficients over y and z, with the weights there, for the taps along x. */
+typedef struct tap_columns {
+  int32_t slot; /* the brick; -1: none yet */
+  taps at[3];
+  int64_t index[TAPS]; /* the coefficients' indices along x; -1: no sum yet */
+  double sum[TAPS];
+} tap_columns;
+
 /* Taps of weight 0 are left out of the sum, because their coefficients may be NaN. */
-static double sum_taps(const hl_bricks *bricks, const float *brick, const taps at[3]) {
+static double sum_column(const hl_bricks *bricks, const taps at[3], const float *column) {
   size_t width = hl_brick_width(bricks);
   double sum = 0;
   for (int k = 0; k < TAPS; k++)
     for (int j = 0; j < TAPS; j++) {
-      const float *row = brick + ((size_t)at[2].index[k] * width + (size_t)at[1].index[j]) * width;
-      double along = 0;
-      if (at[2].weight[k] * at[1].weight[j] == 0) continue;
-      for (int i = 0; i < TAPS; i++)
-        if (at[0].weight[i] != 0) along += at[0].weight[i] * (double)row[at[0].index[i]];
-      sum += at[2].weight[k] * at[1].weight[j] * along;
+      const double weight = at[2].weight[k] * at[1].weight[j];
+      if (weight != 0)
+        sum += weight * (double)column[((size_t)at[2].index[k] * width + (size_t)at[1].index[j]) * width];
     }
   return sum;
 }
 
+/* Finds the sums for the taps along x. Those that are known are kept. */
+static void move_columns(const hl_bricks *bricks, tap_columns *columns) {
+  const int64_t *wanted = columns->at[0].index;
+  const float *brick = hl_brick_pool(bricks, columns->slot);
+  int64_t index[TAPS];
+  double sum[TAPS];
+  if (memcmp(columns->index, wanted, sizeof index) == 0) return;
+  memcpy(index, columns->index, sizeof index);
+  memcpy(sum, columns->sum, sizeof sum);
+  memcpy(columns->index, wanted, sizeof index);
+  for (int i = 0; i < TAPS; i++) {
+    int known = 0;
+    while (known < TAPS && index[known] != wanted[i]) known++;
+    columns->sum[i] = known < TAPS ? sum[known] : sum_column(bricks, columns->at, brick + wanted[i]);
+  }
+}
+
+/* Places the taps along an axis for a point within the directory. */
+static void place_point(const hl_bricks *bricks, int level, int64_t block, double point, taps *found) {
+  const double place = point * (1.0 / (double)((int64_t)1 << level));
+  const int64_t end = ((block >> level) + 1) << bricks->shift;
+  int64_t before = (int64_t)place;
+  if (before >= end) before = end - 1;
+  hl_bspline_weights(place - (double)before, found->weight);
+  place_taps(bricks, level, block, before, found);
+}
+
+void hl_bricks_values(const hl_bricks *bricks, const double point[3], size_t count, double *values) {
+  tap_columns columns = {.slot = -1};
+  for (size_t n = 0; n < count; n++) {
+    int64_t block[3];
+    double at[3];
+    for (int axis = 0; axis < 3; axis++) {
+      const double most = (double)hl_bricks_cells(bricks, axis),
+                   wanted = point[axis] + (axis == 0 ? (double)n : 0);
+      at[axis] = !(wanted > 0) ? 0 : wanted < most ? wanted : most;
+      block[axis] = block_of(bricks, axis, (int64_t)at[axis]);
+    }
+    const hl_brick_entry *entry = hl_bricks_entry(bricks, block);
+    values[n] = (double)entry->constant;
+    if (entry->slot < 0) continue;
+    if (columns.slot != entry->slot) {
+      columns = (tap_columns){.slot = entry->slot, .index = {-1, -1, -1, -1}};
+      for (int axis = 1; axis < 3; axis++)
+        place_point(bricks, entry->level, block[axis], at[axis], &columns.at[axis]);
+    }
+    place_point(bricks, entry->level, block[0], at[0], &columns.at[0]);
+    move_columns(bricks, &columns);
+    values[n] = 0;
+    for (int i = 0; i < TAPS; i++)
+      if (columns.at[0].weight[i] != 0) values[n] += columns.at[0].weight[i] * columns.sum[i];
+  }
+}
+
 double hl_bricks_value(const hl_bricks *bricks, const double point[3]) {
-  int64_t block[3];
-  double at[3];
-  for (int axis = 0; axis < 3; axis++) {
-    at[axis] = fmin(fmax(point[axis], 0), (double)hl_bricks_cells(bricks, axis));
-    block[axis] = block_of(bricks, axis, (int64_t)at[axis]);
-  }
-  const hl_brick_entry *entry = hl_bricks_entry(bricks, block);
-  if (entry->slot < 0) return (double)entry->constant;
-  taps found[3];
-  for (int axis = 0; axis < 3; axis++) {
-    double place = ldexp(at[axis], -entry->level);
-    int64_t end = ((block[axis] >> entry->level) + 1) << bricks->shift, before = (int64_t)place;
-    if (before >= end) before = end - 1;
-    hl_bspline_weights(place - (double)before, found[axis].weight);
-    place_taps(bricks, entry->level, block[axis], before, &found[axis]);
-  }
-  return sum_taps(bricks, hl_brick_pool(bricks, entry->slot), found);
+  double value;
+  hl_bricks_values(bricks, point, 1, &value);
+  return value;
 }
 
 /* Widens a range so that it holds the coefficients of a brick on which the cells first .. last of level 0

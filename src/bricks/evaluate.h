@@ -50,6 +50,9 @@ float hl_bricks_coefficient(const hl_bricks *bricks, const int64_t point[3]);
 
 /* The field's value at a point of the lattice. */
 double hl_bricks_value(const hl_bricks *bricks, const double point[3]);
+/* The values at a point and at the points 1, 2, ... count - 1 behind it along x, with the bits of
+ * hl_bricks_value(). Neighbours share sums of coefficients. */
+void hl_bricks_values(const hl_bricks *bricks, const double point[3], size_t count, double *values);
 
 /* Finds the least and the greatest of the coefficients on which the cells first .. last of level 0 depend.
  * The field's values in these cells lie between these two numbers. */

@@ -68,18 +68,17 @@ float hl_volume_value_of_bricks(const hl_volume *volume, const size_t voxel[3]) 
 
 void hl_volume_row_of_bricks(const hl_volume *volume, size_t j, size_t k, float *row) {
   enum { RUN = 64 };
+  const hl_bricks *bricks = volume->bricks;
+  const bool on_points = stand_on_points(bricks);
   const size_t n = volume->dimension[0];
-  const double *origin = volume->bricks->origin;
+  const double *origin = bricks->origin;
   double run[RUN];
-  if (!stand_on_points(volume->bricks)) {
-    for (size_t i = 0; i < n; i++) row[i] = hl_volume_value_of_bricks(volume, (const size_t[3]){i, j, k});
-    return;
-  }
   for (size_t i = 0; i < n; i += RUN) {
     const size_t count = n - i < RUN ? n - i : RUN;
-    const int64_t first[3] = {(int64_t)(i + (size_t)origin[0]), (int64_t)(j + (size_t)origin[1]),
-                              (int64_t)(k + (size_t)origin[2])};
-    hl_bricks_window(volume->bricks, first, (const int64_t[3]){(int64_t)count, 1, 1}, run);
+    const double at[3] = {(double)i + origin[0], (double)j + origin[1], (double)k + origin[2]};
+    const int64_t first[3] = {(int64_t)at[0], (int64_t)at[1], (int64_t)at[2]};
+    if (on_points) hl_bricks_window(bricks, first, (const int64_t[3]){(int64_t)count, 1, 1}, run);
+    else hl_bricks_values(bricks, at, count, run);
     for (size_t c = 0; c < count; c++) row[i + c] = (float)run[c];
   }
 }

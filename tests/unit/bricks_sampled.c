@@ -209,6 +209,30 @@ static void test_ranges_of_rows(void **state) {
   }
 }
 
+/* The values of a row are those of its points, also beyond the lattice and where the row meets bricks of
+ * several levels. */
+static void test_values_of_rows(void **state) {
+  (void)state;
+  enum { COUNT = 3 * SIDE / 2 };
+  for (int n = 0; n < 6; n++) {
+    field_bench bench;
+    open_bench(&bench, 170 + (uint64_t)n, octree_random_value, 2 + n / 2);
+    for (uint64_t row = 0; row < 300; row++) {
+      double first[3], values[COUNT];
+      for (int axis = 0; axis < 3; axis++)
+        first[axis] = floor(octree_random(row, (uint64_t)axis) * (SIDE + 8)) - 4;
+      for (int axis = 0; axis < 3; axis++) first[axis] += row % 3 * 0.25;
+      hl_bricks_values(&bench.bricks, first, COUNT, values);
+      for (int i = 0; i < COUNT; i++) {
+        const double value = hl_bricks_value(&bench.bricks,
+                                             (const double[3]){first[0] + i, first[1], first[2]});
+        assert_memory_equal(&values[i], &value, sizeof value);
+      }
+    }
+    close_bench(&bench);
+  }
+}
+
 /* ---- without the finest level ---- */
 
 /* A linear field stays what it is, voxel by voxel, each in the middle of eight; a brick that is not of the
@@ -242,8 +266,9 @@ static void test_coarser(void **state) {
 
 int main(void) {
   const struct CMUnitTest tests[] = {
-      cmocka_unit_test(test_coefficients), cmocka_unit_test(test_windows),
-      cmocka_unit_test(test_coarser),      cmocka_unit_test(test_gathered),
-      cmocka_unit_test(test_ranges),       cmocka_unit_test(test_ranges_of_rows)};
+      cmocka_unit_test(test_coefficients),  cmocka_unit_test(test_windows),
+      cmocka_unit_test(test_coarser),       cmocka_unit_test(test_gathered),
+      cmocka_unit_test(test_ranges),        cmocka_unit_test(test_ranges_of_rows),
+      cmocka_unit_test(test_values_of_rows)};
   return cmocka_run_group_tests(tests, NULL, NULL);
 }
