@@ -421,30 +421,108 @@ def film_is_shown(browser):
     rest(browser)
 
 
-def choices_are_undone(browser):
-    """The light that is chosen is a choice like others: it is undone, and comes back with the lights."""
+def choices_are_undone(browser, title, noun, things):
+    """What is chosen in a panel for editing is a choice like others: it is undone, and comes back with the chosen thing. things: its list in the scene."""
     def chosen():
-        return browser.run("[...document.querySelectorAll('[aria-label=Lights] [role=tab]')].findIndex((tab) => tab.ariaSelected === 'true')"), browser.run("document.querySelector('.light.chosen').dataset.light")
+        return browser.run(f"[...document.querySelectorAll('[aria-label={title}] [role=tab]')].findIndex((tab) => tab.ariaSelected === 'true')"), len(browser.run(things))
 
     def tab(number):
-        browser.run(f"document.querySelectorAll('[aria-label=Lights] [role=tab]')[{number}].click()")
+        browser.run(f"document.querySelectorAll('[aria-label={title}] [role=tab]')[{number}].click()")
 
-    open_section(browser, "Lights")
-    count = len(scene_of(browser)["lights"])
-    press_named(browser, "Add: light")
-    check(chosen() == (count, str(count)), f"a new light is chosen: {chosen()}")
+    open_section(browser, title)
+    there = len(browser.run(things))
+    if there == 0:
+        press_named(browser, f"Add: {noun}")
+    count = max(there, 1)
+    press_named(browser, f"Add: {noun}")
+    check(chosen() == (count, count + 1), f"a new {noun} is chosen: {chosen()}")
     tab(0)
-    check(chosen() == (0, "0"), f"the first one: {chosen()}")
+    check(chosen() == (0, count + 1), f"the first {noun}: {chosen()}")
     undo(browser)
-    check(chosen() == (count, str(count)), f"undone: the new one: {chosen()}")
-    press_named(browser, "Remove this light")
-    check(chosen() == (count - 1, str(count - 1)) and len(scene_of(browser)["lights"]) == count, f"the one before: {chosen()}")
+    check(chosen() == (count, count + 1), f"undone: the new {noun}: {chosen()}")
+    press_named(browser, "Redo")
+    check(chosen() == (0, count + 1), f"redone: the first {noun}: {chosen()}")
     undo(browser)
-    check(chosen() == (count, str(count)) and len(scene_of(browser)["lights"]) == count + 1, f"one step brings the light back, and chosen: {chosen()}")
+    press_named(browser, f"Remove this {noun}")
+    check(chosen() == (count - 1, count), f"the {noun} before: {chosen()}")
+    undo(browser)
+    check(chosen() == (count, count + 1), f"one step brings the {noun} back, and chosen: {chosen()}")
     reload(browser)
-    check(chosen() == (count, str(count)), f"after a reload, too: {chosen()}")
+    check(chosen() == (count, count + 1), f"after a reload, too: {chosen()}")
     undo(browser)
-    check(chosen()[0] == 0 and len(scene_of(browser)["lights"]) == count, f"as it was: {chosen()}")
+    check(chosen() == (0, count), f"as it was: {chosen()}")
+    if there == 0:
+        undo(browser)
+    rest(browser)
+
+
+def handles_follow_choices(browser):
+    """The handles in the picture are those of the chosen light and cut, also after undo."""
+    open_section(browser, "Lights")
+    press_named(browser, "Add: light")
+    light = "document.querySelector('.light.chosen').dataset.light"
+    last = browser.run(light)
+    browser.run("document.querySelectorAll('[aria-label=Lights] [role=tab]')[0].click()")
+    check(browser.run(light) == "0" != last, "the handle of the first light is marked")
+    undo(browser)
+    check(browser.run(light) == last, "and that of the last one again")
+    undo(browser)
+    open_section(browser, "Cuts")
+    press_named(browser, "Add: cut")
+    press_named(browser, "Add: cut")
+    set_control(browser, "Sphere", "", section="Cuts")
+    handles = "[...document.querySelectorAll('.cut-handle:not([hidden])')].map((handle) => handle.getAttribute('aria-label'))"
+    sphere = browser.run(handles)
+    field = "document.querySelector('[aria-label=\"Radius of the cut\"]') !== null"
+    check(len(sphere) == 2 and browser.run(field), f"a sphere's handles and its radius: {sphere}")
+    browser.run("document.querySelectorAll('[aria-label=Cuts] [role=tab]')[0].click()")
+    check(browser.run(handles) == ["Plane of the cut, in the picture"] and not browser.run(field), f"the plane's: {browser.run(handles)}")
+    undo(browser)
+    check(browser.run(handles) == sphere and browser.run(field), f"the sphere's again: {browser.run(handles)}")
+
+
+def cuts_that_are_off(browser):
+    """A cut that is switched off keeps its place in the list through undo, redo and a reload, and all cuts come back after a reload."""
+    cuts, tabs = "halflight.store.scene.volumes[0].cuts", "document.querySelectorAll('[aria-label=Cuts] [role=tab]').length"
+    before = browser.run(cuts)
+    check([cut["type"] for cut in before] == ["plane", "sphere"], f"two cuts: {before}")
+    browser.run("document.querySelectorAll('[aria-label=Cuts] [role=tab]')[0].click()")
+    off = lambda: set_control(browser, "Cuts", "", section="Cuts")  # noqa: E731
+    off()
+    check(browser.run(cuts) == before[1:] and browser.run(tabs) == 2, "the first cut is off, and in the list")
+    undo(browser)
+    check(browser.run(cuts) == before and browser.run(tabs) == 2, "one step switches it on")
+    press_named(browser, "Redo")
+    reload(browser)
+    check(browser.run(cuts) == before[1:] and browser.run(tabs) == 2, "it is off, and in the list, after a reload")
+    off()
+    check(browser.run(cuts) == before, "it comes back at its place")
+    set_control(browser, "All cuts", "")
+    reload(browser)
+    check(browser.run(cuts) is None, "all cuts are off")
+    set_control(browser, "All cuts", "")
+    check(browser.run(cuts) == before, "all cuts are on again")
+    while browser.run(f"{cuts} !== undefined"):
+        undo(browser)
+    rest(browser)
+
+
+def functions_come_back(browser):
+    """The transfer function that surfaces have hidden, or that another kind of function has replaced, comes back after a reload."""
+    tf = "halflight.store.scene.volumes[0].transfer_function"
+    before = browser.run(tf)
+    open_section(browser, "Isosurfaces")
+    press_named(browser, "Add: isosurface")
+    check(browser.run(tf) != before, "the surface alone is shown")
+    reload(browser)
+    press_named(browser, "Remove this isosurface")
+    check(browser.run(tf) == before, "without the surface the rest is shown as before")
+    open_section(browser, "Transfer function")
+    press(browser, "by gradient")
+    check("boxes" in browser.run(tf), "a function of value and gradient")
+    reload(browser)
+    press(browser, "by value")
+    check(browser.run(tf) == before, "the function of the value is back")
     rest(browser)
 
 
@@ -560,8 +638,9 @@ def files(browser):
         drop(browser, name, text)
         browser.wait(f"document.getElementById('message').textContent.includes({json.dumps(words)})")
         check(browser.run(STATE) == before, f"{name} changes nothing")
+    damaged = [None, {"cut": {"type": "constructor"}, "at": 0}, {"cut": {"type": "plane", "point": [1, 2]}, "at": 0}, {"cut": {"type": "sphere", "center": [1, 2, 3], "radius": 1}, "at": "0"}]
     hostile = {**json.loads(session), "marks": [{"kind": "<img>", "points": [[0, 0, 0]]}, {"kind": "text", "points": [[0, None, 0]]}, {"kind": "text", "points": [[1, 2, 3]], "text": "<b>"}],
-               "page": {"film": {"frames": 1e9, "fps": "2", "frame": -1, "format": "exe", "open": True, "turns": True, "from": {"camera": {}, "image": None},
+               "page": {"cut": -1, "surface": "0", "aside": {"cut 0": damaged, "sceneCut 0": 7, "all cuts": 3}, "film": {"frames": 1e9, "fps": "2", "frame": -1, "format": "exe", "open": True, "turns": True, "from": {"camera": {}, "image": None},
                                  "tracks": [{"path": "camera", "points": [[0, {"position": 1}]]}, {"path": 7}, None, {"path": "lights.0.intensity", "points": [[2, 1], [9, 3]]}]}}}
     drop(browser, "f.json", json.dumps(hostile))
     browser.wait("halflight.store.marks.length === 1 && halflight.store.marks[0].text === '<b>'")
@@ -633,7 +712,12 @@ with tempfile.TemporaryDirectory() as place:
         film_after_reload(page)
         film_is_undone(page)
         film_is_shown(page)
-        choices_are_undone(page)
+        choices_are_undone(page, "Lights", "light", "halflight.store.scene.lights")
+        choices_are_undone(page, "Isosurfaces", "isosurface", "halflight.store.scene.volumes[0].iso ?? []")
+        choices_are_undone(page, "Cuts", "cut", "halflight.store.scene.volumes[0].cuts ?? []")
+        handles_follow_choices(page)
+        cuts_that_are_off(page)
+        functions_come_back(page)
         check(page.problems == [], f"the console has errors: {page.problems}")
         after_restart(page, first, arguments)
     private_tokens("runtime")

@@ -1,5 +1,7 @@
-// The volume and the light that are chosen for the panels, as numbers. The choices are kept in store.page, so that they are undone and
-// come back with a session; a scene of fewer volumes or lights has its last one chosen.
+// What is chosen for the panels: a volume, a light, an isosurface, a cut, and a cut of the scene, each as a number. The choices are kept in
+// store.page, so that they are undone and come back with a session.
+
+export const KINDS = ["volume", "light", "surface", "cut", "sceneCut"];
 
 export class Current {
   #store;
@@ -8,13 +10,16 @@ export class Current {
     this.#store = store;
   }
 
-  #chosen(key, count) {
-    const index = this.#store.page[key];
+  // The chosen one of `count` things of a kind; the last one where there are fewer.
+  of(kind, count) {
+    const index = this.#store.page[kind];
     return Number.isInteger(index) && index >= 0 ? Math.min(index, Math.max(count - 1, 0)) : 0;
   }
 
-  get volume() { return this.#chosen("volume", this.#store.scene.volumes.length); }
-  set volume(volume) { this.#store.setPage({ volume }); }
-  get light() { return this.#chosen("light", this.#store.scene.lights.length); }
-  set light(light) { this.#store.setPage({ light }); }
+  choose(kind, index) {
+    this.#store.setPage({ [kind]: index });
+  }
+
+  get volume() { return this.of("volume", this.#store.scene.volumes.length); }
+  get light() { return this.of("light", this.#store.scene.lights.length); }
 }

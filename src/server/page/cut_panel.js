@@ -1,12 +1,18 @@
 // The panels of the cuts of a volume, and of the cuts of the scene, which cut all volumes. Cuts are planes,
 // boxes and spheres; each has its numbers and a switch. A cut that is switched off is not in the scene, but
-// the panel remembers it.
+// in the page's state.
 
 import { corners, middle, placed, unplaced, worldBox } from "./boxes.js";
 import { button, isActive, make, row, section, segments, select, shortNumber, tabs, toggle } from "./controls.js";
 import { add, subtract } from "./vector.js";
 
 const PARTS = { plane: [["point", "Point"], ["normal", "Direction"]], box: [["min", "Least"], ["max", "Greatest"]], sphere: [["center", "Centre"], ["radius", "Radius"]] };
+
+// Whether an object, as of a session's file, has a cut's numbers.
+const isComplete = (cut) => Object.hasOwn(PARTS, cut?.type) && PARTS[cut.type].every(([key]) => {
+  const values = [cut[key]].flat();
+  return values.length === (key === "radius" ? 1 : 3) && values.every(Number.isFinite);
+});
 
 // A new cut takes away the upper front part of the box.
 function newCut(type, box) {
@@ -44,98 +50,85 @@ function numbers({ label, noun, count, get, set }) {
   return { element: row(make("span", { class: "name" }, label), make("span", { class: "numbers" }, ...fields)), update };
 }
 
-// A panel of the cuts of one owner: owner() tells which it is (-1: none, the panel is hidden), cuts() are its cuts, take(name,
-// cuts) changes them, box() is where they cut, transform() where that lies in the scene, others() are rows that follow. While it
-// is open, the chosen cut has handles in the picture.
-function panelOf({ title, noun, viewer: { overlay, report, slices }, owner, cuts: cutsNow, take: takeCuts, box, transform, others }) {
-  const { element, body } = section(title, false);
-  let list = [], chosen = 0, parts = []; // list: { cut, on } for each cut of the owner `of`
-  let of = -1;
+// A panel of the cuts of one owner. kind: of Current, the choice among the cuts; owner() tells which volume it is (-1: none, the panel is
+// hidden), cuts() are its cuts in the scene, take(name, change) changes them, box() is where they cut, transform() where that lies in the
+// scene, others() are rows that follow. While it is open, the chosen cut has handles in the picture.
+function panelOf({ title, noun, kind, viewer: { store, current, overlay, report, slices }, owner, cuts, take: takeCuts, box, transform, others }) {
+  const { element, body } = section(title, false), rows = make("div");
+  let parts = [], told = ""; // what the rows are of
 
-  const shown = (entries) => entries.filter((entry) => entry.on).map((entry) => entry.cut);
-  // The list follows the scene when another volume is chosen or changes are undone.
-  function follow() {
-    const cuts = cutsNow();
-    if (of === owner() && JSON.stringify(shown(list)) === JSON.stringify(cuts)) return false;
-    of = owner();
-    list = cuts.map((cut) => ({ cut, on: true }));
-    chosen = Math.min(chosen, Math.max(list.length - 1, 0));
-    return true;
-  }
+  // Cuts that are switched off are put aside, [{ cut, at }], with their places in the list of all cuts.
+  const key = () => `${kind} ${owner()}`;
+  const off = () => [store.aside(key()) ?? []].flat().filter((one) => isComplete(one?.cut) && Number.isInteger(one.at));
+  // All cuts, [{ cut, on }].
+  const list = () => off().reduce((all, { cut, at }) => all.toSpliced(at, 0, { cut, on: false }), cuts().map((cut) => ({ cut, on: true })));
+  const chosen = () => current.of(kind, list().length), entry = () => list()[chosen()];
+
   function take(name, changed) {
-    list = changed;
-    const cuts = shown(list);
-    takeCuts(`cuts ${name}`, ({ cuts: _, ...rest }) => (cuts.length > 0 ? { ...rest, cuts } : rest));
+    const shown = changed.filter(({ on }) => on).map(({ cut }) => cut), hidden = changed.flatMap(({ cut, on }, at) => (on ? [] : [{ cut, at }]));
+    takeCuts(`cuts ${name}`, ({ cuts: _, ...rest }) => (shown.length > 0 ? { ...rest, cuts: shown } : rest));
+    if (hidden.length > 0 || off().length > 0) store.putAside(key(), hidden);
   }
-  const entry = () => list[chosen];
-  const changeCut = (name, part) => take(`${chosen} ${name}`, list.map((one, n) => (n === chosen ? { ...one, cut: { ...one.cut, ...part } } : one)));
+  const changeEntry = (name, change) => take(`${chosen()} ${name}`, list().map((one, n) => (n === chosen() ? change(one) : one)));
+  const changeCut = (name, part) => changeEntry(name, (one) => ({ ...one, cut: { ...one.cut, ...part } }));
 
-  function setNumbers(key, value) {
-    const cut = { ...entry().cut, [key]: value };
+  function setNumbers(name, value) {
+    const cut = { ...entry().cut, [name]: value };
     if (cut.type === "plane" && Math.hypot(...cut.normal) === 0) report("A plane needs a direction.");
     else if (cut.type === "box" && cut.min.some((low, k) => low >= cut.max[k])) report("A box's greatest corner has to be beyond its least.");
     else if (cut.type === "sphere" && !(cut.radius > 0)) report("A sphere's radius has to be above 0.");
-    else changeCut(key, { [key]: value });
+    else changeCut(name, { [name]: value });
   }
 
   const numbered = tabs({
-    label: title, noun, count: () => list.length, chosen: () => chosen,
-    choose: (n) => { chosen = n; build(); overlay.draw(); },
-    add: () => { chosen = list.length; take("add", [...list, { cut: newCut("plane", box()), on: true }]); build(); },
-    remove: () => {
-      const left = list.filter((_, n) => n !== chosen);
-      chosen = Math.max(Math.min(chosen, left.length - 1), 0);
-      take("remove", left);
-      build();
+    label: title, noun, count: () => list().length, chosen, choose: (n) => current.choose(kind, n),
+    add: () => {
+      const all = list();
+      take("add", [...all, { cut: newCut("plane", box()), on: true }]);
+      current.choose(kind, all.length);
     },
+    remove: () => take("remove", list().toSpliced(chosen(), 1)),
   });
+  body.append(numbered.element, rows);
 
   function cutParts() {
     const { cut } = entry();
     const shape = segments({
-      label: "Shape", choices: [["plane", "Plane"], ["box", "Box"], ["sphere", "Sphere"]], get: () => entry()?.cut.type,
-      set: (type) => { take(`${chosen} type`, list.map((one, n) => (n === chosen ? { ...one, cut: newCut(type, box()) } : one))); build(); },
+      label: "Shape", choices: [["plane", "Plane"], ["box", "Box"], ["sphere", "Sphere"]], get: () => entry().cut.type,
+      set: (type) => changeEntry("type", (one) => ({ ...one, cut: newCut(type, box()) })),
     });
-    const places = PARTS[cut.type].map(([key, label]) => numbers({
-      label, noun, count: key === "radius" ? 1 : 3, get: () => entry()?.cut[key] ?? cut[key], set: (value) => setNumbers(key, value),
+    const places = PARTS[cut.type].map(([name, label]) => numbers({
+      label, noun, count: name === "radius" ? 1 : 3, get: () => entry().cut[name], set: (value) => setNumbers(name, value),
     }));
     const toCrosshair = {
-      element: row("", button("to the crosshair", () => {
-        take(`${chosen} place`, list.map((one, n) => (n === chosen ? { ...one, cut: movedTo(one.cut, unplaced(slices.cursor, transform())) } : one)));
-      }, { title: "Moves the cut to where the crosshair of the slices is" })),
+      element: row("", button("to the crosshair", () => changeEntry("place", (one) => ({ ...one, cut: movedTo(one.cut, unplaced(slices.cursor, transform())) })), { title: "Moves the cut to where the crosshair of the slices is" })),
       update() { this.element.hidden = slices.layout === "picture"; },
     };
     return [
-      toggle({ label: "Cuts", get: () => entry()?.on === true, set: (on) => take(`${chosen} on`, list.map((one, n) => (n === chosen ? { ...one, on } : one))) }),
+      toggle({ label: "Cuts", get: () => entry().on, set: (on) => changeEntry("on", (one) => ({ ...one, on })) }),
       shape, ...places, toCrosshair,
-      segments({ label: "Keep", choices: [["outside", "Outside"], ["inside", "Inside"]], get: () => entry()?.cut.keep ?? "outside", set: (keep) => changeCut("keep", { keep }) }),
+      segments({ label: "Keep", choices: [["outside", "Outside"], ["inside", "Inside"]], get: () => entry().cut.keep ?? "outside", set: (keep) => changeCut("keep", { keep }) }),
     ];
   }
 
-  function build() {
+  // The rows follow the scene where another shape of cut is chosen, by hand or by undo.
+  function update() {
     element.hidden = owner() < 0;
     if (element.hidden) return;
-    follow();
-    parts = [numbered, ...(list.length > 0 ? [...cutParts(), ...others()] : [])];
-    body.replaceChildren(...parts.map((part) => part.element));
+    const now = `${owner()} ${entry()?.cut.type}`;
+    if (now !== told) {
+      parts = entry() ? [...cutParts(), ...others()] : [];
+      rows.replaceChildren(...parts.map((part) => part.element));
+      told = now;
+    }
+    numbered.update();
     parts.forEach((part) => part.update());
   }
-  const update = () => {
-    if (element.hidden !== owner() < 0 || (owner() >= 0 && follow())) build();
-    else parts.forEach((part) => part.update());
-  };
-  const updateView = () => parts.forEach((part) => part.update()); // the layout says whether there is a crosshair
-  const chosenCut = () => {
-    if (owner() >= 0 && follow()) build();
-    return element.open && owner() >= 0 && entry()?.on ? entry().cut : null;
-  };
-  overlay.addCut({
-    noun, box, transform, cut: chosenCut,
-    take: (cut) => take(`${chosen} place`, list.map((one, n) => (n === chosen ? { ...one, cut } : one))),
-  });
+  const chosenCut = () => (element.open && owner() >= 0 && entry()?.on ? entry().cut : null);
+  overlay.addCut({ noun, box, transform, cut: chosenCut, take: (cut) => changeEntry("place", (one) => ({ ...one, cut })) });
   element.addEventListener("toggle", () => overlay.draw());
-  build();
-  return { element, update, updateView, rebuild: build };
+  update();
+  return { element, update, updateView: update }; // the layout says whether there is a crosshair
 }
 
 // The switch for everything that is cut away: the cuts and clip boxes of all volumes, and the scene's cuts.
@@ -144,29 +137,26 @@ export function cutSwitch(viewer) {
   const { store, start, find } = viewer;
   const cutsOf = ({ volumes, cuts }) => ({ volumes: volumes.map(({ cuts: own, clip }) => ({ cuts: own, clip })), cuts });
   const isCut = ({ volumes, cuts }) => cuts?.length > 0 || volumes.some((volume) => volume.cuts?.length > 0 || volume.clip);
-  const withCuts = ({ cuts: _, ...scene }, { volumes, cuts }) => ({
+  const withCuts = ({ cuts: _, ...scene }, { volumes = [], cuts }) => ({
     ...scene, ...(cuts ? { cuts } : {}),
     volumes: scene.volumes.map(({ cuts: __, clip: ___, ...volume }, n) => ({ ...volume, ...(volumes[n]?.cuts ? { cuts: volumes[n].cuts } : {}), ...(volumes[n]?.clip ? { clip: volumes[n].clip } : {}) })),
   });
   const chosen = start.volumes.reduce((count, about, n) => count + (about?.chosen_cuts ? start.scene.volumes[n].cuts.length : 0), 0);
-  let away = null; // the cuts that the switch has taken off
+  const away = () => store.aside("all cuts");
   function set(on) {
-    if (on && away !== null) store.change("all cuts", (scene) => withCuts(scene, away));
-    else if (!on) {
-      away = cutsOf(store.scene);
-      store.change("all cuts", (scene) => withCuts(scene, { volumes: [] }));
-    }
+    if (!on) store.putAside("all cuts", cutsOf(store.scene));
+    if (!on || away()) store.change("all cuts", (scene) => withCuts(scene, on ? away() : { volumes: [] }));
   }
   const all = toggle({ label: "All cuts", get: () => isCut(store.scene), set });
   const why = `${chosen} ${chosen === 1 ? "plane takes" : "planes take"} away what holds the object`;
   const told = make("p", { class: "facts", hidden: chosen === 0 }, `${why}: chosen by the program, as nobody said what to cut.`);
   const note = make("button", { type: "button", class: "note", hidden: chosen === 0, onclick: () => set(!isCut(store.scene)) });
   find("statistics").before(note);
-  viewer.toggleCuts = () => { if (isCut(store.scene) || away !== null) set(!isCut(store.scene)); };
+  viewer.toggleCuts = () => set(!isCut(store.scene));
   const element = make("div", { class: "chooser" }, all.element, told);
   function update() {
     all.update();
-    element.hidden = !isCut(store.scene) && away === null;
+    element.hidden = !isCut(store.scene) && !away();
     note.textContent = isCut(store.scene) ? `show what holds it: ${chosen} ${chosen === 1 ? "plane cuts" : "planes cut"} it away` : "cut away again what holds it";
   }
   update();
@@ -187,7 +177,7 @@ export function cutPanel(viewer) {
     }),
   ];
   return panelOf({
-    title: "Cuts", noun: "cut", viewer, others, transform: () => volume().transform, owner: () => (volume() === undefined ? -1 : current.volume), cuts: () => volume().cuts ?? [],
+    title: "Cuts", noun: "cut", kind: "cut", viewer, others, transform: () => volume().transform, owner: () => (volume() === undefined ? -1 : current.volume), cuts: () => volume().cuts ?? [],
     take: (name, change) => store.changeVolume(current.volume, name, change), box: () => worldBox(start.volumes[current.volume]),
   });
 }
@@ -201,7 +191,7 @@ export function sceneCutPanel(viewer) {
   }
   const volumes = () => store.scene.volumes.length;
   return panelOf({
-    title: "Cuts of the scene", noun: "cut of the scene", viewer, transform: () => ({}), others: () => [], box, cuts: () => store.scene.cuts ?? [],
+    title: "Cuts of the scene", noun: "cut of the scene", kind: "sceneCut", viewer, transform: () => ({}), others: () => [], box, cuts: () => store.scene.cuts ?? [],
     owner: () => (volumes() > 1 || (volumes() > 0 && store.scene.cuts?.length > 0) ? 0 : -1), take: (name, change) => store.change(`scene ${name}`, change),
   });
 }

@@ -86,8 +86,7 @@ export function functionPanel({ store, start, current, channel, failed, waits })
   const set = (tf, name = "") =>
     store.changeVolume(current.volume, `function ${name}`, (changed) => ({ ...changed, transfer_function: tf }));
   const named = new Map(); // the preset that has a function, by the function's text
-  // For each volume: the function of the value alone that *by gradient* has replaced.
-  const before = new Map();
+  const key = () => `by value ${current.volume}`; // the function that *by gradient* has replaced is put aside by this name
   let parts = [], ofTwo = false;
 
   // The points of a preset are the program's own: the scene with the preset is sent, and comes back with its
@@ -120,7 +119,7 @@ export function functionPanel({ store, start, current, channel, failed, waits })
     });
     if (ofTwo) {
       const plane = planePanel({ store, start, current, get, set });
-      const back = button("by value", () => (before.has(current.volume) ? set(before.get(current.volume), "by value") : applyPreset("automatic")), { title: "The line over the values again" });
+      const back = button("by value", () => (store.aside(key()) ? set(store.aside(key()), "by value") : applyPreset("automatic")), { title: "The line over the values again" });
       body.replaceChildren(...plane.elements, presets.element, row("", back));
       parts = [...plane.parts, presets];
       parts.forEach((part) => part.update());
@@ -138,7 +137,7 @@ export function functionPanel({ store, start, current, channel, failed, waits })
       label: "Colours", choices: [["", "own"], ...Object.keys(start.colormaps).map((name) => [name, name])],
       get: () => colormapOf(get(), start.colormaps), set: (name) => name && set(withColormap(get(), start.colormaps[name], spread(rangeOf(get()), range)), `map ${name}`),
     });
-    const gradient = button("by gradient", () => { before.set(current.volume, get()); set(byGradient(get(), volume(), about), "by gradient"); },
+    const gradient = button("by gradient", () => { store.putAside(key(), get()); set(byGradient(get(), volume(), about), "by gradient"); },
       { title: "Boxes in the plane of value and gradient in place of the line" });
     const zoomed = row(make("span", { class: "name" }, "Zoom to"), make("span", { class: "buttons" },
       button("all values", () => { canvas.shown = range; }),

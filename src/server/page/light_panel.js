@@ -28,10 +28,9 @@ const placesOf = (light, index) => ["direction", "position"].filter((key) => lig
 export function lightPanel(viewer) {
   const { store, current, overlay } = viewer;
   const { element, body } = section("Lights");
-  let told = 0; // the light of which the panel is
   const light = () => store.scene.lights[current.light];
   const change = (name, set) => store.changeLight(current.light, name, set);
-  const choose = (index) => { current.light = index; };
+  const choose = (index) => current.choose("light", index);
   const add = () => {
     store.change("add light", (scene) => ({ ...scene, lights: [...scene.lights, newLight()] }));
     choose(store.scene.lights.length - 1);
@@ -79,7 +78,6 @@ export function lightPanel(viewer) {
   element.addEventListener("toggle", rigs.atRest);
   body.append(rigs.element, viewer.comparison.compareButton(), list.element, handles.element, own, ambient.element);
   function update() {
-    told = current.light;
     list.update();
     handles.update();
     ambient.update();
@@ -88,7 +86,7 @@ export function lightPanel(viewer) {
     if (light() !== undefined) rows.forEach((r) => r.update());
   }
   update();
-  return { element, update, updateView: () => { if (current.light !== told) update(); } };
+  return { element, update };
 }
 
 export function shadowPanel(viewer) {

@@ -192,7 +192,7 @@ export class Overlay {
   }
 
   #choose(l) {
-    if (this.#current.light !== l) this.#current.light = l;
+    if (this.#current.light !== l) this.#current.choose("light", l);
   }
 
   // Drags the dot over the sphere; beyond its rim the light goes behind. Or drags the ring, which is the

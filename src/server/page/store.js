@@ -3,6 +3,7 @@
 // elsewhere. Objects are never altered, only replaced.
 
 import { reshaped } from "./camera.js";
+import { KINDS } from "./current.js";
 import { difference } from "./link.js";
 import { readMarks } from "./marks.js";
 
@@ -10,7 +11,7 @@ const MOST_STEPS = 100; // the most steps that can be undone, for each history
 const UNREMEMBERED = ["camera", "size", "time", "page"]; // changes that are no steps of the main history
 
 // The settings of the page that are undone besides the film. The crosshair and which sections are unfolded are left as they are.
-const KEPT = ["volume", "light", "layout", "plane", "oblique", "windows", "thickness", "blend", "showLabels", "showIsolines", "bookmarks", "over", "unit"];
+const KEPT = [...KINDS, "aside", "layout", "plane", "oblique", "windows", "thickness", "blend", "showLabels", "showIsolines", "bookmarks", "over", "unit"];
 
 const keptOf = (page) => Object.fromEntries(KEPT.map((key) => [key, page[key]]));
 
@@ -113,6 +114,15 @@ export class Store {
     if (changed.length > 0) this.#remember(`page's ${changed}`);
     this.page = { ...this.page, ...part };
     this.#tell("page");
+  }
+
+  // What a switch has taken out of the scene, to bring it back; undefined: nothing.
+  aside(name) {
+    return this.page.aside?.[name];
+  }
+
+  putAside(name, what) {
+    this.setPage({ aside: { ...this.page.aside, [name]: what } });
   }
 
   setCamera(camera) {

@@ -79,22 +79,22 @@ function commonest({ histogram, range: [low, high] }) {
 export function surfacePanel({ store, start, current, failed, channel, waits }) {
   const { element, body } = section("Isosurfaces", false);
   const volume = () => store.scene.volumes[current.volume], about = () => start.volumes[current.volume];
-  const surfaces = () => volume().iso ?? [], surface = () => surfaces()[chosen];
-  const shown = new Map(); // for each volume: the transfer function that "Surfaces alone" has hidden
-  let chosen = 0, parts = [];
+  const surfaces = () => volume().iso ?? [], chosen = () => current.of("surface", surfaces().length), surface = () => surfaces()[chosen()];
+  const key = () => `alone ${current.volume}`; // the transfer function that "Surfaces alone" has hidden is put aside by this name
+  let parts = [];
   // Surfaces can be added where the function is of one number and the scene is no maximum projection.
   const isOfValue = () => volume()?.transfer_function?.opacity !== undefined && !isProjection(store.scene);
 
-  const changeSurface = (name, part) => store.changeVolume(current.volume, `iso ${chosen} ${name}`, (v) => ({
-    ...v, iso: v.iso.map((one, n) => (n === chosen ? { ...one, ...part } : one)),
+  const changeSurface = (name, part) => store.changeVolume(current.volume, `iso ${chosen()} ${name}`, (v) => ({
+    ...v, iso: v.iso.map((one, n) => (n === chosen() ? { ...one, ...part } : one)),
   }));
-  const choose = (n) => { chosen = n; update(); };
+  const choose = (n) => current.choose("surface", n);
 
   function add() {
     const last = surfaces().at(-1), tf = volume().transfer_function;
     const value = last === undefined ? firstValue(tf, about().range) : last.value + OUTWARDS * (commonest(about()) - last.value);
     const made = { value, color: linearOf(PALETTE[surfaces().length % PALETTE.length]), opacity: last === undefined ? 1 : 0.3 };
-    if (last === undefined && !isClear(tf)) shown.set(current.volume, tf);
+    if (last === undefined && !isClear(tf)) store.putAside(key(), tf);
     store.changeVolume(current.volume, `iso add ${Math.random()}`, (v) => ({
       ...v, iso: [...(v.iso ?? []), made], transfer_function: last === undefined ? cleared(tf) : tf,
     }));
@@ -102,7 +102,7 @@ export function surfacePanel({ store, start, current, failed, channel, waits }) 
   }
 
   function remove() {
-    const gone = chosen, back = surfaces().length === 1 && isClear(volume().transfer_function) ? shown.get(current.volume) : undefined;
+    const gone = chosen(), back = surfaces().length === 1 && isClear(volume().transfer_function) ? store.aside(key()) : undefined;
     store.changeVolume(current.volume, `iso remove ${Math.random()}`, ({ iso, ...v }) => {
       const rest = iso.filter((_, n) => n !== gone);
       return { ...v, ...(back ? { transfer_function: back } : {}), ...(rest.length > 0 ? { iso: rest } : {}) };
@@ -116,9 +116,9 @@ export function surfacePanel({ store, start, current, failed, channel, waits }) 
     const tf = volume().transfer_function, { iso: _, transfer_function: __, ...bare } = volume(), index = current.volume;
     const set = (wanted) => store.changeVolume(index, "iso alone", (v) => ({ ...v, transfer_function: wanted }));
     if (alone) {
-      shown.set(index, tf);
+      store.putAside(key(), tf);
       set(cleared(tf));
-    } else if (shown.has(index)) set(shown.get(index));
+    } else if (store.aside(key())) set(store.aside(key()));
     else
       try {
         const volumes = store.scene.volumes.map((v, n) => (n === index ? bare : v));
@@ -128,20 +128,19 @@ export function surfacePanel({ store, start, current, failed, channel, waits }) 
       }
   }
 
-  const list = tabs({ label: "Isosurfaces", noun: "isosurface", count: () => surfaces().length, chosen: () => chosen, choose, add, remove });
+  const list = tabs({ label: "Isosurfaces", noun: "isosurface", count: () => surfaces().length, chosen, choose, add, remove });
   function build() {
-    chosen = 0;
     if (!isOfValue() || !about()) {
       parts = [];
       element.hidden = true;
       return;
     }
     element.hidden = false;
-    const drawing = lines({ surfaces, chosen: () => chosen, choose, set: (value) => changeSurface("value", { value }), about: about() });
+    const drawing = lines({ surfaces, chosen, choose, set: (value) => changeSurface("value", { value }), about: about() });
     parts = [
-      slider({ label: "Value", path: () => `volumes.${current.volume}.iso.${chosen}.value`, low: about().range[0], high: about().range[1], get: () => surface().value, set: (value) => changeSurface("value", { value }) }),
+      slider({ label: "Value", path: () => `volumes.${current.volume}.iso.${chosen()}.value`, low: about().range[0], high: about().range[1], get: () => surface().value, set: (value) => changeSurface("value", { value }) }),
       color({ label: "Colour", get: () => hexOf(surface().color), set: (hex) => changeSurface("color", { color: linearOf(hex) }) }),
-      slider({ label: "Opacity", path: () => `volumes.${current.volume}.iso.${chosen}.opacity`, low: 0, high: 1, title: "The fraction of light that the surface stops", get: () => surface().opacity, set: (opacity) => changeSurface("opacity", { opacity }) }),
+      slider({ label: "Opacity", path: () => `volumes.${current.volume}.iso.${chosen()}.opacity`, low: 0, high: 1, title: "The fraction of light that the surface stops", get: () => surface().opacity, set: (opacity) => changeSurface("opacity", { opacity }) }),
       toggle({ label: "Surfaces alone", get: () => isClear(volume().transfer_function), set: setAlone }),
       drawing,
     ];
@@ -153,7 +152,6 @@ export function surfacePanel({ store, start, current, failed, channel, waits }) 
   function update() {
     if (element.hidden !== !isOfValue()) build();
     if (element.hidden) return;
-    chosen = Math.min(chosen, Math.max(surfaces().length - 1, 0));
     list.update();
     for (const [n, part] of parts.entries()) {
       part.element.hidden = (surface() === undefined) !== (n === 0);

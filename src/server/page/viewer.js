@@ -5,7 +5,7 @@ import { worldBox } from "./boxes.js";
 import { reshaped } from "./camera.js";
 import { make } from "./controls.js";
 import { comparison } from "./comparison.js";
-import { Current } from "./current.js";
+import { Current, KINDS } from "./current.js";
 import { cutPanel, cutSwitch, sceneCutPanel } from "./cut_panel.js";
 import { copier, exportPanel } from "./export.js";
 import { filmPanel } from "./film_panel.js";
@@ -247,13 +247,15 @@ export function mount(element, channel, whole, { keyboard = element, reopen = ()
     followHistory();
   };
   // Following the camera and the layout is little work, which is done for each movement of the hand.
-  let shown = viewer.current.volume; // the one of which the panels are
+  let shown = viewer.current.volume, page = store.page; // of which the panels are
   store.listen((_, name) => {
+    const isOther = KINDS.some((kind) => store.page[kind] !== page[kind]);
+    page = store.page;
     if (viewer.current.volume !== shown) {
       shown = viewer.current.volume;
       panels.forEach((panel) => panel.rebuild?.());
     }
-    if (name !== "camera" && name !== "page") update();
+    if (isOther || (name !== "camera" && name !== "page")) update();
     else panels.forEach((panel) => panel.updateView?.());
     followHistory(); // changes of the page may be steps, too
   });

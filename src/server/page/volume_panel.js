@@ -37,7 +37,7 @@ function clipRow(axis, box, get, set, paths) {
 export function volumeChooser({ store, current }) {
   const { element, update } = select({
     label: "Volume", choices: store.scene.volumes.map((v, n) => [String(n), v.name ?? (v.file ?? "shapes").split("/").pop()]),
-    get: () => String(current.volume), set: (n) => { current.volume = +n; },
+    get: () => String(current.volume), set: (n) => current.choose("volume", +n),
   });
   return { element: make("div", { class: "chooser", hidden: store.scene.volumes.length < 2 }, element), update, rebuild: update };
 }
