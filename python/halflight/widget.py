@@ -221,7 +221,7 @@ class _Frames(threading.Thread):
                 raise _OutdatedError
 
         stop_if_outdated()
-        began = time.monotonic()
+        began, worked = time.monotonic(), time.process_time()
         scene = self.named.read(text)
         if scene.size[0] * scene.size[1] > _MOST_PIXELS:
             raise ValueError(f"{scene.size[0]} x {scene.size[1]} pixels are more than the viewer's {_MOST_PIXELS}")
@@ -235,7 +235,7 @@ class _Frames(threading.Thread):
         if _is_still(message):
             self.keep(content)
         times = {"read": 1e3 * (read - began), "render": 1e3 * (rendered - read),
-                 "encode": 1e3 * (time.monotonic() - rendered)}
+                 "encode": 1e3 * (time.monotonic() - rendered), "processor": 1e3 * (time.process_time() - worked)}
         return {"type": kind, "times": times}, [content]
 
 

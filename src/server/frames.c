@@ -355,6 +355,13 @@ static hl_status make_overlay(server *s, server_page *page, const hl_scene *scen
   return status;
 }
 
+/* The processor time of this process so far, in seconds. */
+static double processor_seconds(void) {
+  struct timespec now;
+  clock_gettime(CLOCK_PROCESS_CPUTIME_ID, &now);
+  return (double)now.tv_sec + 1e-9 * (double)now.tv_nsec;
+}
+
 /* Renders a frame. renderer: the page's renderer for moving scenes, or for scenes at rest. */
 static hl_status render(server *s, server_page *page, hl_renderer **renderer, const hl_scene *scene,
                         const frame_request *request, server_answer *answer, hl_error *error) {
@@ -362,7 +369,7 @@ static hl_status render(server *s, server_page *page, hl_renderer **renderer, co
   hl_image *image = NULL;
   hl_render_statistics statistics = {.struct_size = sizeof statistics};
   const bool is_new = *renderer == NULL;
-  double began = server_seconds();
+  double began = server_seconds(), worked = processor_seconds();
   hl_status status = is_new ? hl_renderer_create(s->options.context, renderer, error) : HL_OK;
   if (status == HL_OK && strcmp(request->format, "depth") == 0)
     return render_depth(page, scene, answer, error);
@@ -378,6 +385,7 @@ static hl_status render(server *s, server_page *page, hl_renderer **renderer, co
   hl_image_destroy(image);
   answer->seconds_render = rendered - began;
   answer->seconds_encode = server_seconds() - rendered;
+  if (!is_new) answer->seconds_processor = processor_seconds() - worked;
   return status;
 }
 

@@ -162,6 +162,8 @@ typedef struct server_answer {
                                                         * encoding a frame; all 0 if the answer is no frame */
   double seconds_once; /* the part of these times that later frames do not need again: the time for preparing
                         * a new renderer, and for waiting for coarser volumes */
+  double seconds_processor; /* the processor time of the viewer while it rendered and encoded a frame; 0 if
+                             * this included the preparation of a new renderer */
 } server_answer;
 
 /* The parameters of a request for a frame. */

@@ -82,10 +82,11 @@ static enum MHD_Result send_answer(server *s, struct MHD_Connection *connection,
   hl_bytes_release(s->options.context, answer->bytes);
   hl_text_release(s->options.context, answer->text);
   if (response != NULL && answer->seconds_render > 0) {
-    char times[160];
-    snprintf(times, sizeof times, "read;dur=%.3f, render;dur=%.3f, encode;dur=%.3f, once;dur=%.3f",
+    char times[200];
+    snprintf(times, sizeof times,
+             "read;dur=%.3f, render;dur=%.3f, encode;dur=%.3f, once;dur=%.3f, processor;dur=%.3f",
              1e3 * answer->seconds_read, 1e3 * answer->seconds_render, 1e3 * answer->seconds_encode,
-             1e3 * answer->seconds_once);
+             1e3 * answer->seconds_once, 1e3 * answer->seconds_processor);
     if (MHD_add_response_header(response, "Server-Timing", times) != MHD_YES) {
       MHD_destroy_response(response);
       return MHD_NO;

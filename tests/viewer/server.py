@@ -71,6 +71,8 @@ def exact_pictures(viewer, scene):
         check((b"halflight:scene" in body) == (format == "png" and metadata == 1), "the scene in it, or not")
         check("render;dur=" in headers["Server-Timing"], "a frame tells its times")
     status, headers, body = frame(viewer, scene, format="jpeg", quality=70)
+    times = {name: float(value) for name, value in (part.split(";dur=") for part in headers["Server-Timing"].split(", "))}
+    check(0 < times["processor"] < os.cpu_count() * 1.1 * (times["read"] + times["render"] + times["encode"]), f"a frame tells its processor time: {times}")
     check(status == 200 and body[:3] == b"\xff\xd8\xff" and headers["Content-Type"] == "image/jpeg", "a JPEG frame")
 
 

@@ -1,5 +1,5 @@
 // Frames: chooses the next picture, and its quality. While something moves, quick pictures follow each other;
-// each is asked for when the last one has come. Their size fits into the time of a frame, but is at least
+// each is asked for when the last one has come. Their size fits into the time of a frame, by the clock and of the processors, but is at least
 // LEAST_PIXELS. Where such a picture takes too long, its sheets are wider and its volumes coarser. The
 // channel then takes volumes whose voxels are about as long as the sheets are apart, so that thin surfaces
 // stay whole. At rest a picture of full size follows, as fine as fits into half a second. Then the exact
@@ -8,7 +8,8 @@
 import { worldHeight } from "./camera.js";
 import { length } from "./vector.js";
 
-const BUDGET = 1000 / 20; // milliseconds for a frame while something moves
+const BUDGET = 1000 / 20; // milliseconds by the clock for a frame while something moves
+const PROCESSOR_BUDGET = 80; // milliseconds of processor time for such a frame, however many cores there are
 const REST_AFTER = 120; // milliseconds without a change, after which the scene is at rest
 // Milliseconds for the first picture of full size, so that it is there half a second after the last change.
 const SETTLED_WITHIN = 350;
@@ -39,7 +40,8 @@ export class Frames {
   #ended = false;
   #generation = 0;
   #timer = 0;
-  #work; // number of pixels, with sheets a voxel apart, that take as long as the budget
+  #work; // number of pixels, with sheets a voxel apart, of a picture while something moves
+  #timely; // such a number, of pixels that take as long as the budget by the clock
   #voxels;
   #scene = null; // the scene that the newest picture shows, or will show
   #animation = null; // { change, began: null until its first picture is shown, milliseconds }
@@ -50,7 +52,7 @@ export class Frames {
   // and "refining" when the first and the final picture at rest are begun, "settled" and "final" when these are there; "failed".
   constructor({ store, start, channel }, canvas, report) {
     this.#measure(start);
-    this.#work = LEAST_PIXELS / firstSpacing(start.volumes);
+    this.#work = this.#timely = LEAST_PIXELS / firstSpacing(start.volumes);
     this.#store = store;
     this.#channel = channel;
     this.#canvas = canvas;
@@ -138,7 +140,7 @@ export class Frames {
         const frame = await this.#channel.fetchFrame(scene, { quality: 80, moving: true });
         if (frame !== null) {
           await this.#show(frame.blob, scene.image);
-          this.#learn(performance.now() - began - (frame.times?.once ?? 0));
+          this.#learn(performance.now() - began - (frame.times?.once ?? 0), frame.times?.processor ?? 0);
           this.statistics.previews++;
           if (animation !== null) animation.began ??= performance.now();
           this.#tell("moving", scene, began, frame.blob);
@@ -159,10 +161,12 @@ export class Frames {
     this.#timer = setTimeout(() => this.#refine(this.#generation), REST_AFTER);
   }
 
-  // Adapts the work that fits into the budget to the time that the last picture took.
-  #learn(milliseconds) {
-    const factor = Math.min(Math.max(BUDGET / milliseconds, 0.25), 2) ** ADAPTION, full = this.#full().pixels;
-    this.#work = Math.min(Math.max(this.#work * factor, Math.min(LEAST_PIXELS, full) / WIDEST), full);
+  // Adapts the work that fits into the budgets to the time that the last picture took by the clock, and of the processors; 0: not told.
+  #learn(milliseconds, processor) {
+    const full = this.#full().pixels, timely = (this.#work * BUDGET) / milliseconds;
+    const adapted = (now, aim) => Math.min(Math.max(now * Math.min(Math.max(aim / now, 0.25), 2) ** ADAPTION, Math.min(LEAST_PIXELS, full) / WIDEST), full);
+    this.#timely = adapted(this.#timely, timely);
+    this.#work = adapted(this.#work, Math.min(timely, (this.#work * PROCESSOR_BUDGET) / processor));
   }
 
   // The length of a pixel at the target, in voxels, in a picture of this many pixels.
@@ -188,7 +192,7 @@ export class Frames {
   async #refine(generation) {
     if (generation !== this.#generation) return;
     this.statistics.stage = "refining";
-    const scene = this.#store.scene, single = (this.#work * SETTLED_WITHIN) / BUDGET; // number of pixels with sheets a voxel apart
+    const scene = this.#store.scene, single = (this.#timely * SETTLED_WITHIN) / BUDGET; // number of pixels with sheets a voxel apart
     // The picture gets smaller before its sheets get so wide that they are seen.
     const pixels = Math.min(Math.max(single * SETTLED_SPACING, LEAST_PIXELS), this.#full().pixels), spacing = Math.min(pixels / single, WIDEST);
     try {
