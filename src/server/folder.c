@@ -54,9 +54,7 @@ static bool is_folder(const char *path) {
   return stat(path, &about) == 0 && S_ISDIR(about.st_mode);
 }
 
-/* Finds the absolute path of a file or folder below the server's folder. Returns false if it does not lie
- * there, after links were followed. */
-static bool folder_resolve(const server *s, const char *inside, char path[PATH_BYTES]) {
+bool folder_resolve(const server *s, const char *inside, char path[PATH_BYTES]) {
   char asked[PATH_BYTES];
   const char *folder = s->options.folder;
   size_t length = strlen(folder);

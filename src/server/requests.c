@@ -401,6 +401,15 @@ static void post_open(server *s, struct MHD_Connection *connection, server_answe
   }
 }
 
+/* Answers with a session that lies below the viewer's folder; with status 204 if the file is none. */
+static void post_session(server *s, struct MHD_Connection *connection, server_answer *answer) {
+  const char *name = query_text(connection, "file");
+  char path[PATH_BYTES];
+  char *text = name != NULL && s->below != NULL && folder_resolve(s, name, path) ? session_read(path) : NULL;
+  if (text != NULL) answer_json(answer, text);
+  else answer->status = 204;
+}
+
 /* Opens a file that was dropped on the page. The folder of this file contains no other file. */
 static void open_upload(server *s, const server_upload *upload, const char *name, server_answer *answer) {
   server_file file = {.name = name};
@@ -433,6 +442,7 @@ static void answer_post(server *s, struct MHD_Connection *connection, request *r
        overlay = strcmp(r->path, "overlay") == 0;
   if (r->uploads) post_upload(s, connection, r, answer);
   else if (strcmp(r->path, "open") == 0) post_open(s, connection, answer);
+  else if (strcmp(r->path, "session") == 0) post_session(s, connection, answer);
   else if (strcmp(r->path, "leave") == 0) post_leave(s, connection, answer);
   else if (strcmp(r->path, "cancel") == 0) post_cancel(s, connection, r, answer);
   else if (strcmp(r->path, "slice") == 0) post_slice(s, connection, answer);

@@ -22,6 +22,7 @@
  * - POST TOKEN/open?file=PATH&series=NAME: opens a file there, and of a folder with several DICOM series one;
  *   PATH may be absolute; upload?name=NAME: opens the file in the body. The answer
  *   is the start.json of the file. Its number, as &opened=N, says to which volumes a scene refers
+ * - POST TOKEN/session?file=PATH: a session that a page has saved there, or 204 if the file is none
  * - POST TOKEN/join?opened=N&with=M&title=TITLE: a scene file's text in, with the volumes of N; out
  *   comes the start.json of this scene together with the scene M, which is closed
  * - GET TOKEN/opening.json: the progress of reading a file

@@ -222,8 +222,11 @@ def keys_beside_sliders(browser):
     browser.run("document.querySelectorAll('details').forEach((d) => { d.open = ['Film', 'Lights', 'View', 'Volume'].includes(d.querySelector('summary').textContent); })")
     browser.wait("document.querySelector('.viewer').classList.contains('filming')")
     check("clip" not in scene_of(browser)["volumes"][0] and "exposure" not in scene_of(browser)["image"], "numbers that the scene does not name")
-    for name in ("Add a key of Intensity", "Add a key of Exposure", "Add a key of the light's place", "Add a key of Specular", "Add a key of clip x"):
+    frame = "document.querySelector('[aria-label=Frame]').getBoundingClientRect().y"
+    low = browser.run(frame)
+    for name in ("Add a key of Intensity", "Add a key of Exposure", "key of the light's place now", "Add a key of Specular", "Add a key of clip x"):
         press_named(browser, name)
+    check(browser.run(frame) == low, "the slider of frames stays where it is while tracks are added")
     tracks = browser.run("[...document.querySelectorAll('.track-name')].map((n) => n.textContent)")
     check(tracks == ["light 1, intensity", "image exposure", *(f"light 1, direction {axis}" for axis in "xyz"), "volume 1, material specular", "volume 1, clip min x", "volume 1, clip max x"],
           f"tracks: {tracks}; {browser.run('document.getElementById(`message`).textContent')}")

@@ -92,6 +92,8 @@ def rulers(browser):
     check(close(moved["points"][1], world((28, 12, 20)), 0.3) and moved["points"][0] == ruler["points"][0], f"its end is dragged: {moved}")
     press_named(browser, "Undo")
     check(marks(browser) == [ruler], "in one step")
+    stroke = "getComputedStyle(document.querySelector('[data-plane=axial] .mark-handle .square')).stroke"
+    check(browser.run(stroke) == "rgb(255, 225, 77)", f"its ends are seen on a black slice: {browser.run(stroke)}")
     browser.run("document.querySelector('[data-plane=axial] .mark-handle').focus()")
     browser.key("ArrowRight")
     check(marks(browser)[0]["points"][0] != ruler["points"][0], "and moved by keys")

@@ -112,10 +112,10 @@ def fingers_on_the_camera(browser):
 def hands_on_the_light(browser):
     handle = center(browser, ".light-dot")
     changes(browser, "light drag", lambda: browser.drag(handle, [handle[0] + 70, handle[1] + 20]), "lights")
-    ring = browser.run("document.querySelector('.light-ring').getBoundingClientRect().right")
+    ring = browser.run("document.querySelector('.light-ring').getBoundingClientRect().left")  # at its right lies a handle of the clip box
     y = center(browser, ".light-dot")[1]
     before = scene_of(browser)["lights"][0]["angular_diameter_deg"]
-    changes(browser, "ring drag", lambda: browser.drag([ring - 0.5, y], [ring + 24, y]), "lights")
+    changes(browser, "ring drag", lambda: browser.drag([ring + 0.5, y], [ring - 24, y]), "lights")
     check(scene_of(browser)["lights"][0]["angular_diameter_deg"] > before + 5, "a wider ring is a larger light")
     changes(browser, "intensity", lambda: set_control(browser, "Intensity", 2.5), "lights")
     changes(browser, "colour of the light", lambda: set_control(browser, "Colour", "#ff8040", section="Lights"), "lights")

@@ -282,9 +282,9 @@ def cuts(browser):
     changes(browser, "its direction", number("Direction z", 0.5), "volumes")
     check(cuts_now()[0]["point"][0] == 5 and cuts_now()[0]["normal"] == [1, 0, 0.5], "the fields are the plane's numbers")
     before = cuts_now()
-    changes(browser, "off", lambda: set_control(browser, "Cuts", "", section="Cuts"), "volumes")
+    changes(browser, "off", lambda: set_control(browser, "This cut", "", section="Cuts"), "volumes")
     check("cuts" not in scene_of(browser)["volumes"][0], "a cut that is off is not in the scene")
-    changes(browser, "on", lambda: set_control(browser, "Cuts", "", section="Cuts"), "volumes")
+    changes(browser, "on", lambda: set_control(browser, "This cut", "", section="Cuts"), "volumes")
     check(cuts_now() == before, "it comes back as it was")
     follows(browser, "a plane's handle", "Plane of the cut", (-25, 6), "volumes", 1)
     step = [now - then for now, then in zip(cuts_now()[0]["point"], before[0]["point"])]
@@ -298,7 +298,11 @@ def cuts(browser):
     changes(browser, "keep", lambda: set_control(browser, "Inside", "", section="Cuts"), "volumes")
     changes(browser, "a second cut", lambda: press_named(browser, "Add: cut"), "volumes")
     changes(browser, "a sphere", lambda: set_control(browser, "Sphere", "", section="Cuts"), "volumes")
-    for axis in "yz":
+    eye, ball = scene_of(browser)["camera"]["position"], cuts_now()[1]["center"]
+    middle = browser.run("halflight.start.volumes[0].dimensions.map((count, k) => halflight.start.volumes[0].origin[k] + halflight.start.volumes[0].axes[k][k] * (count - 1) / 2)")
+    parts = [(at - x) / (to - x) for at, x, to in zip(ball, middle, eye)]
+    check(max(parts) - min(parts) < 1e-6 and 0 < parts[0] < 1, f"the sphere begins between the middle and the eye: {parts}")
+    for axis in "xyz":
         number(f"Centre {axis}", 7.5)()  # in the picture
     changes(browser, "radius", number("Radius", 4), "volumes")
     follows(browser, "a sphere's middle", "Middle of the cut", (-12, 9), "volumes", 2)
@@ -343,9 +347,9 @@ def scene_cuts(browser):
     changes(browser, "a sphere", lambda: set_control(browser, "Sphere", "", section=title), "cuts")
     equals_render(browser, "scene cuts")
     before = now()
-    changes(browser, "off", lambda: set_control(browser, "Cuts", "", section=title), "cuts")
+    changes(browser, "off", lambda: set_control(browser, "This cut", "", section=title), "cuts")
     check(now() is None, "a cut that is off is not in the scene")
-    changes(browser, "on", lambda: set_control(browser, "Cuts", "", section=title), "cuts")
+    changes(browser, "on", lambda: set_control(browser, "This cut", "", section=title), "cuts")
     check(now() == before, "it comes back as it was")
     changes(browser, "remove", lambda: press_named(browser, "Remove this cut of the scene"), "cuts")
     check(now() is None, "it is removed")

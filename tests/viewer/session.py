@@ -487,7 +487,7 @@ def cuts_that_are_off(browser):
     before = browser.run(cuts)
     check([cut["type"] for cut in before] == ["plane", "sphere"], f"two cuts: {before}")
     browser.run("document.querySelectorAll('[aria-label=Cuts] [role=tab]')[0].click()")
-    off = lambda: set_control(browser, "Cuts", "", section="Cuts")  # noqa: E731
+    off = lambda: set_control(browser, "This cut", "", section="Cuts")  # noqa: E731
     off()
     check(browser.run(cuts) == before[1:] and browser.run(tabs) == 2, "the first cut is off, and in the list")
     undo(browser)
@@ -615,6 +615,18 @@ def files(browser):
     check(json.loads(browser.run(STATE))[1:] == [[], {}], "as it began")
     undo(browser)
     check(json.loads(browser.run(STATE))[1] == state[1], "undo brings back what was done")
+    press(browser, "start afresh")
+    rest(browser)
+    with open("in-list.json", "w", encoding="utf-8") as file:
+        file.write(session)
+    open_section(browser, "Open")
+    browser.reload()
+    listed = "[...document.querySelectorAll('.files .file')].find((b) => b.textContent === 'in-list.json')"
+    browser.wait(f"globalThis.halflight?.start && {listed} !== undefined")
+    browser.run(f"{listed}.click()")
+    browser.wait("halflight.store.marks.length === 1", timeout=60)
+    rest(browser)
+    check(json.loads(browser.run(STATE))[1] == state[1], "a session in the list of files is opened")
     press(browser, "start afresh")
     rest(browser)
     open_section(browser, "Sky")

@@ -109,7 +109,12 @@ def layouts(browser):
     check(browser.run("document.querySelector('.slice:not([hidden]) figcaption').textContent") == "Sagittal", "of the plane that is chosen")
     browser.run("document.getElementById('view').focus()")
     browser.key("1")
-    check(browser.run("halflight.slices.layout") == "picture", "1: the picture alone")
+    pressed = "document.getElementById('slices').getAttribute('aria-pressed')"
+    check(browser.run("halflight.slices.layout") == "picture" and browser.run(pressed) == "false", "1: the picture alone")
+    browser.click(center(browser, "#slices"))
+    check(browser.run("halflight.slices.layout") == "four" and browser.run(pressed) == "true", "a button in the head shows the slices")
+    browser.click(center(browser, "#slices"))
+    check(browser.run("halflight.slices.layout") == "picture", "and hides them")
     browser.key("4")
     still(browser)
 

@@ -4,7 +4,7 @@
 
 import { corners, middle, placed, unplaced, worldBox } from "./boxes.js";
 import { button, isActive, make, row, section, segments, select, shortNumber, tabs, toggle } from "./controls.js";
-import { add, subtract } from "./vector.js";
+import { add, scale, subtract, withoutErrors } from "./vector.js";
 
 const PARTS = { plane: [["point", "Point"], ["normal", "Direction"]], box: [["min", "Least"], ["max", "Greatest"]], sphere: [["center", "Centre"], ["radius", "Radius"]] };
 
@@ -14,12 +14,14 @@ const isComplete = (cut) => Object.hasOwn(PARTS, cut?.type) && PARTS[cut.type].e
   return values.length === (key === "radius" ? 1 : 3) && values.every(Number.isFinite);
 });
 
-// A new cut takes away the upper front part of the box.
-function newCut(type, box) {
-  const at = middle(box), sides = box.max.map((end, k) => end - box.min[k]);
+// A new cut. A box takes away the part of the whole that is nearest to the eye, an eighth, and a sphere what one looks at.
+function newCut(type, whole, eye) {
+  const sides = whole.max.map((end, k) => end - whole.min[k]), longest = Math.max(...sides);
+  const at = withoutErrors(middle(whole), longest), towards = subtract(eye, at);
   if (type === "plane") return { type, point: at, normal: [1, 0, 0] };
-  if (type === "box") return { type, min: [at[0], box.min[1] - sides[1] / 10, at[2]], max: [0, 1, 2].map((k) => (k === 1 ? at[1] : box.max[k] + sides[k] / 10)) };
-  return { type, center: [at[0], box.min[1], box.max[2]], radius: Math.max(...sides) / 3 };
+  if (type === "box") return { type, min: at.map((x, k) => (towards[k] < 0 ? whole.min[k] - sides[k] / 10 : x)), max: at.map((x, k) => (towards[k] < 0 ? x : whole.max[k] + sides[k] / 10)) };
+  const out = Math.min(...towards.map((x, k) => sides[k] / 2 / Math.max(Math.abs(x), 1e-9))); // the part of the way to the eye at which the whole is left
+  return { type, center: add(at, scale(towards, Math.min(out, 1))), radius: longest / 3 };
 }
 
 // The cut, moved so that its middle, or a point of its plane, is at a point.
@@ -72,6 +74,8 @@ function panelOf({ title, noun, kind, viewer: { store, current, overlay, report,
   const changeEntry = (name, change) => take(`${chosen()} ${name}`, list().map((one, n) => (n === chosen() ? change(one) : one)));
   const changeCut = (name, part) => changeEntry(name, (one) => ({ ...one, cut: { ...one.cut, ...part } }));
 
+  const fresh = (type) => newCut(type, box(), unplaced(store.scene.camera.position, transform()));
+
   function setNumbers(name, value) {
     const cut = { ...entry().cut, [name]: value };
     if (cut.type === "plane" && Math.hypot(...cut.normal) === 0) report("A plane needs a direction.");
@@ -84,18 +88,19 @@ function panelOf({ title, noun, kind, viewer: { store, current, overlay, report,
     label: title, noun, count: () => list().length, chosen, choose: (n) => current.choose(kind, n),
     add: () => {
       const all = list();
-      take("add", [...all, { cut: newCut("plane", box()), on: true }]);
+      take("add", [...all, { cut: fresh("plane"), on: true }]);
       current.choose(kind, all.length);
     },
     remove: () => take("remove", list().toSpliced(chosen(), 1)),
   });
-  body.append(numbered.element, rows);
+  const none = make("p", { class: "facts" }, "+ adds a plane, a box or a sphere, which takes matter away on one side of it.");
+  body.append(numbered.element, none, rows);
 
   function cutParts() {
     const { cut } = entry();
     const shape = segments({
       label: "Shape", choices: [["plane", "Plane"], ["box", "Box"], ["sphere", "Sphere"]], get: () => entry().cut.type,
-      set: (type) => changeEntry("type", (one) => ({ ...one, cut: newCut(type, box()) })),
+      set: (type) => changeEntry("type", (one) => ({ ...one, cut: fresh(type) })),
     });
     const places = PARTS[cut.type].map(([name, label]) => numbers({
       label, noun, count: name === "radius" ? 1 : 3, get: () => entry().cut[name], set: (value) => setNumbers(name, value),
@@ -105,7 +110,7 @@ function panelOf({ title, noun, kind, viewer: { store, current, overlay, report,
       update() { this.element.hidden = slices.layout === "picture"; },
     };
     return [
-      toggle({ label: "Cuts", get: () => entry().on, set: (on) => changeEntry("on", (one) => ({ ...one, on })) }),
+      toggle({ label: "This cut", get: () => entry().on, set: (on) => changeEntry("on", (one) => ({ ...one, on })) }),
       shape, ...places, toCrosshair,
       segments({ label: "Keep", choices: [["outside", "Outside"], ["inside", "Inside"]], get: () => entry().cut.keep ?? "outside", set: (keep) => changeCut("keep", { keep }) }),
     ];
@@ -121,6 +126,7 @@ function panelOf({ title, noun, kind, viewer: { store, current, overlay, report,
       rows.replaceChildren(...parts.map((part) => part.element));
       told = now;
     }
+    none.hidden = entry() !== undefined;
     numbered.update();
     parts.forEach((part) => part.update());
   }

@@ -5,6 +5,7 @@
 import { reshaped } from "./camera.js";
 import { button, isActive, make, row, section, select, toggle } from "./controls.js";
 import { download, fileWord, quoted, sceneText, stem } from "./export.js";
+import { placesOf } from "./light.js";
 import { CAMERA, FORMATS, MOST_FPS, MOST_FRAMES, keyTexts, readFilm, stretched, trackName, withKey } from "./timeline.js";
 import { timelineStrip } from "./timeline_strip.js";
 
@@ -213,7 +214,7 @@ function maker(film, { store, channel }) {
 }
 
 export function filmPanel(viewer) {
-  const { store, channel, report, copy, find, root } = viewer, film = new Film(viewer);
+  const { store, current, channel, report, copy, find, root } = viewer, film = new Film(viewer);
   const { element, body } = section("Film", false);
   const number = (label, key, low, high) => make("input", {
     type: "number", min: low, max: high, step: 1, value: film[key], "aria-label": label,
@@ -229,13 +230,18 @@ export function filmPanel(viewer) {
   const strip = timelineStrip({ get: () => film, setTracks: (tracks) => film.edit({ tracks }), show: (frame) => film.show(frame), play: () => film.play(), canShow: channel.sceneAt !== undefined });
 
   const addKey = (name, value) => film.set({ tracks: withKey(film.tracks, name, film.frame, value) });
-  // A button beside a slider (controls.js).
-  root.addEventListener("halflight-key", ({ detail }) => {
-    const { paths, write } = detail, isThere = () => paths.every((name) => typeof numberAt(store.scene, name) === "number");
+  function addKeys({ paths, write }) {
+    const isThere = () => paths.every((name) => typeof numberAt(store.scene, name) === "number");
     if (!isThere()) write?.();
     if (isThere()) paths.forEach((name) => addKey(name, numberAt(store.scene, name)));
     else report("This number is not in the scene yet: change it first.");
-  });
+  }
+  root.addEventListener("halflight-key", ({ detail }) => addKeys(detail)); // a button beside a slider (controls.js)
+  function addLight() {
+    const light = store.scene.lights[current.light];
+    if (light) addKeys({ paths: placesOf(light, current.light) });
+    else report("The scene has no light.");
+  }
   function addNumber() {
     const name = path.value.trim(), value = numberAt(store.scene, name);
     if (typeof value === "number") addKey(name, value);
@@ -257,10 +263,11 @@ export function filmPanel(viewer) {
     row(make("span", { class: "name" }, "Length"), make("span", { class: "pair" }, lengths[0], "frames, at", lengths[1], "/ s")),
     turn.element,
     row(make("span", { class: "name" }, "Keys"), button("key of the camera now", () => addKey(CAMERA, store.scene.camera))),
+    row("", button("key of the light's place now", addLight)),
     names, row("", path), row("", button("key of this number now", addNumber)),
     ...(channel.film ? [kind.element, ...maker(film, viewer)] : []),
     row("", button("copy animate command", () => copy(animateCommand(film.scene, store.title, film.wanted), "the command"))),
-    make("p", { class: "facts" }, "Choose a frame below the picture. Turn the camera, drag a light or move a slider. Then add a key: the button above for the camera, ◆ in the row of the slider or of the light's place."));
+    make("p", { class: "facts" }, "Choose a frame below the picture. Turn the camera, drag a light or move a slider. Then add a key: a button above for the camera or the chosen light, ◆ in the row of the slider."));
   film.changed = () => {
     strip.update();
     turn.update();

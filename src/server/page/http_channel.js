@@ -180,6 +180,12 @@ export class HttpChannel {
     return start;
   }
 
+  // A session in the viewer's folder, as a file; null: the file there is none.
+  async session(path) {
+    const response = await this.#ask("session", { file: path });
+    return response.status === 204 ? null : new File([await response.blob()], path.split("/").pop());
+  }
+
   // Adds what open() or upload() has opened to a scene of what this channel is of: what is open then.
   async add(scene, added, title) {
     const query = { opened: 0, with: added.opened, title: `${title} + ${added.title}` };

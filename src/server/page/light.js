@@ -109,3 +109,6 @@ export const newLight = () => ({
   type: "directional", frame: "camera", direction: normalize([-0.6, -0.6, -0.5]),
   angular_diameter_deg: 7, color: [1, 1, 1], intensity: 0.8,
 });
+
+// The paths in a scene of the numbers that say where a light is.
+export const placesOf = (light, index) => ["direction", "position"].filter((key) => light[key]).flatMap((key) => [0, 1, 2].map((axis) => `lights.${index}.${key}.${axis}`));

@@ -3,7 +3,7 @@
 import { hexOf, linearOf } from "./color.js";
 import { color, keyButton, make, row, section, segments, select, slider, tabs, toggle } from "./controls.js";
 import { gallery } from "./gallery.js";
-import { LARGEST_SIZE, newLight, sizeOf, withOtherFrame, withSize } from "./light.js";
+import { LARGEST_SIZE, newLight, placesOf, sizeOf, withOtherFrame, withSize } from "./light.js";
 
 // Sets a light's colour so that its brightest channel is 1; the light's strength is then its intensity.
 const shown = (light) => light.color.map((c) => c / Math.max(...light.color, 1e-9));
@@ -21,9 +21,6 @@ function rigsOf(viewer) {
   atRest.push(rigs.atRest);
   return rigs;
 }
-
-// The paths of the numbers that say where a light is.
-const placesOf = (light, index) => ["direction", "position"].filter((key) => light[key]).flatMap((key) => [0, 1, 2].map((axis) => `lights.${index}.${key}.${axis}`));
 
 export function lightPanel(viewer) {
   const { store, current, overlay } = viewer;

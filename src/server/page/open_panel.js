@@ -39,7 +39,7 @@ export function openPanel(viewer) {
       const folder = await channel.folder(at), up = at.includes("/") ? at.slice(0, at.lastIndexOf("/")) : "";
       const inside = (name) => (at ? `${at}/${name}` : name);
       where.textContent = at ? `in ${at}` : "in the folder that the viewer was started in; or drop a file anywhere";
-      const opener = (path, name, text, more) => button(text, () => load(() => channel.open(path), name, path), { class: "file", ...more });
+      const opener = (path, name, text, more) => button(text, () => openListed(path, name), { class: "file", ...more });
       list.replaceChildren(
         ...(at ? [make("li", {}, button("‹ back", () => show(up)), opener(at, at, "open as one volume", { title: "DICOM, slices or Zarr" }))] : []),
         ...folder.entries.map((entry) => make("li", {}, entry.folder && !entry.name.endsWith(".zarr")
@@ -76,6 +76,12 @@ export function openPanel(viewer) {
     return null;
   }
 
+  // A JSON file of the list may be a session.
+  async function openListed(path, name) {
+    const session = name.endsWith(".json") ? await channel.session(path).catch(() => null) : null;
+    return session === null ? load(() => channel.open(path), name, path) : viewer.openSession(session);
+  }
+
   // Opens another DICOM series of a file, in place of the one that is open.
   viewer.openSeries = (file, series) => load(() => channel.open({ file, series }), file.split("/").pop(), { file, series }, false);
   viewer.upload = (file, added = adds) => load(() => channel.upload(file), file.name, null, added);
@@ -91,7 +97,11 @@ export function openPanel(viewer) {
       event.preventDefault();
       drop([...event.dataTransfer.files]);
     });
-    element.addEventListener("toggle", () => { if (element.open && list.childElementCount === 0) show(folderOf(store.source)); });
+    element.addEventListener("toggle", async () => {
+      if (!element.open || list.childElementCount > 0) return;
+      await show(folderOf(store.source));
+      element.scrollIntoView({ block: "nearest" }); // the list has come below what was in view
+    });
   }
   body.append(add.element, choose, chooser, where, bar, list);
   viewer.adds = () => adds;

@@ -4,6 +4,7 @@ import { unplaced } from "./boxes.js";
 import { button, isActive, make, row, section, segments, select, shortNumber, slider, toggle } from "./controls.js";
 import { anatomical, isAnatomical, pointAt, planeTitle, PLANES } from "./sections.js";
 import { DRAGS, LAYOUTS } from "./slices.js";
+import { length, withoutErrors } from "./vector.js";
 
 const BLENDS = [["maximum", "Maximum"], ["mean", "Mean"], ["minimum", "Minimum"]];
 
@@ -33,7 +34,7 @@ export function slicePanel(viewer) {
       if (input.value !== "" && Number.isFinite(+input.value)) set(+input.value);
       update();
     } });
-    return { input, update: () => { if (!isActive(input)) input.value = +get().toPrecision(5); } };
+    return { input, update: () => { if (!isActive(input)) input.value = +get().toPrecision(4); } };
   };
   const index = [0, 1, 2].map((axis) => number(`Voxel along ${"ijk"[axis]}`, () => slices.readout?.voxel[axis] ?? 0, (value) => {
     const voxel = [...(slices.readout?.voxel ?? [0, 0, 0])];
@@ -56,7 +57,7 @@ export function slicePanel(viewer) {
   function tell() {
     const { readout, source } = slices;
     if (readout === null || slices.layout === "picture") return;
-    const { grid, transform } = source, point = unplaced(slices.cursor, transform);
+    const { grid, transform } = source, point = withoutErrors(unplaced(slices.cursor, transform), length(grid.axes[0]) * grid.dimensions[0]);
     value.textContent = readout.inside ? [exact(readout.value), ...readout.labels].join(" · ") : "beside the volume";
     const own = `x ${shortNumber(point[0])} y ${shortNumber(point[1])} z ${shortNumber(point[2])}`;
     place.textContent = isAnatomical(grid) ? `${anatomical(grid, point)} (${own})` : own;

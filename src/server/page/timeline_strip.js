@@ -1,4 +1,5 @@
-// The timeline under the picture: a slider of frames, and a row for each track with its keys, which are dragged.
+// The timeline under the picture: a row for each track with its keys, which are dragged, and below them a slider of frames, which stays where it
+// is while tracks are added.
 
 import { button, make } from "./controls.js";
 import { followDrag } from "./drag.js";
@@ -13,7 +14,7 @@ export function timelineStrip({ get, setTracks, show, play, canShow }) {
   const told = make("output", { class: "time" });
   const player = button("play", play, { disabled: !canShow, title: "Plays the film in small pictures" });
   const rows = make("div", {});
-  const element = make("div", { class: "timeline", hidden: true }, make("div", { class: "track" }, player, slider, told), rows);
+  const element = make("div", { class: "timeline", hidden: true }, rows, make("div", { class: "track frame" }, player, slider, told));
 
   const left = (frame) => `${(100 * frame) / Math.max(get().frames - 1, 1)}%`;
 

@@ -40,3 +40,6 @@ export function turnBetween(from, to) {
   axis = normalize(axis);
   return (a) => rotate(a, axis, angle);
 }
+
+// Rounding errors beside a length are 0, where people read the numbers.
+export const withoutErrors = (a, size) => a.map((x) => (Math.abs(x) < 1e-9 * size ? 0 : x));

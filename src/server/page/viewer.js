@@ -56,6 +56,7 @@ const MARKUP = `
         <button id="redo" type="button" title="Redo (ctrl + shift + z)">Redo</button>
         <button id="open" type="button" title="Another volume or scene, or a session" hidden>Open</button>
         <button id="save" type="button" title="The picture, or the scene">Save</button>
+        <button id="slices" type="button" title="Three slices beside the picture (4), or the picture alone (1)">Slices</button>
         <button id="reset" type="button" title="Move the camera back until all of it is seen (r)">Show all</button>
         <button id="show-lights" type="button" title="The lights' handles (l)">Lights</button>
         <button id="probe" type="button" aria-pressed="false" title="Value, opacity and light under the cursor (p)">Probe</button>
@@ -241,6 +242,10 @@ export function mount(element, channel, whole, { keyboard = element, reopen = ()
     find("undo").disabled = !store.canUndo;
     find("redo").disabled = !store.canRedo;
   };
+  const followLayout = () => {
+    find("slices").hidden = !viewer.slices.available;
+    find("slices").setAttribute("aria-pressed", String(viewer.slices.layout !== "picture"));
+  };
   const update = () => {
     panels.forEach((panel) => panel.update());
     find("title").textContent = find("title").title = store.title; // where there is no room for all of it, the cursor shows it
@@ -258,9 +263,11 @@ export function mount(element, channel, whole, { keyboard = element, reopen = ()
     if (isOther || (name !== "camera" && name !== "page")) update();
     else panels.forEach((panel) => panel.updateView?.());
     followHistory(); // changes of the page may be steps, too
+    followLayout();
   });
   viewer.probe = new Probe(viewer, find("view"));
   viewer.slices.update();
+  followLayout();
   followSize(store, find("view"), ended.signal); // once all stands where it is to be
   const status = statusLine(find, channel);
   const frames = new Frames(viewer, find("picture"), (frame) => {
@@ -275,7 +282,7 @@ export function mount(element, channel, whole, { keyboard = element, reopen = ()
   new Pointer(find("view"), store, nearestOf(start));
   const reveal = revealIn(root), actions = actionsOf(viewer, find, root, update, ended.signal);
   helpSheet(find("help"), installShortcuts(store, { target: keyboard, signal: ended.signal }, find("view"), actions, nearestOf(start)));
-  const buttons = { undo: () => store.undo(), redo: () => store.redo(), "show-help": actions.help, theme: actions.theme, "show-lights": actions.lights, reset: actions.reset, probe: actions.probe, sidebar: actions.sidebar, full: actions.full, open: () => reveal("Open"), save: () => reveal("Save") };
+  const buttons = { undo: () => store.undo(), redo: () => store.redo(), "show-help": actions.help, theme: actions.theme, "show-lights": actions.lights, slices: () => actions.layout(viewer.slices.layout === "picture" ? "four" : "picture")(), reset: actions.reset, probe: actions.probe, sidebar: actions.sidebar, full: actions.full, open: () => reveal("Open"), save: () => reveal("Save") };
   for (const [id, action] of Object.entries(buttons)) find(id).addEventListener("click", action);
   keepOpenSections(find("panels"), store);
   find("open").hidden = !channel.open && choose === null;
