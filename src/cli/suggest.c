@@ -50,7 +50,10 @@ static const struct {
      "limits contrast"},
     {"threshold", "cutoff surface lower-threshold"},
     {"iso", "isovalue iso-value contour contours level-set isosurfaces iso-surface"},
-    {"clip", "crop cut roi clipping slab extent subset box clip-box slice bbox"},
+    {"slice",
+     "slices section cross-section crosssection orthoslice mpr reslice reformat axial coronal sagittal "
+     "plane-view"},
+    {"clip", "crop cut roi clipping slab extent subset box clip-box bbox"},
     {"cut-plane", "cutplane clipping-plane clip-plane plane"},
     {"cut-box", "octant cut-away cutaway remove"},
     {"cut-sphere", "sphere hole"},
@@ -80,8 +83,7 @@ static const struct {
      "antialiasing anti-aliasing antialias aa supersampling supersample oversampling msaa ssaa spp samples "
      "sample-count samples-per-pixel"},
     {"shadow-resolution", "shadow-map-size shadow-map shadow-map-resolution"},
-    {"sheet-spacing",
-     "sample-distance sampling-rate step-size slice-distance sampling-distance rate slices sheets"},
+    {"sheet-spacing", "sample-distance sampling-rate step-size slice-distance sampling-distance rate sheets"},
     {"kernel", "interpolation filter reconstruction-filter interp sharp sharpness"},
     {"reference", "raymarch ray-march raytrace ground-truth"},
     {"step", "ray-step stepsize"},

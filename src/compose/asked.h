@@ -26,6 +26,7 @@ typedef enum hl_ask {
   HL_ASK_RANGE_SCALE,
   HL_ASK_THRESHOLD,
   HL_ASK_ISO,
+  HL_ASK_SLICE,
   HL_ASK_CLIP,
   HL_ASK_CUT_PLANE,
   HL_ASK_CUT_BOX,

@@ -4,6 +4,7 @@
 #include <string.h>
 
 #include "compose/composer.h"
+#include "compose/slice.h"
 #include "core/context.h"
 #include "core/vector.h"
 #include "guess/cut_view.h"
@@ -106,6 +107,7 @@ static bool turns_to_cuts(const hl_composer *composer, const hl_scene_descriptio
 static hl_status choose_view(const hl_composer *composer, const hl_scene_description *description,
                              hl_view *view) {
   const hl_asked *asked = composer->asked, *up = &asked[HL_ASK_UP];
+  if (hl_slice_view(composer, description, view)) return HL_OK;
   if (!composer->bare && !up->given && !asked[HL_ASK_VIEW].given) {
     if (hl_view_of_camera(description, view) == HL_OK) return HL_OK;
     return hl_fail(composer->error, HL_ERROR_ARGUMENT,
@@ -174,7 +176,8 @@ hl_status hl_compose_camera(const hl_composer *composer, bool seen, hl_scene_des
   bool turned = asked[HL_ASK_AZIMUTH].given || asked[HL_ASK_ELEVATION].given || asked[HL_ASK_ROLL].given;
   bool reshaped = asked[HL_ASK_SIZE].given || asked[HL_ASK_FOVY].given || asked[HL_ASK_ORTHO].given;
   bool framed = asked[HL_ASK_ZOOM].given || asked[HL_ASK_VIEW].given || asked[HL_ASK_UP].given ||
-                (composer->bare && (reshaped || seen)) || turns_to_cuts(composer, description);
+                asked[HL_ASK_SLICE].given || (composer->bare && (reshaped || seen)) ||
+                turns_to_cuts(composer, description);
   if (turned || framed) return place(composer, framed, description);
   bool taken_in = composer->bare && (composer->flags & HL_COMPOSE_MESHES) != 0;
   return taken_in ? hl_frame_anew(description, composer->error) : HL_OK;

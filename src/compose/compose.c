@@ -10,6 +10,7 @@
 #include "compose/composer.h"
 #include "compose/lights.h"
 #include "compose/looks.h"
+#include "compose/slice.h"
 #include "compose/volumes.h"
 #include "core/context.h"
 #include "core/door.h"
@@ -142,6 +143,7 @@ static hl_status change_all(const hl_composer *composer, scene_change *change) {
   if (status == HL_OK) status = hl_compose_sky(composer, description, &change->sky);
   if (status != HL_OK) return status;
   hl_compose_look(composer, description);
+  hl_compose_slice(composer, description);
   hl_compose_ambient(composer, description);
   change_settings(composer->asked, description);
   if (description->background_sky && description->sky.type == HL_SKY_NONE)
@@ -202,7 +204,8 @@ static hl_status check(const hl_asked *asked, hl_error *error) {
     if (!(asked[HL_ASK_SIZE].number[n] >= 1 && asked[HL_ASK_SIZE].number[n] <= 65536))
       return hl_fail(error, HL_ERROR_ARGUMENT, "--size: '%.200s': give WxH in pixels, each from 1 to 65536",
                      asked[HL_ASK_SIZE].text);
-  status = hl_check_clip(&asked[HL_ASK_CLIP], error);
+  status = hl_check_slice(asked, error);
+  if (status == HL_OK) status = hl_check_clip(&asked[HL_ASK_CLIP], error);
   if (status == HL_OK) status = hl_check_cuts(asked, error);
   if (status == HL_OK) status = hl_check_isosurfaces(&asked[HL_ASK_ISO], error);
   return status == HL_OK ? hl_check_sky(&asked[HL_ASK_SKY], error) : status;
@@ -234,6 +237,8 @@ hl_status hl_scene_compose(hl_context *context, const hl_scene_description *desc
   *scene = NULL;
   hl_status status = hl_options_read(options, option_count, asked, error);
   if (status == HL_OK) status = check(asked, error);
+  char plane[HL_SLICE_TEXT];
+  if (status == HL_OK) status = hl_expand_slice(description, asked, plane, error);
   if (status != HL_OK) return status;
   const hl_composer composer = {context, asked, flags, (flags & HL_COMPOSE_BARE) != 0, error};
   hl_scene *values = NULL, *labelled = NULL;

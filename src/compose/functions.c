@@ -7,6 +7,7 @@
 
 #include "compose/composer.h"
 #include "compose/looks.h"
+#include "compose/slice.h"
 #include "core/context.h"
 #include "core/file.h"
 #include "core/memory.h"
@@ -496,6 +497,10 @@ hl_status hl_compose_function(const hl_composer *composer, const hl_scene_descri
     changes.colormap = item;
   }
   if (changes.colormap == NULL) changes.colormap = color;
+  char window[HL_SLICE_TEXT];
+  const bool slice = asked[HL_ASK_SLICE].given;
+  if (slice && named == NULL && changes.range == NULL && hl_slice_range(volume->volume, window))
+    changes.range = window;
   if (status == HL_OK)
     status = hl_transfer_function_copy(composer->context, &volume->transfer_function, function,
                                        composer->error);
@@ -507,7 +512,7 @@ hl_status hl_compose_function(const hl_composer *composer, const hl_scene_descri
   }
   if (status != HL_OK) return status;
   if (function->plane.second == HL_SECOND_NONE)
-    return change_function(composer, volume->volume, &changes, hl_is_maximum(composer, description),
+    return change_function(composer, volume->volume, &changes, slice || hl_is_maximum(composer, description),
                            function);
   if (changes.range == NULL && changes.threshold == NULL && changes.colormap == NULL) return HL_OK;
   return hl_fail(composer->error, HL_ERROR_ARGUMENT,

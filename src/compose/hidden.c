@@ -225,7 +225,8 @@ hl_status hl_tell_of_hidden_labels(const hl_composer *composer, const hl_scene_d
   hl_context *context = composer->context;
   size_t count = 0;
   hl_status status = HL_OK;
-  if (!composer->asked[HL_ASK_LABELS].given || scene->render.compositing == HL_COMPOSITING_MAXIMUM)
+  if (!composer->asked[HL_ASK_LABELS].given || composer->asked[HL_ASK_SLICE].given ||
+      scene->render.compositing == HL_COMPOSITING_MAXIMUM)
     return HL_OK;
   hl_screen *screens = hl_allocate_zeroed(context, scene->volume_count + 1, sizeof *screens);
   if (screens == NULL) return hl_fail_memory(composer->error, sizeof *screens, "labels that are seen");

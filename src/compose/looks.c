@@ -5,6 +5,7 @@
 #include <stdio.h>
 
 #include "compose/composer.h"
+#include "compose/slice.h"
 #include "core/context.h"
 #include "image/srgb.h"
 
@@ -19,8 +20,10 @@ bool hl_projected_color(const hl_composer *composer, const hl_scene_description 
                         char color[8]) {
   double srgb[3];
   const hl_scene_volume *volume = &description->volumes[index];
-  bool alone = description->volume_count < 2, named = hl_text_for(composer, HL_ASK_TF, volume, index) != NULL;
-  if (alone || named || !is_maximum(composer->asked) ||
+  const bool slice = composer->asked[HL_ASK_SLICE].given;
+  bool alone = slice ? hl_count_values(description) < 2 : description->volume_count < 2,
+       named = hl_text_for(composer, HL_ASK_TF, volume, index) != NULL;
+  if (alone || named || !(slice || is_maximum(composer->asked)) ||
       hl_scene_channel_color(description, index, srgb) != HL_OK)
     return false;
   snprintf(color, 8, "#%02x%02x%02x", (unsigned)lround(255 * srgb[0]) & 255U,
@@ -34,6 +37,7 @@ const char *hl_asked_look(const hl_composer *composer) {
 }
 
 bool hl_look_replaces_functions(const hl_composer *composer) {
+  if (composer->asked[HL_ASK_SLICE].given) return true;
   return composer->asked[HL_ASK_LOOK].given && is_maximum(composer->asked) == composer->bare;
 }
 

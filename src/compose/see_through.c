@@ -173,8 +173,8 @@ static bool has_chosen_channels(const hl_composer *composer, const hl_scene_desc
   if (!composer->bare || (composer->flags & HL_COMPOSE_FUNCTIONS) != 0 || scene->volume_count < 2 ||
       scene->volume_count > HL_CHANNELS_MOST ||
       (asked[HL_ASK_LOOK].given && asked[HL_ASK_LOOK].choice != HL_LOOK_AUTO) ||
-      hl_is_maximum(composer, scene) || asked[HL_ASK_TF].given || asked[HL_ASK_THRESHOLD].given ||
-      asked[HL_ASK_ISO].given)
+      hl_is_maximum(composer, scene) || asked[HL_ASK_SLICE].given || asked[HL_ASK_TF].given ||
+      asked[HL_ASK_THRESHOLD].given || asked[HL_ASK_ISO].given)
     return false;
   for (size_t v = 0; v < scene->volume_count; v++)
     if (!hl_screen_can_hide(&scene->volumes[v]) || first->file == NULL || scene->volumes[v].file == NULL ||

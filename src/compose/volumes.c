@@ -4,6 +4,7 @@
 #include <string.h>
 
 #include "compose/looks.h"
+#include "compose/slice.h"
 #include "core/context.h"
 #include "core/memory.h"
 #include "scene/function/transfer_function.h"
@@ -26,8 +27,9 @@ static hl_status change_volume(const hl_composer *composer, const hl_scene_descr
     changed->cuts_used += volume->cut_count;
   }
   const bool left_out = hl_is_left_out(composer, description, index);
-  bool looks = hl_look_replaces_functions(composer), iso = asked[HL_ASK_ISO].given && !left_out,
-       functions = hl_asks_for_functions(asked) && !left_out;
+  const bool sliced = asked[HL_ASK_SLICE].given && volume->label_count == 0;
+  bool looks = hl_look_replaces_functions(composer) && (sliced || !asked[HL_ASK_SLICE].given),
+       iso = asked[HL_ASK_ISO].given && !left_out, functions = hl_asks_for_functions(asked) && !left_out;
   if (status != HL_OK || (!looks && !iso && !functions)) return status;
   hl_transfer_function look = {0};
   if (looks) status = hl_compose_volume_look(composer, volume);
@@ -39,6 +41,8 @@ static hl_status change_volume(const hl_composer *composer, const hl_scene_descr
   bool colored = looks && hl_projected_color(composer, description, index, color);
   status = hl_compose_function(composer, description, index, colored ? color : NULL,
                                &changed->functions[index]);
+  if (status == HL_OK && sliced && hl_text_for(composer, HL_ASK_TF, volume, index) == NULL)
+    status = hl_make_slice_opaque(composer, volume->volume, &changed->functions[index]);
   volume->transfer_function = changed->functions[index];
   hl_transfer_function_release(composer->context, &look);
   if (status != HL_OK || !iso) return status;

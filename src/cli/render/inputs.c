@@ -93,6 +93,9 @@ static hl_status load_channels(cli_host *host, const cli_value *values, const cl
                                look != NULL ? look : "auto", scene, error);
 }
 
+/* Volumes on the command line that are shown as slices are not smoothed: a slice shows the voxels. */
+static const double unsmoothed = 0;
+
 static int load_each(cli_host *host, const cli_value *values, cli_input *inputs, size_t count,
                      hl_scene **scenes) {
   hl_volume_load_options options;
@@ -101,7 +104,9 @@ static int load_each(cli_host *host, const cli_value *values, cli_input *inputs,
     hl_error error = {0};
     bool bare = inputs[n].kind == INPUT_VOLUME;
     inputs[n].look = render_look_name(values);
-    inputs[n].smooth = values[RENDER_SMOOTH].given ? &values[RENDER_SMOOTH].number[0] : NULL;
+    inputs[n].smooth = values[RENDER_SMOOTH].given  ? &values[RENDER_SMOOTH].number[0]
+                       : values[RENDER_SLICE].given ? &unsmoothed
+                                                    : NULL;
     /* A volume that must be read at its final resolution gets no coarser first resolution: a pipe cannot be
      * read again, and --smooth is measured in voxels of the resolution that the picture shows. */
     bool is_read_once = inputs[n].bytes != NULL || inputs[n].smooth != NULL;

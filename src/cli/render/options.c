@@ -304,6 +304,12 @@ const cli_option render_options[RENDER_OPTION_COUNT] = {
              "the surface on which the volume has this value; it\nreplaces the transfer function, or stands "
              "beside it\nwith --tf or --look; give it again for more surfaces\n(--iso 80:skyblue:0.3)",
          .repeatable = true},
+    [RENDER_SLICE] = {.name = "slice",
+                      .kind = OPTION_TEXT,
+                      .argument = "AXIS=AT",
+                      .help = "a slice across x, y or z, as in radiology: its values in\ngrey, or as "
+                              "--colormap and --range say, with labels of\n--labels or --mask over them; AT: "
+                              "a fraction (z=0.5), or\na length (z=40mm; u: the file's own unit)"},
     [RENDER_CLIP] = {.name = "clip",
                      .kind = OPTION_TEXT,
                      .argument = "[NAME=]AXIS=LO:HI",

@@ -1,0 +1,159 @@
+/* compose/slice.c - see slice.h. */
+#include "compose/slice.h"
+
+#include <math.h>
+#include <stdio.h>
+#include <string.h>
+
+#include "compose/coordinates.h"
+#include "core/context.h"
+#include "core/memory.h"
+#include "guess/analysis.h"
+#include "scene/geometry/camera.h"
+#include "text/plain.h"
+#include "volume/volume.h"
+
+/* The distance of a slice's sheets, in voxel edges. The values that are seen are those of the first sheets
+ * behind the plane. */
+#define SHEET_SPACING 0.125
+
+/* How a slice is seen. */
+typedef struct slice_sight {
+  int axis;                 /* across the slice */
+  double towards_eye;       /* 1 if the eye stands where the axis' coordinates are greater, else -1 */
+  double up[3];             /* the direction that is up in the picture */
+  hl_side side, other_side; /* the side of the volumes at which the eye stands, and the side opposite it */
+} slice_sight;
+
+/* Reads AXIS=AT. Returns the axis; -1 if the text is something else. */
+static int read_axis(const char *text) {
+  hl_coordinate at;
+  const int axis = *text >= 'x' && *text <= 'z' && text[1] == '=' ? *text - 'x' : -1;
+  text += 2;
+  return axis >= 0 && hl_read_coordinate(&text, &at) && at.given && *text == '\0' ? axis : -1;
+}
+
+/* Finds the sight of a slice across an axis. Where the world is a body's, the axes' letters say which of
+ * their ends the eye stands at, and which direction is up. */
+static slice_sight find_sight(const hl_scene_description *description, int axis) {
+  const char *letters = hl_space_name(hl_scene_space(description));
+  const double front = letters != NULL && letters[1] == 'A' ? 1 : -1;
+  if (axis == 2) return (slice_sight){2, -1, {0, front, 0}, HL_SIDE_BOTTOM, HL_SIDE_TOP};
+  if (axis == 1) return (slice_sight){1, front, {0, 0, 1}, HL_SIDE_FRONT, HL_SIDE_BACK};
+  if (letters == NULL) return (slice_sight){0, 1, {0, 0, 1}, HL_SIDE_RIGHT, HL_SIDE_LEFT};
+  return (slice_sight){0, letters[0] == 'L' ? 1 : -1, {0, 0, 1}, HL_SIDE_LEFT, HL_SIDE_RIGHT};
+}
+
+/* The sight of the slice that is asked for; "view" may ask for the opposite side. */
+static slice_sight asked_sight(const hl_asked *asked, const hl_scene_description *description) {
+  const hl_asked *view = &asked[HL_ASK_VIEW];
+  slice_sight sight = find_sight(description, read_axis(asked[HL_ASK_SLICE].text));
+  if (view->given && view->choice == (int)sight.other_side) sight.towards_eye = -sight.towards_eye;
+  return sight;
+}
+
+hl_status hl_check_slice(const hl_asked *asked, hl_error *error) {
+  static const hl_ask excluded[] = {HL_ASK_LOOK, HL_ASK_THRESHOLD, HL_ASK_ISO, HL_ASK_UP, HL_ASK_FLOOR};
+  static const hl_side sides[3][2] = {
+      {HL_SIDE_LEFT, HL_SIDE_RIGHT}, {HL_SIDE_FRONT, HL_SIDE_BACK}, {HL_SIDE_BOTTOM, HL_SIDE_TOP}};
+  static const char *const names[3] = {"left or right", "front or back", "bottom or top"};
+  const hl_asked *slice = &asked[HL_ASK_SLICE], *view = &asked[HL_ASK_VIEW];
+  if (!slice->given) return HL_OK;
+  const int axis = read_axis(slice->text);
+  if (axis < 0)
+    return hl_fail(error, HL_ERROR_ARGUMENT,
+                   "--slice: '%.200s' is not AXIS=AT: a fraction from 0 to 1 (z=0.5), or a coordinate in the "
+                   "file's world with its unit (z=40mm; u is the file's own unit, whatever it is)",
+                   slice->text);
+  for (size_t n = 0; n < sizeof excluded / sizeof *excluded; n++)
+    if (asked[excluded[n]].given)
+      return hl_fail(error, HL_ERROR_ARGUMENT, "--slice and --%s exclude each other: give one of them",
+                     hl_option_rows[excluded[n]].name);
+  if (view->given && view->choice != (int)sides[axis][0] && view->choice != (int)sides[axis][1])
+    return hl_fail(error, HL_ERROR_ARGUMENT, "--slice %.200s is seen from one of its sides: --view %s",
+                   slice->text, names[axis]);
+  return HL_OK;
+}
+
+static void choose(hl_asked *asked, int choice) {
+  if (asked->given) return;
+  asked->given = asked->chosen = true;
+  asked->choice = choice;
+}
+
+size_t hl_count_values(const hl_scene_description *description) {
+  size_t values = 0;
+  for (size_t v = 0; v < description->volume_count; v++) values += description->volumes[v].label_count == 0;
+  return values;
+}
+
+static bool shows_labels(const hl_scene_description *description, const hl_asked *asked) {
+  return asked[HL_ASK_LABELS].given || asked[HL_ASK_MASK].given || asked[HL_ASK_SHOW].given ||
+         hl_count_values(description) < description->volume_count;
+}
+
+hl_status hl_expand_slice(const hl_scene_description *description, hl_asked *asked, char *plane,
+                          hl_error *error) {
+  hl_asked *planes = &asked[HL_ASK_CUT_PLANE], *spacing = &asked[HL_ASK_SHEET_SPACING];
+  if (!asked[HL_ASK_SLICE].given) return HL_OK;
+  if (planes->count == HL_ASK_MOST_TEXTS)
+    return hl_fail(error, HL_ERROR_ARGUMENT, "--slice: there is no room for one more --cut-plane");
+  const slice_sight sight = asked_sight(asked, description);
+  /* "z=AT" cuts away what lies from AT on, and "z=:AT" what lies before it */
+  snprintf(plane, HL_SLICE_TEXT, "%c=%s%.*s", 'x' + sight.axis, sight.towards_eye > 0 ? "" : ":",
+           HL_SLICE_TEXT - 4, asked[HL_ASK_SLICE].text + 2);
+  planes->given = true;
+  planes->text = planes->texts[planes->count++] = plane;
+  asked[HL_ASK_ORTHO].given |= !asked[HL_ASK_FOVY].given;
+  asked[HL_ASK_WHOLE].given = true;
+  choose(&asked[HL_ASK_SHADING], HL_SHADING_FLAT);
+  if (!spacing->given) *spacing = (hl_asked){.given = true, .number = {SHEET_SPACING}};
+  if (!shows_labels(description, asked)) choose(&asked[HL_ASK_KERNEL], HL_KERNEL_LINEAR);
+  return HL_OK;
+}
+
+bool hl_slice_view(const hl_composer *composer, const hl_scene_description *description, hl_view *view) {
+  if (!composer->asked[HL_ASK_SLICE].given) return false;
+  const slice_sight sight = asked_sight(composer->asked, description);
+  *view = (hl_view){0};
+  view->front[sight.axis] = sight.towards_eye;
+  memcpy(view->up, sight.up, sizeof view->up);
+  return true;
+}
+
+bool hl_slice_range(const hl_volume *volume, char text[HL_SLICE_TEXT]) {
+  static const double soft_tissue[2] = {-160, 240};
+  const bool asked = volume->window[0] < volume->window[1];
+  if (!asked && !hl_is_hounsfield(volume)) return false;
+  const double *range = asked ? volume->window : soft_tissue;
+  hl_plain_print(text, HL_SLICE_TEXT, "%.17g,%.17g", range[0], range[1]);
+  return true;
+}
+
+hl_status hl_make_slice_opaque(const hl_composer *composer, const hl_volume *volume,
+                               hl_transfer_function *function) {
+  enum { POINTS = 2 };
+  static const double opaque = 0.999;
+  hl_volume_info info = {.struct_size = sizeof info};
+  if (hl_volume_get_info(volume, &info) != HL_OK)
+    return hl_fail(composer->error, HL_ERROR_INTERNAL, "--slice: the volume is not known");
+  hl_opacity_point *points = hl_reallocate(composer->context, (void *)function->opacity, POINTS,
+                                           sizeof *points);
+  if (points == NULL) return hl_fail_memory(composer->error, POINTS * sizeof *points, "a transfer function");
+  points[0] = (hl_opacity_point){info.range[0], opaque};
+  points[1] = (hl_opacity_point){fmax(info.range[1], nextafter(info.range[0], INFINITY)), opaque};
+  function->opacity = points;
+  function->opacity_count = POINTS;
+  function->gradient_opacity_count = 0;
+  function->unit_distance = fmin(fmin(info.spacing[0], info.spacing[1]), info.spacing[2]) / 2;
+  return HL_OK;
+}
+
+/* Derived: where n volumes are equally opaque, the picture has the mean of their colours; n times the mean is
+ * their sum. */
+void hl_compose_slice(const hl_composer *composer, hl_scene_description *description) {
+  if (!composer->asked[HL_ASK_SLICE].given || !composer->bare) return;
+  for (int c = 0; c < 3; c++) description->background[c] = 0;
+  const size_t values = hl_count_values(description);
+  if (values > 1) description->exposure = log2((double)values);
+}
