@@ -93,6 +93,13 @@ HL_API const hl_mesh_description *hl_mesh_describe(const hl_mesh *mesh);
 /* Finds the least and the greatest coordinates of the mesh, in world units. */
 HL_API HL_WARN_UNUSED hl_status hl_mesh_get_box(const hl_mesh *mesh, double low[3], double high[3]);
 
+/* Measures the triangles of a mesh. *area receives the sum of their areas, in world units squared. *volume
+ * receives the volume that they enclose, in world units cubed; NaN if the triangles are not closed: then an
+ * edge has no triangle on its other side that turns the same way. Spheres are left out; lines count as the
+ * tubes that they became. */
+HL_API HL_WARN_UNUSED hl_status hl_mesh_measure(hl_context *context, const hl_mesh *mesh, double *area,
+                                                double *volume, hl_error *error);
+
 HL_API void hl_mesh_retain(hl_mesh *mesh);
 HL_API void hl_mesh_release(hl_mesh *mesh); /* null is allowed */
 

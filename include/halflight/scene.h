@@ -477,6 +477,11 @@ HL_API void hl_scene_release(hl_scene *scene); /* null is allowed */
 HL_API HL_WARN_UNUSED hl_status hl_labels_of_volume(hl_context *context, const hl_volume *map,
                                                     const char *table, hl_label **labels, size_t *count,
                                                     hl_error *error);
+/* Makes a mesh of the smooth surface around all visible labels of a list, as the labels are drawn. map: the
+ * label map; labels: [count], rising by value. Positions are in the world of the map's file. HL_ERROR_INPUT:
+ * the map has none of the visible labels. *mesh is owned by the caller, who releases it. */
+HL_API HL_WARN_UNUSED hl_status hl_mesh_of_labels(hl_context *context, hl_volume *map, const hl_label *labels,
+                                                  size_t count, hl_mesh **mesh, hl_error *error);
 HL_API void hl_labels_release(hl_context *context, hl_label *labels); /* null is allowed */
 
 /* Sets *labels to 1 where the volume's values are probably labels of regions, else to 0. They probably are

@@ -1,6 +1,7 @@
 /* cli/convert.c - implements `halflight convert IN OUT`, which writes a volume, or a box of it, in another
  * format, type or resolution, a volume's surface as a mesh, and pictures and meshes in another format. */
 #define _GNU_SOURCE
+#include <inttypes.h>
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -18,6 +19,8 @@ enum convert_option {
   CONVERT_TYPE,
   CONVERT_UNIT,
   CONVERT_ISO,
+  CONVERT_SHOW,
+  CONVERT_LABEL_TABLE,
   CONVERT_OUTPUT,
   CONVERT_ARRAY,
   CONVERT_COMPONENT,
@@ -79,6 +82,16 @@ static const cli_option convert_options[CONVERT_OPTION_COUNT] = {
                      .count = 1,
                      .low = -INFINITY,
                      .high = INFINITY},
+    [CONVERT_SHOW] = {.name = "show",
+                      .also = "label",
+                      .kind = OPTION_TEXT,
+                      .argument = "LABEL,...",
+                      .help = "labels of the label map IN, by name or number, or all, whose\nsmooth surface "
+                              "becomes the mesh OUT"},
+    [CONVERT_LABEL_TABLE] = {.name = "label-table",
+                             .kind = OPTION_TEXT,
+                             .argument = "FILE",
+                             .help = "names of labels: FreeSurfer's, Slicer's or ITK-SNAP's table,\nor CSV"},
     [CONVERT_OUTPUT] = {.name = "output",
                         .letter = 'o',
                         .kind = OPTION_TEXT,
@@ -208,6 +221,67 @@ static int convert(cli_host *host, const cli_value *values, const char *in, cons
 
 /* ---- meshes ---- */
 
+/* Returns whether one of the labels has a name, or a number, of `length` characters, and makes these labels
+ * visible. */
+static bool show_label(hl_label *labels, size_t count, const char *name, size_t length) {
+  bool found = false;
+  for (size_t n = 0; n < count; n++) {
+    char number[32];
+    snprintf(number, sizeof number, "%" PRId64, labels[n].value);
+    const bool named = labels[n].name != NULL && strlen(labels[n].name) == length &&
+                       strncmp(labels[n].name, name, length) == 0,
+               numbered = strlen(number) == length && strncmp(number, name, length) == 0,
+               all = length == 3 && strncmp(name, "all", 3) == 0;
+    if (named || numbered || all) labels[n].visible = 1, found = true;
+  }
+  return found;
+}
+
+/* Writes the names of the first labels, or their numbers. */
+static void list_labels(const hl_label *labels, size_t count, char *text, size_t size) {
+  size_t used = 0;
+  for (size_t n = 0; n < count && used + 60 < size; n++) {
+    const char *name = labels[n].name, *comma = n > 0 ? ", " : "";
+    used += (size_t)(name != NULL && name[0] != '\0'
+                         ? snprintf(text + used, size - used, "%s%.40s", comma, name)
+                         : snprintf(text + used, size - used, "%s%" PRId64, comma, labels[n].value));
+    if (n + 1 < count && used + 60 >= size)
+      snprintf(text + used, size - used, " and %zu more", count - n - 1);
+  }
+}
+
+/* Makes visible the labels that --show names, and no others. */
+static int show_labels(const char *list, hl_label *labels, size_t count) {
+  for (size_t n = 0; n < count; n++) labels[n].visible = 0;
+  for (const char *item = list;;) {
+    const size_t length = strcspn(item, ",");
+    if (!show_label(labels, count, item, length)) {
+      char known[400] = "none";
+      list_labels(labels, count, known, sizeof known);
+      return fail(EXIT_CODE_USAGE, "--show: '%.*s' is no label of IN: it has %s", (int)length, item, known);
+    }
+    if (item[length] == '\0') return EXIT_CODE_OK;
+    item += length + 1;
+  }
+}
+
+/* Makes the mesh of the surface of labels. */
+static int make_label_surface(cli_host *host, const cli_value *values, hl_volume *map, hl_mesh **mesh) {
+  hl_label *labels = NULL;
+  size_t count = 0;
+  hl_error error = {0};
+  hl_status status = hl_labels_of_volume(host->context, map, values[CONVERT_LABEL_TABLE].text, &labels,
+                                         &count, &error);
+  if (status != HL_OK) return host_fail(host, PHASE_READ, status, &error);
+  int exit_code = show_labels(values[CONVERT_SHOW].text, labels, count);
+  if (exit_code == EXIT_CODE_OK) {
+    status = hl_mesh_of_labels(host->context, map, labels, count, mesh, &error);
+    if (status != HL_OK) exit_code = host_fail(host, PHASE_CHANGE, status, &error);
+  }
+  hl_labels_release(host->context, labels);
+  return exit_code;
+}
+
 /* Makes the mesh of the surface of the volume IN. */
 static int make_surface(cli_host *host, const cli_value *values, const char *in, const char *out,
                         hl_mesh **mesh) {
@@ -215,11 +289,15 @@ static int make_surface(cli_host *host, const cli_value *values, const char *in,
   cli_input input = {0};
   hl_volume *volume = NULL;
   hl_error error = {0};
-  if (!iso->given)
-    return fail(EXIT_CODE_USAGE, "OUT is a mesh, '%s': give --iso VALUE, the value on the surface of '%s'",
+  if (iso->given == values[CONVERT_SHOW].given)
+    return fail(EXIT_CODE_USAGE,
+                "OUT is a mesh, '%s': give --iso VALUE, the value on the surface of '%s', or --show LABEL, a "
+                "label of a label map",
                 out, in);
   int exit_code = load_volume(host, values, in, &input, &volume);
-  if (exit_code == EXIT_CODE_OK) {
+  if (exit_code == EXIT_CODE_OK) exit_code = check_unit(&values[CONVERT_UNIT], volume);
+  if (exit_code == EXIT_CODE_OK && !iso->given) exit_code = make_label_surface(host, values, volume, mesh);
+  else if (exit_code == EXIT_CODE_OK) {
     hl_status status = hl_mesh_of_isosurface(host->context, volume, iso->number[0], mesh, &error);
     if (status != HL_OK) exit_code = host_fail(host, PHASE_CHANGE, status, &error);
   }
@@ -251,6 +329,8 @@ static int convert_mesh(cli_host *host, const cli_value *values, const char *in,
     host_clear_bar(host);
     if (status != HL_OK) exit_code = host_fail(host, PHASE_RUN, status, &error);
     else if (!host->quiet) report(out, clock_seconds() - started);
+    if (exit_code == EXIT_CODE_OK && values[CONVERT_UNIT].given && !host->quiet)
+      say("%s: meshes state no unit: the lengths in it are in %s", out, values[CONVERT_UNIT].text);
   }
   hl_mesh_release(mesh);
   return exit_code;
@@ -271,8 +351,10 @@ static bool are_pictures(const char *in, const char *out) {
 static int check_kind_of_options(const cli_value *values, bool picture, bool mesh, const char *out) {
   const bool coded = picture && !output_is_linear(out);
   for (int row = 0; row < CONVERT_OPTION_COUNT; row++) {
-    const bool of_picture = row >= CONVERT_BACKGROUND && row <= CONVERT_TONE, of_mesh = row == CONVERT_ISO,
-               of_voxels = row<CONVERT_ISO, of_reading = row> CONVERT_OUTPUT && row < CONVERT_BACKGROUND;
+    const bool of_picture = row >= CONVERT_BACKGROUND && row <= CONVERT_TONE,
+               of_mesh = row >= CONVERT_ISO && row <= CONVERT_LABEL_TABLE,
+               of_voxels = row < CONVERT_ISO && !(mesh && row == CONVERT_UNIT),
+               of_reading = row > CONVERT_OUTPUT && row < CONVERT_BACKGROUND;
     if (values[row].given && of_picture && !coded)
       return fail(EXIT_CODE_USAGE, "--%s is for a .png or .tif, and OUT is '%s'", convert_options[row].name,
                   out);
@@ -280,8 +362,9 @@ static int check_kind_of_options(const cli_value *values, bool picture, bool mes
       return fail(EXIT_CODE_USAGE, "--%s is for a .ply, .stl or .obj, and OUT is '%s'",
                   convert_options[row].name, out);
     if (values[row].given && ((of_voxels && (picture || mesh)) || (of_reading && picture)))
-      return fail(EXIT_CODE_USAGE, "--%s is for volumes, and OUT is a %s, '%s'", convert_options[row].name,
-                  picture ? "picture" : "mesh", out);
+      return fail(EXIT_CODE_USAGE, "--%s is for volumes, and OUT is a %s, '%s'%s", convert_options[row].name,
+                  picture ? "picture" : "mesh", out,
+                  picture ? ": a volume is written as .nrrd or .nii.gz" : "");
   }
   return EXIT_CODE_OK;
 }
@@ -305,8 +388,11 @@ static int convert_picture(cli_host *host, const cli_value *values, const char *
   read_picture_options(values, &options);
   hl_status status = hl_image_read(host->context, in, &image, &error);
   if (status == HL_ERROR_UNSUPPORTED && !is_picture_name(in))
-    return fail(EXIT_CODE_INPUT,
-                "'%s' is no picture: halflight render makes a picture of a volume or a scene", in);
+    return fail(
+        EXIT_CODE_INPUT,
+        "'%s' is no picture, and OUT is one: halflight render makes a picture of a volume or a scene, and "
+        "a volume is written as .nrrd or .nii.gz",
+        in);
   if (status != HL_OK) return host_fail(host, PHASE_READ, status, &error);
   status = hl_image_write(host->context, image, out, &options, &error);
   host_clear_bar(host);
@@ -362,7 +448,7 @@ const cli_command convert_command = {
         "Values and placement are kept. A warning names everything that OUT's format cannot store.\n"
         "Where OUT is a picture, .png, .tif or .exr, IN is a picture, too; the .npy of a .png or an\n"
         ".exr is a picture. Where OUT is a mesh, .ply, .stl or .obj, IN is a mesh, too, or a volume\n"
-        "whose surface --iso names.",
+        "whose surface --iso names, or a label map whose labels --show names.",
     .options = convert_options,
     .option_count = CONVERT_OPTION_COUNT,
     .run = run_convert,

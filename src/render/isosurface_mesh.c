@@ -1,11 +1,12 @@
-/* render/isosurface_mesh.c - hl_mesh_of_isosurface: the mesh that a frame makes of a volume's isosurface, for
- * other programs. */
+/* render/isosurface_mesh.c - hl_mesh_of_isosurface and hl_mesh_of_labels: the meshes that a frame makes of a
+ * volume's isosurface, and of labels' surface, for other programs. */
 #include <math.h>
 
 #include "core/context.h"
 #include "core/door.h"
 #include "grid/make_grid.h"
 #include "isosurface/isosurface.h"
+#include "label/solids.h"
 #include "render/hot.h"
 #include "scene/geometry/placement.h"
 
@@ -48,5 +49,29 @@ hl_status hl_mesh_of_isosurface(hl_context *context, hl_volume *volume, double v
                    "no surface: nowhere does the volume have the value %.9g: its values go "
                    "from %.9g to %.9g",
                    value, volume->minimum, volume->maximum);
+  return status;
+}
+
+/* The occupancy at the surface of labels (label/occupancy.h). */
+#define LABEL_SURFACE 0.5
+
+hl_status hl_mesh_of_labels(hl_context *context, hl_volume *map, const hl_label *labels, size_t count,
+                            hl_mesh **mesh, hl_error *error) {
+  HL_DOOR;
+  if (context == NULL || map == NULL || (labels == NULL && count > 0) || mesh == NULL)
+    return hl_fail(error, HL_ERROR_ARGUMENT, "hl_mesh_of_labels: null context, map, labels or mesh");
+  *mesh = NULL;
+  size_t shown = 0;
+  hl_volume *occupancy = NULL;
+  hl_label *solids = hl_allocate_zeroed(context, count > 0 ? count : 1, sizeof *solids);
+  if (solids == NULL) return hl_fail_memory(error, count * sizeof *solids, "labels");
+  for (size_t n = 0; n < count; n++)
+    if (labels[n].visible) solids[shown++] = (hl_label){.value = labels[n].value, .opacity = 1, .visible = 1};
+  hl_status status = shown > 0 ? hl_label_solids(context, 0, map, solids, shown, &occupancy, error) : HL_OK;
+  if (status == HL_OK && occupancy == NULL)
+    status = hl_fail(error, HL_ERROR_INPUT, "no surface: the label map has none of the labels");
+  if (status == HL_OK) status = hl_mesh_of_isosurface(context, occupancy, LABEL_SURFACE, mesh, error);
+  hl_volume_release(occupancy);
+  hl_release(context, solids);
   return status;
 }

@@ -1,6 +1,7 @@
 /* cli/info/info.c - implements `halflight info FILE`, which prints the properties of a volume, a scene or a
  * mesh. */
 #include <inttypes.h>
+#include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -24,6 +25,7 @@ enum info_option {
   INFO_CHANNEL,
   INFO_LEVEL,
   INFO_SPACING,
+  INFO_LABEL_TABLE,
   INFO_MAX_MEMORY,
   INFO_OPTION_COUNT
 };
@@ -39,6 +41,11 @@ static const cli_option info_options[INFO_OPTION_COUNT] = {
     INPUT_OPTIONS(INFO_ARRAY, NULL),
     [INFO_CHANNEL] = INPUT_OPTION_CHANNEL,
     [INFO_SPACING] = INPUT_OPTION_SPACING,
+    [INFO_LABEL_TABLE] =
+        {.name = "label-table",
+         .kind = OPTION_TEXT,
+         .argument = "FILE",
+         .help = "names of a label map's labels: FreeSurfer's, Slicer's or\nITK-SNAP's table, or CSV"},
     [INFO_MAX_MEMORY] = HOST_OPTION_MAX_MEMORY(NULL),
 };
 
@@ -51,7 +58,8 @@ static int info_of_volume(cli_host *host, const cli_value *values, const cli_inp
   load.pixels = input_picture_side(); /* the properties are printed for the resolution that a picture shows */
   hl_status status = input_load_volume(host->context, input, &load, &volume, &error);
   int exit_code = status == HL_OK
-                      ? info_tell_volume(host, values[INFO_JSON].given ? &json : NULL, input->title, volume)
+                      ? info_tell_volume(host, values[INFO_JSON].given ? &json : NULL, input->title, volume,
+                                         true, values[INFO_LABEL_TABLE].text)
                       : host_fail(host, PHASE_READ, status, &error);
   hl_volume_release(volume);
   return exit_code == EXIT_CODE_OK ? finish_stdout() : exit_code;
@@ -80,7 +88,7 @@ static int tell_scene(cli_host *host, bool as_json, const char *title, const hl_
   for (size_t n = 0; n < scene->volume_count && exit_code == EXIT_CODE_OK; n++) {
     const hl_scene_volume *volume = &scene->volumes[n];
     const char *path = volume->file != NULL ? volume->file : title;
-    exit_code = info_tell_volume(host, as_json ? &json : NULL, path, volume->volume);
+    exit_code = info_tell_volume(host, as_json ? &json : NULL, path, volume->volume, false, NULL);
     for (size_t label = 0; !as_json && label < volume->label_count; label++)
       printf("  %s  %" PRId64 ": %s%s\n", label == 0 ? "labels    " : "          ",
              volume->labels[label].value,
@@ -96,7 +104,7 @@ static int tell_scene(cli_host *host, bool as_json, const char *title, const hl_
 
 /* Refuses the options that choose a part of a volume file. */
 static int refuse_reading(const cli_value *values, const char *title, const char *what) {
-  for (int which = INFO_ARRAY; which <= INFO_SPACING; which++)
+  for (int which = INFO_ARRAY; which <= INFO_LABEL_TABLE; which++)
     if (values[which].given)
       return fail(EXIT_CODE_USAGE, "--%s is for volume files, and '%s' is %s", info_options[which].name,
                   title, what);
@@ -162,7 +170,7 @@ static const char *colored_part(const hl_mesh_description *mesh) {
 }
 
 static void print_json_mesh(const char *path, const hl_mesh_description *mesh, const double low[3],
-                            const double high[3]) {
+                            const double high[3], double area, double volume) {
   json_writer json = {0};
   json_open_object(&json, NULL);
   json_text(&json, "file", path);
@@ -172,6 +180,8 @@ static void print_json_mesh(const char *path, const hl_mesh_description *mesh, c
   json_whole_number(&json, "lines", mesh->line_count);
   json_bool(&json, "normals", mesh->normals != NULL);
   json_text(&json, "colors", colored_part(mesh));
+  json_number(&json, "area", area);
+  if (isfinite(volume)) json_number(&json, "volume", volume);
   json_open_object(&json, "box");
   json_numbers(&json, "min", low, 3);
   json_numbers(&json, "max", high, 3);
@@ -180,13 +190,16 @@ static void print_json_mesh(const char *path, const hl_mesh_description *mesh, c
 }
 
 static void print_mesh(const char *path, const hl_mesh_description *mesh, const double low[3],
-                       const double high[3]) {
+                       const double high[3], double area, double volume) {
   printf("%s\n  mesh        %zu triangles of %zu vertices", path, mesh->triangle_count, mesh->vertex_count);
   if (mesh->sphere_count > 0) printf(", %zu spheres", mesh->sphere_count);
   if (mesh->line_count > 0) printf(", %zu lines, whose tubes are among the triangles", mesh->line_count);
   printf("\n");
   if (mesh->triangle_count > 0)
     printf("  normals     %s\n", mesh->normals != NULL ? "of the file" : "none: faces and edges are found");
+  if (mesh->triangle_count > 0) printf("  area        %.6g square units\n", area);
+  if (mesh->triangle_count > 0 && isfinite(volume)) printf("  volume      %.6g cubic units\n", volume);
+  else if (mesh->triangle_count > 0) printf("  volume      none: the triangles are not closed\n");
   const char *colored = colored_part(mesh);
   printf("  colours     %s%s\n", colored != NULL ? "of " : "none", colored != NULL ? colored : "");
   printf("  world box   x %.9g to %.9g, y %.9g to %.9g, z %.9g to %.9g\n", low[0], high[0], low[1], high[1],
@@ -196,15 +209,19 @@ static void print_mesh(const char *path, const hl_mesh_description *mesh, const 
 static int info_of_mesh(cli_host *host, const cli_value *values, const char *path) {
   hl_mesh *mesh = NULL;
   hl_error error = {0};
-  double low[3], high[3];
+  double low[3], high[3], area, volume;
   int exit_code = refuse_reading(values, path, "a mesh");
   if (exit_code != EXIT_CODE_OK) return exit_code;
   hl_status status = hl_mesh_load(host->context, path, &mesh, &error);
-  if (status != HL_OK) return host_fail(host, PHASE_READ, status, &error);
+  if (status == HL_OK) status = hl_mesh_measure(host->context, mesh, &area, &volume, &error);
+  if (status != HL_OK) {
+    hl_mesh_release(mesh);
+    return host_fail(host, PHASE_READ, status, &error);
+  }
   if (hl_mesh_get_box(mesh, low, high) != HL_OK)
     exit_code = fail(EXIT_CODE_FAILURE, "%s: the library does not tell what it read", path);
-  else if (values[INFO_JSON].given) print_json_mesh(path, hl_mesh_describe(mesh), low, high);
-  else print_mesh(path, hl_mesh_describe(mesh), low, high);
+  else if (values[INFO_JSON].given) print_json_mesh(path, hl_mesh_describe(mesh), low, high, area, volume);
+  else print_mesh(path, hl_mesh_describe(mesh), low, high, area, volume);
   hl_mesh_release(mesh);
   return exit_code == EXIT_CODE_OK ? finish_stdout() : exit_code;
 }
@@ -285,7 +302,9 @@ const cli_command info_command = {
         "same as above for each volume. For a picture, shows its size and bits, and the camera, the\n"
         "volumes and the stated differences of fields that it holds. For a mesh file, shows its numbers of "
         "triangles, spheres and lines,\n"
-        "whether it has normals and colours, and its box.",
+        "whether it has normals and colours, its area, the volume that it encloses, and its box. For a "
+        "label\n"
+        "map, lists its labels with their names, voxels and volumes.",
     .options = info_options,
     .option_count = INFO_OPTION_COUNT,
     .run = run_info,

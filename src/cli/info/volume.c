@@ -7,6 +7,7 @@
 #include <stdio.h>
 #include <string.h>
 
+#include "labels.h"
 #include "picture.h"
 
 /* Prints the file's arrays, and the array and the component from which the volume was read. */
@@ -278,7 +279,6 @@ static void print_json(json_writer *json, const char *path, const hl_volume *vol
   json_text(json, "taken_for", kind);
   json_text(json, "next_look", next);
   json_whole_numbers(json, "histogram", info->histogram, HL_HISTOGRAM_BINS);
-  json_close(json);
 }
 
 /* Prints a histogram of sixteen bars. The lengths of the bars are logarithmic, because the voxels of air are
@@ -351,7 +351,8 @@ static void print_text(const char *path, const hl_volume *volume, const hl_volum
   print_histogram(info);
 }
 
-int info_tell_volume(cli_host *host, json_writer *json, const char *path, hl_volume *volume) {
+int info_tell_volume(cli_host *host, json_writer *json, const char *path, hl_volume *volume, bool labels,
+                     const char *table) {
   const char *kind = NULL, *next = NULL;
   hl_volume_info info = {.struct_size = sizeof info};
   hl_error error = {0};
@@ -364,5 +365,8 @@ int info_tell_volume(cli_host *host, json_writer *json, const char *path, hl_vol
   if (status != HL_OK) return host_fail(host, PHASE_RUN, status, &error);
   if (json != NULL) print_json(json, path, volume, &info, percentiles, kind, next);
   else print_text(path, volume, &info, percentiles, kind, next);
-  return EXIT_CODE_OK;
+  if (labels && (table != NULL || strcmp(kind, "labels") == 0))
+    status = info_tell_labels(host->context, json, volume, table, &error);
+  if (json != NULL) json_close(json);
+  return status == HL_OK ? EXIT_CODE_OK : host_fail(host, PHASE_READ, status, &error);
 }
