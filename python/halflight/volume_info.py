@@ -1,7 +1,7 @@
 """Describes volumes: size, type, place, statistics, and the other content of a volume's file."""
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from typing import Any
 
 import numpy as np
@@ -131,7 +131,7 @@ class Info:
     range: tuple[float, float]
     mean: float
     nonfinite_count: int
-    histogram: np.ndarray[Any, np.dtype[np.uint64]]
+    histogram: np.ndarray[Any, np.dtype[np.uint64]] = field(repr=False)
     space: str | None
     taken_for: str
     arrays: tuple[FileArray, ...] = ()

@@ -105,7 +105,8 @@ static void on_progress(void *user_data, const char *stage, double fraction) {
 static void on_log(void *user_data, hl_log_level level, const char *message) {
   cli_host *host = user_data;
   if (level == HL_LOG_WARNING && host->warned != NULL) host->warned(message);
-  if (host->quiet) return;
+  if (host->quiet || strcmp(host->said, message) == 0) return;
+  snprintf(host->said, sizeof host->said, "%s", message);
   host_clear_bar(host);
   if (level == HL_LOG_WARNING) warn("%s", message);
   else say("%s", message);

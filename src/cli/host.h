@@ -19,8 +19,9 @@ typedef struct host_stage {
 
 typedef struct cli_host {
   hl_context *context;
-  bool quiet;   /* whether the program prints no warnings, no bar and no summary */
-  bool bar;     /* whether stderr is a terminal that can redraw a line */
+  bool quiet;      /* whether the program prints no warnings, no bar and no summary */
+  char said[1000]; /* the last message; a message that is the same again is not repeated */
+  bool bar;        /* whether stderr is a terminal that can redraw a line */
   bool own_bar; /* whether the command draws the progress bar itself, because each call of the library is only
                  * a part of the command's work */
   bool color;

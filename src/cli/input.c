@@ -175,7 +175,9 @@ int input_channels(const cli_value *said, int channels[HL_CHANNELS_MOST], size_t
     char *end;
     long number = strtol(text, &end, 10);
     if (text[0] < '0' || text[0] > '9' || number > INT_MAX || (*end != ',' && *end != '\0'))
-      return fail(EXIT_CODE_USAGE, "--channel: '%s': give a number from 0 on, several as 0,2, or all",
+      return fail(EXIT_CODE_USAGE,
+                  "--channel: '%s': give a number from 0 on, several as 0,2, or all: halflight info lists "
+                  "the channels' names",
                   said->text);
     if (*count == HL_CHANNELS_MOST)
       return fail(EXIT_CODE_USAGE, "--channel: '%s': a picture shows %d channels at most", said->text,

@@ -166,11 +166,21 @@ static bool is_for_any(const hl_composer *composer, const char *text,
   return false;
 }
 
+/* Returns whether a value of "colormap" is for mesh number `index`: the value names the mesh, or it has no
+ * name and the picture has no volumes. *color: the text of the colour. */
+static bool is_for_mesh(const hl_composer *composer, const char *text,
+                        const hl_scene_description *description, size_t index, const char **color) {
+  if (names_part(composer, text, part_of_mesh(&description->meshes[index], index), color)) return true;
+  if (*color != NULL || description->volume_count > 0) return false;
+  *color = text;
+  return true;
+}
+
 static bool is_for_any_mesh(const hl_composer *composer, const char *text,
                             const hl_scene_description *description) {
   const char *rest;
   for (size_t m = 0; m < description->mesh_count; m++)
-    if (names_part(composer, text, part_of_mesh(&description->meshes[m], m), &rest)) return true;
+    if (is_for_mesh(composer, text, description, m, &rest)) return true;
   return false;
 }
 
@@ -248,7 +258,7 @@ hl_status hl_color_meshes(const hl_composer *composer, const hl_scene_descriptio
   const char *color;
   for (int n = 0; n < given->count; n++)
     for (size_t m = 0; m < description->mesh_count; m++) {
-      if (!names_part(composer, given->texts[n], part_of_mesh(&meshes[m], m), &color) ||
+      if (!is_for_mesh(composer, given->texts[n], description, m, &color) ||
           hl_parse_color(color, 0, 1, meshes[m].color) || is_for_any(composer, given->texts[n], description))
         continue;
       return hl_fail(

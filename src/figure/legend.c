@@ -43,11 +43,15 @@ static bool has_strip(const hl_scene_volume *volume) {
   return false;
 }
 
+/* Returns whether a label has a row: if it is seen, and a label of a mask gives matter its colour. */
+static bool has_row(const hl_label *label, bool of_mask) {
+  return label->visible && label->opacity > 0 && (!of_mask || label->tint > 0);
+}
+
 static size_t count_rows(const hl_scene_volume *volume) {
   size_t count = volume->iso_count;
-  for (size_t l = 0; l < volume->label_count; l++) count += volume->labels[l].visible != 0;
-  for (size_t l = 0; l < volume->mask.label_count; l++)
-    count += volume->mask.labels[l].visible != 0 && volume->mask.labels[l].tint > 0;
+  for (size_t l = 0; l < volume->label_count; l++) count += has_row(&volume->labels[l], false);
+  for (size_t l = 0; l < volume->mask.label_count; l++) count += has_row(&volume->mask.labels[l], true);
   return count;
 }
 
@@ -119,16 +123,17 @@ static void draw_row(legend *made, double left, const double color[3], const cha
   made->y += height;
 }
 
-/* Finds the colour and the name that the n-th row of a volume shows. Returns false if the volume has fewer
- * rows. */
+/* Finds the colour and the name that the n-th row of a volume shows. Solid labels come before translucent
+ * ones, which are often the rest around them. Returns false if the volume has fewer rows. */
 static bool row_of(const hl_scene_volume *volume, size_t n, const double **color,
                    char text[NUMBER_BYTES * 4]) {
   const size_t counts[2] = {volume->label_count, volume->mask.label_count};
   const hl_label *lists[2] = {volume->labels, volume->mask.labels};
-  for (int list = 0; list < 2; list++)
-    for (size_t l = 0; l < counts[list]; l++) {
-      const hl_label *label = &lists[list][l];
-      if (!label->visible || (list == 1 && !(label->tint > 0)) || n-- > 0) continue;
+  for (int turn = 0; turn < 4; turn++)
+    for (size_t l = 0; l < counts[turn % 2]; l++) {
+      const hl_label *label = &lists[turn % 2][l];
+      const bool solid = label->opacity >= 1;
+      if (!has_row(label, turn % 2 == 1) || solid != (turn < 2) || n-- > 0) continue;
       *color = label->color;
       if (label->name != NULL && label->name[0] != '\0')
         snprintf(text, NUMBER_BYTES * 4, "%.*s", NUMBER_BYTES * 4 - 1, label->name);

@@ -350,13 +350,23 @@ static bool is_window_for_projections(const hl_volume *volume) {
   return isfinite(volume->window[1]) && share_above(volume, volume->window[1]) < 0.005;
 }
 
-/* Writes the greys of a maximum projection: from the background, which is not shown, to almost the greatest
- * value. If objects lie below the background, or on both sides of it, the greys begin at the least value. If
- * the file asks for a window of values that suits projections, the greys have only this range. */
+/* The distance above the background that noise reaches. A projection has the greatest of some hundred values,
+ * so that noise around the objects would be seen as a grey box. Derived: noise lies to both sides of the
+ * background alike, so that it reaches as far above the background as the least value lies below. Objects
+ * begin at `faint` at the latest. */
+static double noise_above(const hl_volume *volume, const hl_data_analysis *a) {
+  return fmin(fmax(a->background - volume->minimum, 0), a->faint);
+}
+
+/* Writes the greys of a maximum projection: from the noise of the background, which is not shown, to almost
+ * the greatest value. If objects lie below the background, or on both sides of it, the greys begin at the
+ * least value. If the file asks for a window of values that suits projections, the greys have only this
+ * range. */
 static void write_maximum(hl_function_writer *w, const hl_volume *volume) {
   const hl_data_analysis *a = w->analysis;
   bool above = a->direction > 0 && a->kind != HL_DATA_SIGNED;
-  double low = above ? a->background : volume->minimum, high = projected_white(volume);
+  double low = above ? a->background + noise_above(volume, a) : volume->minimum,
+         high = projected_white(volume);
   if (is_window_for_projections(volume)) {
     if (volume->window[1] > low && volume->window[1] < volume->maximum) high = volume->window[1];
     if (volume->window[0] > low && volume->window[0] < high) low = volume->window[0];

@@ -10,3 +10,7 @@ halflight render board.obj --colormap board=#00f --floor --print-scene >scene.js
 tool json scene.json "d['meshes'][0]['color'], len(d['meshes'])"
 halflight render ball_16x16x16_uint8.raw board.obj --colormap board=viridis --print-scene 2>&1 || true
 halflight render ball_16x16x16_uint8.raw board.obj --colormap borad=red --print-scene 2>&1 || true
+# Where there are no volumes, a colour without a name is for all meshes.
+halflight render board.obj --colormap '#00f' --print-scene >scene.json
+tool json scene.json "d['meshes'][0]['color']"
+halflight render board.obj --colormap viridis --print-scene 2>&1 || true
