@@ -42,7 +42,9 @@ static const struct {
     {"tf",
      "opacity-curve alpha-curve colour-function color-function transfer-function transferfunction alpha-map "
      "transfer ctf otf presets opacity-function"},
-    {"iso VALUE:COLOR:OPACITY for a surface, --show LABEL:OPACITY for a label, or --tf FILE for values",
+    {"iso VALUE:COLOR:OPACITY for a surface, --show LABEL:OPACITY for a label, --density FACTOR for all "
+     "matter, or --tf FILE for "
+     "values",
      "opacity transparency translucency"},
     {"colormap",
      "cmap color-map colourmap lut palette colors colours color colour color-table lookup-table colorscale"},
@@ -52,6 +54,7 @@ static const struct {
      "limits contrast"},
     {"threshold", "cutoff surface lower-threshold"},
     {"iso", "isovalue iso-value contour contours level-set isosurfaces iso-surface"},
+    {"density", "opacity-scale density-scale extinction thickness thicker thinner opacity-multiplier"},
     {"slice",
      "slices section cross-section crosssection orthoslice mpr reslice reformat axial coronal sagittal "
      "plane-view"},
@@ -141,8 +144,7 @@ static const struct {
     {"\"material\": { \"specular\": 0 } in a volume", "specular specularity gloss highlights"},
     {"\"material\": { \"diffuse\": 0.7 } in a volume", "diffuse"},
     {"\"material\": { \"shininess\": 32 } in a volume", "shininess roughness specular-power"},
-    {"\"unit_distance\": 1 in a transfer function",
-     "unit-distance opacity-unit-distance opacity-scale density density-scale extinction"},
+    {"\"unit_distance\": 1 in a transfer function", "unit-distance opacity-unit-distance"},
     {"\"color\": [1, 0.5, 0.2] in a light", "light-color light-colour"},
     {"\"intensity\": 1 in a light", "light-intensity light-strength energy"},
     {"\"scattering\": { \"anisotropy\": 0.7 } in a volume",

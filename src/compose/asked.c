@@ -63,6 +63,7 @@ const hl_option_row hl_option_rows[HL_ASK_COUNT] = {
     CHOICE(HL_ASK_RANGE_SCALE, "range-scale", .choices = range_scales),
     NAMED(HL_ASK_THRESHOLD, "threshold", 1, .separator = ','),
     TEXTS(HL_ASK_ISO, "iso"),
+    NUMBER(HL_ASK_DENSITY, "density"),
     TEXT(HL_ASK_SLICE, "slice"),
     TEXTS(HL_ASK_CLIP, "clip"),
     TEXTS(HL_ASK_CUT_PLANE, "cut-plane"),

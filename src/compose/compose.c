@@ -200,6 +200,9 @@ static hl_status check(const hl_asked *asked, hl_error *error) {
   if (asked[HL_ASK_LIGHT].given && fabs(asked[HL_ASK_LIGHT].number[1]) > 90)
     return hl_fail(error, HL_ERROR_ARGUMENT, "--light: '%.200s': the elevation must be from -90 to 90",
                    asked[HL_ASK_LIGHT].text);
+  if (asked[HL_ASK_DENSITY].given && !(asked[HL_ASK_DENSITY].number[0] > 0))
+    return hl_fail(error, HL_ERROR_ARGUMENT, "--density: '%.200s': give a factor above 0",
+                   asked[HL_ASK_DENSITY].text);
   for (int n = 0; asked[HL_ASK_SIZE].given && n < 2; n++)
     if (!(asked[HL_ASK_SIZE].number[n] >= 1 && asked[HL_ASK_SIZE].number[n] <= 65536))
       return hl_fail(error, HL_ERROR_ARGUMENT, "--size: '%.200s': give WxH in pixels, each from 1 to 65536",

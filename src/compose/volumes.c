@@ -87,7 +87,15 @@ static bool changes_any(const hl_composer *composer) {
   return hl_look_replaces_functions(composer) || hl_asks_for_functions(asked) ||
          asked[HL_ASK_SHADING].given || asked[HL_ASK_CLIP].given || asked[HL_ASK_ISO].given ||
          hl_count_cuts(asked) > 0 || asked[HL_ASK_CUT_SHADING].given || asked[HL_ASK_SCATTERING].given ||
-         asked[HL_ASK_CUT_CASTS_SHADOW].given;
+         asked[HL_ASK_CUT_CASTS_SHADOW].given || asked[HL_ASK_DENSITY].given;
+}
+
+/* Applies "density": matter absorbs and sends this number of times as much light on the same path. Derived:
+ * opacity o per distance u is the extinction -ln(1 - o) / u. Labels keep their own opacities. */
+static void change_density(const hl_composer *composer, hl_scene_volume *volume) {
+  const hl_asked *density = &composer->asked[HL_ASK_DENSITY];
+  if (density->given && volume->label_count == 0)
+    volume->transfer_function.unit_distance /= density->number[0];
 }
 
 /* Allocates the arrays for everything that may change. The array of cuts has room for the cuts that are there
@@ -133,6 +141,8 @@ hl_status hl_compose_volumes(const hl_composer *composer, hl_scene_description *
   }
   for (size_t i = 0; i < description->volume_count && status == HL_OK; i++)
     status = change_volume(composer, description, changed, i);
+  for (size_t i = 0; i < description->volume_count && status == HL_OK; i++)
+    change_density(composer, &changed->volumes[i]);
   for (size_t i = 0; i < description->volume_count && status == HL_OK && masked; i++)
     hl_compose_rest(&changed->volumes[i]);
   return status;

@@ -173,6 +173,7 @@ CASES = {
     "threshold": ["--threshold 80"],
     "smooth": [".slope.nrrd --smooth 1.5"],
     "iso": ["--iso 100", "--iso 60:skyblue:0.5 --iso 150 --tf look.json"],
+    "density": ["--density 0.5"],
     "slice": ["--slice z=0.5", "--slice x=0.3 --labels map.nrrd"],
     "clip": ["--clip x=0.2:0.7"],
     "cut-plane": ["--cut-plane 0.5,0.5,0.5:1,0,0", "--labels map.nrrd --cut-plane 0.5,0.5,0.5:1,0,0"],

@@ -304,6 +304,15 @@ const cli_option render_options[RENDER_OPTION_COUNT] = {
              "the surface on which the volume has this value; it\nreplaces the transfer function, or stands "
              "beside it\nwith --tf or --look; give it again for more surfaces\n(--iso 80:skyblue:0.3)",
          .repeatable = true},
+    [RENDER_DENSITY] = {.name = "density",
+                        .kind = OPTION_NUMBERS,
+                        .argument = "FACTOR",
+                        .help = "all matter is so many times as dense: 3 makes smoke and\nglass thicker, 0.3 "
+                                "thinner (default 1)",
+                        .count = 1,
+                        .low = 0,
+                        .above = true,
+                        .high = 1e9},
     [RENDER_SLICE] = {.name = "slice",
                       .kind = OPTION_TEXT,
                       .argument = "AXIS=AT",
