@@ -453,6 +453,12 @@ static void tell_losses(const saving *s, const char *path) {
   else if (loses != NULL && s->grid.space != HL_SPACE_UNKNOWN)
     hl_log(context, HL_LOG_WARNING, "%s: %s files do not tell that their world is %s: remember it", path,
            s->writer->ending, hl_space_name(s->grid.space));
+  if (s->writer->claims != NULL && s->grid.space == HL_SPACE_UNKNOWN)
+    hl_log(
+        context, HL_LOG_WARNING,
+        "%s: %s files state that x, y and z point to the body's right, front and head (%s), and the source "
+        "tells no directions of a body: check left and right, or write .nrrd",
+        path, s->writer->ending, s->writer->claims);
   if (s->unit_asked && s->writer->units == NULL)
     hl_log(context, HL_LOG_WARNING, "%s: %s files do not tell a unit of lengths: .nrrd and .nii do", path,
            s->writer->ending);

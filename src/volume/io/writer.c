@@ -334,16 +334,17 @@ static hl_status make_raw(const char *path, const hl_volume_description *grid, h
 
 static const hl_writer writers[] = {
     {"NRRD", ".nrrd", HL_PACKING_GZIP_VOXELS, PLAIN_TYPES, make_nrrd, NULL,
-     "metre|millimetre|micrometre|angstrom"},
-    {"NIfTI", ".nii", HL_PACKING_NONE, PLAIN_TYPES, make_nifti, NULL, "micrometre|millimetre|metre"},
-    {"NIfTI", ".nii.gz", HL_PACKING_GZIP_ALL, PLAIN_TYPES, make_nifti, NULL, "micrometre|millimetre|metre"},
-    {"MetaImage", ".mha", HL_PACKING_ZLIB_VOXELS, PLAIN_TYPES, make_metaimage, NULL, NULL},
-    {"VTK .vti", ".vti", HL_PACKING_NONE, PLAIN_TYPES, make_vti, "space", NULL},
-    {"MRC", ".mrc", HL_PACKING_NONE, MRC_TYPES, make_mrc, "space", "angstrom"},
-    {"MRC", ".mrc.gz", HL_PACKING_GZIP_ALL, MRC_TYPES, make_mrc, "space", "angstrom"},
-    {"NumPy .npy", ".npy", HL_PACKING_NONE, ALL_TYPES, make_npy, "place", NULL},
-    {"bare voxels", ".raw", HL_PACKING_NONE, ALL_TYPES, make_raw, "place", NULL},
-    {"bare voxels", ".raw.gz", HL_PACKING_GZIP_ALL, ALL_TYPES, make_raw, "place", NULL},
+     "metre|millimetre|micrometre|angstrom", NULL},
+    {"NIfTI", ".nii", HL_PACKING_NONE, PLAIN_TYPES, make_nifti, NULL, "micrometre|millimetre|metre", "RAS"},
+    {"NIfTI", ".nii.gz", HL_PACKING_GZIP_ALL, PLAIN_TYPES, make_nifti, NULL, "micrometre|millimetre|metre",
+     "RAS"},
+    {"MetaImage", ".mha", HL_PACKING_ZLIB_VOXELS, PLAIN_TYPES, make_metaimage, NULL, NULL, NULL},
+    {"VTK .vti", ".vti", HL_PACKING_NONE, PLAIN_TYPES, make_vti, "space", NULL, NULL},
+    {"MRC", ".mrc", HL_PACKING_NONE, MRC_TYPES, make_mrc, "space", "angstrom", NULL},
+    {"MRC", ".mrc.gz", HL_PACKING_GZIP_ALL, MRC_TYPES, make_mrc, "space", "angstrom", NULL},
+    {"NumPy .npy", ".npy", HL_PACKING_NONE, ALL_TYPES, make_npy, "place", NULL, NULL},
+    {"bare voxels", ".raw", HL_PACKING_NONE, ALL_TYPES, make_raw, "place", NULL, NULL},
+    {"bare voxels", ".raw.gz", HL_PACKING_GZIP_ALL, ALL_TYPES, make_raw, "place", NULL, NULL},
 };
 
 const hl_writer *hl_writer_for(const char *path) {

@@ -34,11 +34,13 @@ typedef struct hl_writer {
    * dimensions, type, origin, axes, space. */
   hl_status (*make_header)(const char *path, const hl_volume_description *grid, hl_written_header *header,
                            hl_error *error);
-  const char *loses; /* the name of the property of the grid's place that the format cannot state, such as
-                      * "the space"; null if there is none */
-  const char *units; /* units of length that the format can state, separated by '|'. Lengths in other units
-                      * are converted to the first of them. Null if the format states no units; then lengths
-                      * are written as they are */
+  const char *loses;  /* the name of the property of the grid's place that the format cannot state, such as
+                       * "the space"; null if there is none */
+  const char *units;  /* units of length that the format can state, separated by '|'. Lengths in other units
+                       * are converted to the first of them. Null if the format states no units; then lengths
+                       * are written as they are */
+  const char *claims; /* the anatomical space that every file of the format states, as "RAS", also if the grid
+                       * has none; null if the format can leave it open */
 } hl_writer;
 
 /* The unit in which a writer writes lengths that are given in `unit`. *factor: the number by which the

@@ -14,3 +14,6 @@ halflight convert a.nii b.nrrd --unit metre --quiet
 told b.nrrd
 for unit in um parsec; do halflight convert a.nii b.nrrd --unit $unit --quiet 2>&1 || echo $?; done
 halflight convert ball_8x8x8_uint8.raw b.nrrd --unit furlong --quiet 2>&1 || echo $?
+# NIfTI always states directions of a body: where the source has none, a line says so.
+halflight convert ball_8x8x8_uint8.raw a.nii 2>&1 | grep -c 'tells no directions'
+halflight convert a.nii b.nii.gz 2>&1 | grep -c 'tells no directions' || true
