@@ -144,12 +144,34 @@ static void heads_do_not_hang(void **state) {
   hl_context_destroy(context);
 }
 
+/* A field that the grid cuts off at an end of x is seen from the other end. */
+static void fields_are_seen_from_the_side_that_is_whole(void **state) {
+  (void)state;
+  static float values[N * N * N];
+  hl_context *context = make_context();
+  for (int end = 0; end < 2; end++) {
+    for (int v = 0; v < N * N * N; v++) {
+      const double x = v % N - (end ? N - 1 : 0), y = v / N % N - 20, z = v / N / N - 20;
+      values[v] = (float)exp(-(x * x / 200 + (y * y + z * z) / 60));
+    }
+    hl_volume *volume = make_volume(context, N, values);
+    vec3 up;
+    const hl_camera camera = camera_of(context, volume, &up);
+    assert_true((camera.position[0] < camera.target[0] - 10) == (end == 1));
+    assert_true((camera.position[0] > camera.target[0] + 10) == (end == 0));
+    hl_volume_release(volume);
+  }
+  assert_int_equal(hl_context_memory_held(context), 0);
+  hl_context_destroy(context);
+}
+
 int main(void) {
   const struct CMUnitTest tests[] = {
       cmocka_unit_test(things_stand_upright),
       cmocka_unit_test(heads_do_not_hang),
       cmocka_unit_test(bodies_that_are_cut_off_are_seen_from_lower),
       cmocka_unit_test(fields_are_seen_from_their_wide_side),
+      cmocka_unit_test(fields_are_seen_from_the_side_that_is_whole),
   };
   return cmocka_run_group_tests(tests, NULL, NULL);
 }
