@@ -400,6 +400,25 @@ def odd_files(viewer):
     check(request(viewer, "open", file=".")[0] in (200, 400) and request(viewer, "open", file="..")[0] == 403, "the folder itself, at most")
 
 
+def sessions(viewer):
+    """A page gets a session below the viewer's folder, and no other file."""
+    session = json.dumps({"halflight_session": 1, "scene": {"camera": {}}}).encode()
+    write("inner/kept.json", session)
+    write("other.json", b'{"halflight_session": "1", "halflight": 1}')
+    write("broken.json", session[:-1])
+    write("deep.json", b"[" * 100000)
+    write("../outside/kept.json", session)
+    os.symlink("../outside/kept.json", "linked.json")
+    os.symlink("inner/kept.json", "within.json")
+    os.mkfifo("pipe-session.json")
+    for name, status in (("inner/kept.json", 200), ("within.json", 200), ("other.json", 204), ("broken.json", 204), ("deep.json", 204), ("linked.json", 204),
+                         ("../outside/kept.json", 204), (os.path.abspath("../outside/kept.json"), 204), ("pipe-session.json", 204), ("inner", 204), ("none.json", 204)):
+        answer = request(viewer, "session", file=name)
+        check(answer[0] == status, f"{name}: {answer}")
+        if status == 200:
+            check(json.loads(answer[1]) == json.loads(session), f"{name}: {answer}")
+
+
 def data_folder(viewer, outside):
     """Scenes of pages do not reach the data folder, by which names of the command line begin."""
     for name in ("data:secret", "data:../outside/secret"):
@@ -430,6 +449,7 @@ with tempfile.TemporaryDirectory() as folder:
         pages_scenes(viewer, outside)
         kinds_of_vtk_files(viewer)
         odd_files(viewer)
+        sessions(viewer)
         data_folder(viewer, outside)
         left = [name for name in os.listdir(os.environ["TMPDIR"]) if name.startswith("halflight-view")]
         check(left == [], f"nothing is left of uploads: {left}")
