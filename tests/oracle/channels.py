@@ -240,9 +240,10 @@ if frames:
 
 # ---- what is refused ----
 
+numbers = "give a number from 0 on, several as 0,2, or all: halflight info lists the channels' names"
 for words, line in {("--channel", "1,9"): "three.ome.tif: there is no channel 9: choose 0 to 2",
-                    ("--channel", "0,x"): "--channel: '0,x': give a number from 0 on, several as 0,2, or all",
-                    ("--channel", "-1"): "--channel: '-1': give a number from 0 on, several as 0,2, or all",
+                    ("--channel", "0,x"): f"--channel: '0,x': {numbers}",
+                    ("--channel", "-1"): f"--channel: '-1': {numbers}",
                     ("--channel", "1,1"): "--channel: '1,1': channel 1 is there twice"}.items():
     code, _, complaint = run("render", "three.ome.tif", *words, "-o", "none.png")
     check(f"refused: {' '.join(words)}", code != 0 and complaint.strip().endswith(line) and not (root / "none.png").exists(), complaint)
