@@ -402,8 +402,8 @@ static void use_voxels(hl_context *context, hl_volume *volume, hl_renderer *cons
   if (hl_scene_for_volume(context, volume, "lent", &bare, &error) == HL_OK) hl_scene_release(bare);
 }
 
-/* Scenes of the volume: as it is seen bare; its isosurfaces and splatted; a maximum projection of hard
- * shadows; a label map, where its values are whole and few. */
+/* Scenes of the volume: a look of its values; its isosurfaces and splatted; hard shadows; a label map, where
+ * its values are whole and few. */
 static void make_scenes(hl_context *context, hl_volume *volume, hl_scene *scenes[4]) {
   hl_error error = {0};
   hl_volume_info info = {.struct_size = sizeof info};
@@ -411,7 +411,8 @@ static void make_scenes(hl_context *context, hl_volume *volume, hl_scene *scenes
   hl_isosurface surface;
   hl_label *labels = NULL;
   size_t count = 0;
-  if (hl_scene_for_volume(context, volume, NULL, &bare, &error) != HL_OK) fail_msg("%s", error.message);
+  if (hl_scene_for_volume_look(context, volume, NULL, "surface", &bare, &error) != HL_OK)
+    fail_msg("%s", error.message);
   hl_scene_description description = *hl_scene_describe(bare);
   hl_scene_volume one = description.volumes[0];
   description.width = 24, description.height = 20;
