@@ -414,7 +414,7 @@ def film_is_shown(browser):
         browser.wait(f"{away} > 0.1" if is_turned else f"{away} < 1e-6", timeout=60)
         rest(browser)
     while browser.run(work) != first:
-        check(browser.run("halflight.store.canUndo"), "undo leads back to the first state")
+        check(browser.run("halflight.store.canUndo"), f"undo leads back to the first state, {first}: {browser.run(work)}")
         undo(browser)
     open_section(browser, "Session")
     browser.wait("document.querySelector('.timeline').hidden")
