@@ -27,12 +27,13 @@ LANES_INLINE lanes peak_of_three(lanes p, lanes a, lanes b) {
   return lanes_clamp(a + lanes_keep(peaks, rise), 0, CLASSIFIER_ENTRIES);
 }
 
-/* The part of the way through a slab that lies behind the walls of a mesh of cells. The depth behind the wall
- * is taken to change linearly between the slab's ends. */
-static __attribute__((noinline)) covered_span within_walls(const mask_lattice *walls, const block_geometry *g,
-                                                           covered_span part) {
-  lanes first = depth_behind_walls(walls, add_scaled3(g->position, g->step_sheet, lanes_set(-0.5f))),
-        last = depth_behind_walls(walls, add_scaled3(g->position, g->step_sheet, lanes_set(0.5f)));
+/* The part of the way through a slab, at the pixels (u, v) of a block, that lies behind the walls of a mesh
+ * of cells. The depth behind the wall is taken to change linearly between the slab's ends. */
+static __attribute__((noinline)) covered_span within_walls(const shade_job *job, const mask_lattice *walls,
+                                                           lanes u, lanes v, covered_span part) {
+  const block_geometry g = geometry_of_block(job, u, v);
+  lanes first = depth_behind_walls(walls, add_scaled3(g.position, g.step_sheet, lanes_set(-0.5f))),
+        last = depth_behind_walls(walls, add_scaled3(g.position, g.step_sheet, lanes_set(0.5f)));
   lanes_int enters = (first < 0.0f) & (last >= 0.0f), leaves = (first >= 0.0f) & (last < 0.0f),
             without = (first < 0.0f) & (last < 0.0f);
   lanes wall = first / lanes_select(enters | leaves, first - last, lanes_set(1.0f));
@@ -41,13 +42,12 @@ static __attribute__((noinline)) covered_span within_walls(const mask_lattice *w
   return (covered_span){begin, lanes_select(without, lanes_set(0), lanes_max(end - begin, lanes_set(0)))};
 }
 
-LANES_INLINE uint32_t maximum_block(const shade_job *job, const shade_patch *patch, int block,
-                                    const block_geometry *geometry, float *values) {
+LANES_INLINE uint32_t maximum_block(const shade_job *job, const shade_patch *patch, int block, lanes u,
+                                    lanes v, lanes path, float *values) {
   const shade_volume *volume = patch->volume;
   const mask_lattice *walls = &volume->classifier->mask;
   block_way way = way_of_block(job, patch, block);
-  lanes path = geometry->path;
-  if (walls->factors != NULL) way.part = within_walls(walls, geometry, way.part);
+  if (walls->factors != NULL) way.part = within_walls(job, walls, u, v, way.part);
   table_coordinate a = coordinate_of_density(volume->classifier, way.first),
                    b = coordinate_of_density(volume->classifier, way.last);
   if (patch->enter != NULL || walls->factors != NULL) cut_way(way.part, &a, &b);
@@ -69,14 +69,14 @@ static uint32_t maximum_tile(const shade_job *job, const tile_slab *tile, float 
   for (uint32_t left = tile->blocks; left != 0; left &= left - 1) {
     int block = __builtin_ctz(left);
     lanes u = block_u(tile->x * TILE + block % 4 * BLOCK), v = block_v(tile->y * TILE + block / 4 * BLOCK);
-    const block_geometry geometry = geometry_of_block(job, u, v);
+    lanes path = geometry_of_block(job, u, v).path;
     for (int i = 0; i < tile->patch_count; i++) {
       const shade_patch *patch = &tile->patches[i];
       if ((patch->blocks >> block & 1) == 0 || !patch->volume->visible ||
           lanes_bits(visible_in_patch(patch, block)) == 0)
         continue;
       float *of_volume = values + (size_t)patch->volume->rank * MAXIMUM_ROWS * TILE_PIXELS;
-      *samples += (uint64_t)__builtin_popcount(maximum_block(job, patch, block, &geometry, of_volume));
+      *samples += (uint64_t)__builtin_popcount(maximum_block(job, patch, block, u, v, path, of_volume));
     }
   }
   return tile->blocks;
