@@ -43,8 +43,7 @@ static const struct {
      "opacity-curve alpha-curve colour-function color-function transfer-function transferfunction alpha-map "
      "transfer ctf otf presets opacity-function"},
     {"iso VALUE:COLOR:OPACITY for a surface, --show LABEL:OPACITY for a label, --density FACTOR for all "
-     "matter, or --tf FILE for "
-     "values",
+     "matter, or --tf FILE for values",
      "opacity transparency translucency"},
     {"colormap",
      "cmap color-map colourmap lut palette colors colours color colour color-table lookup-table colorscale"},

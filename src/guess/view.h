@@ -8,9 +8,8 @@
 #include "scene/scene.h"
 
 /* Turns the view to the widest of the three-quarter views (azimuths 30 and 60 from each of the four axes), so
- * that a turn needs little more room. Of equally wide views, the one is taken that sees the least of the
- * faces in which the first volume's grid cuts matter off. If matter is flat, the elevation becomes higher.
- * outline: the scene's
+ * that a turn needs little more room. A view counts as less wide where it sees faces in which the first
+ * volume's grid cuts matter off. If matter is flat, the elevation becomes higher. outline: the scene's
  * outline; an empty outline (zeros) is found here. The caller releases the outline in any case. Fails only
  * for lack of memory. */
 hl_status hl_view_widen(const hl_scene_description *description, hl_outline *outline, hl_view *view,
