@@ -96,6 +96,8 @@ static hl_status create(hl_context *context, hl_pool *pool, const hl_scene_descr
     hl_mesh_retain(made->meshes[m].mesh);
     for (int k = 0; k < PRIMITIVE_KINDS; k++) hl_primitive_kinds[k]->place(pool, made, &made->meshes[m]);
   }
+  /* A cancelled pool leaves corners unwritten, and the clusters follow corners to vertices. */
+  if (status == HL_OK) status = hl_pool_check(pool, "rendering", error);
   if (status == HL_OK) status = hl_clusters_create(context, pool, made, error);
   if (status == HL_OK) status = hl_surface_seams_create(context, made, error);
   if (status == HL_OK) status = hl_pool_check(pool, "rendering", error);

@@ -17,14 +17,16 @@ void hl_triangle_lay_out(surfaces *made, hl_layout *layout) {
 /* Adds a triangle's cross product to the normals of its corners. The length of the cross product is twice the
  * triangle's area, so large faces count more. */
 static void add_face_normals(surfaces *made, const surface_mesh *mesh) {
-  for (uint32_t t = mesh->primitives[PRIMITIVE_triangle].first;
-       t < mesh->primitives[PRIMITIVE_triangle].first + mesh->primitives[PRIMITIVE_triangle].count; t++) {
-    const uint32_t *corner = made->triangles[t];
-    vec3 a = hl_surface_vector(made->positions[corner[0]]);
-    vec3 cross = vec3_cross(vec3_subtract(hl_surface_vector(made->positions[corner[1]]), a),
-                            vec3_subtract(hl_surface_vector(made->positions[corner[2]]), a));
+  const hl_mesh_description *d = &mesh->mesh->description;
+  float(*const positions)[3] = made->positions + mesh->first_vertex;
+  float(*const normals)[3] = made->normals + mesh->first_vertex;
+  for (size_t t = 0; t < d->triangle_count; t++) {
+    const uint32_t *corner = d->triangles[t];
+    vec3 a = hl_surface_vector(positions[corner[0]]);
+    vec3 cross = vec3_cross(vec3_subtract(hl_surface_vector(positions[corner[1]]), a),
+                            vec3_subtract(hl_surface_vector(positions[corner[2]]), a));
     for (int i = 0; i < 3; i++)
-      vec3_store(made->normals[corner[i]], vec3_add(hl_surface_vector(made->normals[corner[i]]), cross));
+      vec3_store(normals[corner[i]], vec3_add(hl_surface_vector(normals[corner[i]]), cross));
   }
 }
 

@@ -24,7 +24,7 @@ static int open_folder(void **state) {
   make_folder(folder);
   hl_context *context = NULL;
   assert_int_equal(hl_context_create(NULL, &context, NULL), HL_OK);
-  assert_int_equal(small_slide_write(context, folder, NULL), HL_OK);
+  assert_int_equal(small_files_write(context, folder, NULL), HL_OK);
   hl_context_destroy(context);
   return 0;
 }

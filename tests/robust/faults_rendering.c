@@ -19,7 +19,7 @@ static int open_folder(void **state) {
   make_folder(folder);
   hl_context *context = NULL;
   assert_int_equal(hl_context_create(NULL, &context, NULL), HL_OK);
-  assert_int_equal(small_slide_write(context, folder, NULL), HL_OK);
+  assert_int_equal(small_files_write(context, folder, NULL), HL_OK);
   hl_context_destroy(context);
   return 0;
 }
@@ -80,12 +80,15 @@ static hl_status render_again(faulty *f, void *data, hl_error *error) {
 }
 
 static void open_render(faulty *f, size_t scene, render_work *work) {
-  *work = (render_work){.layers = scene % 2 == 1};
-  assert_int_equal(small_scene_make(f->context, scene, folder, &work->scene, NULL), HL_OK);
+  *work = (render_work){0};
+  hl_error error = {0};
+  hl_status status = small_scene_make(f->context, scene, folder, &work->scene, &error);
+  if (status != HL_OK) fail_msg("%s", error.message);
   const hl_scene_description *d = hl_scene_describe(work->scene);
+  work->layers = scene % 2 == 1 && d->render.compositing == HL_COMPOSITING_LIGHT; /* projections have none */
   work->pixels = calloc(small_scene_floats(work->scene) * 8, sizeof(float));
   assert_int_equal(hl_image_create(f->context, d->width, d->height, &work->expected, NULL), HL_OK);
-  assert_int_equal(render(f, work, NULL), HL_OK);
+  if (render(f, work, &error) != HL_OK) fail_msg("%s", error.message);
   memcpy(hl_image_pixels(work->expected), work->pixels, small_scene_floats(work->scene) * sizeof(float));
 }
 
@@ -104,7 +107,7 @@ static void test_rendering(void **state) {
     render_work work;
     open_render(&f, n, &work);
     assert_true(faulty_fail_each(&f, render, NULL, &work) >= 20);
-    assert_true(faulty_stop_each(&f, render, NULL, &work) >= 2);
+    assert_true(faulty_stop_each(&f, render, NULL, &work) >= 40);
     close_render(&work);
   }
   faulty_close(&f);
@@ -124,7 +127,7 @@ static hl_status render_after_another(faulty *f, void *data, hl_error *error) {
 
 static void test_the_renderer_goes_on(void **state) {
   (void)state;
-  static const size_t scenes[] = {2, 0, 3, 6};
+  static const size_t scenes[] = {2, 0, 3, 6, 10};
   faulty f;
   faulty_open(&f);
   for (size_t n = 0; n < sizeof scenes / sizeof scenes[0]; n++) {

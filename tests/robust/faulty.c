@@ -8,6 +8,23 @@
 
 #include <cmocka.h>
 
+#include "core/pool.h"
+
+/* The byte that fills new memory. Whoever reads it as an index reads far beyond every array. */
+enum { UNWRITTEN = 0x76 };
+
+/* The linker calls this function in place of hl_pool_run(). The renderer asks every few milliseconds whether
+ * to stop, which is seldom in a frame of a few pixels. So here it asks before each run. */
+void __wrap_hl_pool_run(hl_pool *pool, size_t count, void (*function)(void *data, size_t index, int worker),
+                        void *data);
+void __real_hl_pool_run(hl_pool *pool, size_t count, void (*function)(void *data, size_t index, int worker),
+                        void *data);
+void __wrap_hl_pool_run(hl_pool *pool, size_t count, void (*function)(void *data, size_t index, int worker),
+                        void *data) {
+  hl_pool_cancelled(pool);
+  __real_hl_pool_run(pool, count, function, data);
+}
+
 static bool strikes(faulty *f, atomic_long *left, bool for_good) {
   long before = atomic_load(left);
   if (before < 0) return false;
@@ -21,7 +38,10 @@ static bool strikes(faulty *f, atomic_long *left, bool for_good) {
 static void *allocate(void *user_data, size_t size, size_t alignment) {
   faulty *f = user_data;
   if (strikes(f, &f->allocations_left, atomic_load(&f->for_good))) return NULL;
-  return aligned_alloc(alignment, (size + alignment - 1) / alignment * alignment);
+  const size_t bytes = (size + alignment - 1) / alignment * alignment;
+  void *memory = aligned_alloc(alignment, bytes);
+  if (memory != NULL && atomic_load(&f->fills)) memset(memory, UNWRITTEN, bytes);
+  return memory;
 }
 
 static void release(void *user_data, void *memory) {
@@ -120,8 +140,12 @@ long faulty_fail_each(faulty *f, faulty_work *work, faulty_work *after, void *da
 }
 
 long faulty_stop_each(faulty *f, faulty_work *work, faulty_work *after, void *data) {
-  for (long n = 0;; n += 1 + n / 4) {
+  long n = 0;
+  atomic_store(&f->fills, true);
+  for (bool stopped = true; stopped; n += n < EACH ? 1 : STEP) {
     atomic_store(&f->questions_left, n);
-    if (!run(f, work, after, data, HL_ERROR_CANCELLED, false)) return n;
+    stopped = run(f, work, after, data, HL_ERROR_CANCELLED, false);
   }
+  atomic_store(&f->fills, false);
+  return n;
 }

@@ -13,6 +13,7 @@ typedef struct faulty {
   atomic_long allocations_left; /* before one fails; negative: none does */
   atomic_bool for_good;         /* all later ones fail too */
   atomic_long questions_left; /* before one is answered with "stop", which it is only once; negative: never */
+  atomic_bool fills;          /* new memory is filled with bytes that are no right index or float */
   atomic_bool struck;         /* something failed, or was stopped */
   bool may_recover;    /* work may do without one failing allocation; it then checks its result itself */
   bool may_do_without; /* the same where all later ones fail, too */
@@ -35,7 +36,8 @@ typedef hl_status faulty_work(faulty *f, void *data, hl_error *error);
  * Returns how many there are, about. after: called after each failure, with memory; may be null. */
 long faulty_fail_each(faulty *f, faulty_work *work, faulty_work *after, void *data);
 
-/* The same with the questions whether to stop, by growing steps. */
+/* The same with the questions whether to stop. New memory is filled, so that work that reads what the stop
+ * has left unwritten fails. */
 long faulty_stop_each(faulty *f, faulty_work *work, faulty_work *after, void *data);
 
 #endif

@@ -31,7 +31,7 @@ enum { KEEPS_RELEASED = 0, FRAMES = 200 };
 #include <time.h>
 #include <unistd.h>
 
-enum { SCENES = 6 }; /* the others need a file */
+enum { SCENES = SMALL_SCENES_WITHOUT_FILES };
 
 typedef struct soak {
   long frames;    /* asked for; 0: no end */

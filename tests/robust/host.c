@@ -274,7 +274,7 @@ static void test_umask(void **state) {
   for (size_t n = 0; n < sizeof masks / sizeof *masks; n++) {
     struct stat about;
     mode_t before = umask(masks[n]);
-    assert_int_equal(small_slide_write(context, folder, NULL), HL_OK);
+    assert_int_equal(small_files_write(context, folder, NULL), HL_OK);
     assert_int_equal(umask(before), masks[n]);
     assert_int_equal(stat(path, &about), 0);
     assert_int_equal(about.st_mode & 0777, 0666 & ~masks[n]);
@@ -520,7 +520,7 @@ static int open_folder(void **state) {
   (void)state;
   if (mkdtemp(folder) == NULL) return -1;
   hl_context *context = make_context();
-  if (small_slide_write(context, folder, NULL) != HL_OK) return -1;
+  if (small_files_write(context, folder, NULL) != HL_OK) return -1;
   hl_context_destroy(context);
   make_numbers();
   expected = work();

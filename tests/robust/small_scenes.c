@@ -1,6 +1,7 @@
 /* tests/robust/small_scenes.c - see small_scenes.h. */
 #include "small_scenes.h"
 
+#include <stdbool.h>
 #include <stdio.h>
 #include <string.h>
 
@@ -43,6 +44,24 @@ const small_scene small_scenes[] = {
                     "\"radius\": 6}],"
                     " \"transform\": {\"translate\": [3, 0, 4], \"rotate\": {\"axis\": [1, 2, 3], "
                     "\"angle_deg\": 30}}}], \"render\": {\"threads\": 1, \"shadow_resolution\": 32}}"},
+    {"surfaces", HEAD SUN
+     ", \"meshes\": [{\"spheres\": [[0, 0, 6, 2], [3, 0, 6, 1.5]], \"opacity\": 0.6}, {\"floor\": true}], "
+     "\"cuts\": [{\"type\": \"plane\", \"point\": [1, 0, 0], \"normal\": [1, 0, 0.2]}], " BLOB
+     ", \"iso\": [{\"value\": 0.6, \"color\": [1, 0.7, 0]}, {\"value\": 0.3, \"opacity\": 0.4}]}], "
+     "\"render\": "
+     "{\"threads\": 1, \"shadow_resolution\": 32, \"sheet_spacing\": 1}}"},
+    {"sky", HEAD "\"sky\": {\"type\": \"gradient\", \"zenith\": [0.8, 0.9, 1], \"ground\": [0.3, 0.2, 0.2]}, "
+                 "\"lights\": [], \"meshes\": [{\"spheres\": [[0, 0, 6, 2]]}], \"volumes\": "
+                 "[{\"voxel_size\": 2, " BLOB_SHAPES
+                 "}], \"render\": {\"threads\": 1, \"shadow_resolution\": 8, \"sheet_spacing\": 4}}"},
+    {"glow", HEAD "\"lights\": [{\"type\": \"directional\", \"direction\": [0.5, 0.3, -1]}], \"volumes\": "
+                  "[{\"voxel_size\": 3, "
+                  "\"shapes\": [{\"type\": \"sphere\", \"radius\": 6}], \"shading\": \"none\", "
+                  "\"scattering\": {\"multiple\": "
+                  "true}, \"transfer_function\": {\"opacity\": 0.2}}], \"render\": {\"threads\": 1, "
+                  "\"shadow_resolution\": 8, "
+                  "\"sheet_spacing\": 4}}"},
+    {"maximum", HEAD BLOB "}], \"render\": {\"threads\": 2, \"compositing\": \"maximum\"}}"},
     {"slide", HEAD
      "\"lights\": [{\"type\": \"spot\", \"position\": [0, -40, 40], \"direction\": [0, 1, -1], \"radius\": 2,"
      " \"texture\": {\"file\": \"slide.png\", \"screen\": {\"center\": [0, -30, 30], \"right\": [5, 0, 0],"
@@ -56,6 +75,15 @@ const small_scene small_scenes[] = {
           "\"range\": [0, 1]}}],"
           " \"render\": {\"threads\": 1, \"shadow_resolution\": 32, \"slicing\": \"image-aligned\", "
           "\"kernel\": \"linear\", \"sheet_spacing\": 1}}"},
+    {"labels", HEAD SUN ", \"sky\": {\"type\": \"gradient\"}, \"volumes\": [{\"file\": \"labels.nrrd\", "
+                        "\"labels\": [{\"value\": 1, \"color\": "
+                        "[1, 0, 0]}, {\"value\": 2, \"opacity\": 0.4}]}], \"render\": {\"threads\": 1, "
+                        "\"shadow_resolution\": 32, \"sheet_spacing\": 1}}"},
+    {"mask",
+     HEAD SUN ", \"volumes\": [{\"voxel_size\": 1, " BLOB_SHAPES
+              ", \"mask\": {\"file\": \"labels.nrrd\", \"rest\": 0.3, \"labels\": [{\"value\": 1, "
+              "\"visible\": false}, {\"value\": 2, \"color\": [0, 1, 0]}]}}], \"render\": {\"threads\": 1, "
+              "\"shadow_resolution\": 32, \"sheet_spacing\": 1}}"},
     {NULL, NULL}};
 
 const size_t small_scene_count = sizeof small_scenes / sizeof small_scenes[0] - 1;
@@ -66,7 +94,24 @@ hl_status small_scene_make(hl_context *context, size_t index, const char *folder
   return hl_scene_from_json(context, json, strlen(json), folder, small_scenes[index].name, scene, error);
 }
 
-hl_status small_slide_write(hl_context *context, const char *folder, hl_error *error) {
+/* Writes a label map of 12 x 12 x 12 voxels: two boxes that touch. */
+static bool write_labels(const char *folder) {
+  enum { SIDE = 12 };
+  char path[256];
+  snprintf(path, sizeof path, "%s/labels.nrrd", folder);
+  FILE *file = fopen(path, "wb");
+  if (file == NULL) return false;
+  fputs("NRRD0004\ntype: uint8\ndimension: 3\nsizes: 12 12 12\nencoding: raw\n\n", file);
+  for (int k = 0; k < SIDE; k++)
+    for (int j = 0; j < SIDE; j++)
+      for (int i = 0; i < SIDE; i++) {
+        const bool inside = i > 1 && i < 10 && j > 1 && j < 10 && k > 1 && k < 10;
+        putc(!inside ? 0 : i < 6 ? 1 : 2, file);
+      }
+  return fclose(file) == 0;
+}
+
+static hl_status write_slide(hl_context *context, const char *folder, hl_error *error) {
   char path[256];
   hl_image *image = NULL;
   snprintf(path, sizeof path, "%s/slide.png", folder);
@@ -76,6 +121,10 @@ hl_status small_slide_write(hl_context *context, const char *folder, hl_error *e
   if (status == HL_OK) status = hl_image_write(context, image, path, NULL, error);
   hl_image_destroy(image);
   return status;
+}
+
+hl_status small_files_write(hl_context *context, const char *folder, hl_error *error) {
+  return write_labels(folder) ? write_slide(context, folder, error) : HL_ERROR_INPUT;
 }
 
 size_t small_scene_floats(const hl_scene *scene) {

@@ -12,12 +12,15 @@ typedef struct small_scene {
 extern const small_scene small_scenes[]; /* ends with a null name */
 extern const size_t small_scene_count;
 
-/* Reads a scene; folder holds the file "slide.png" that one of them projects (null: the current one). */
+/* The number of the first scenes, which name no files. */
+enum { SMALL_SCENES_WITHOUT_FILES = 10 };
+
+/* Reads a scene. folder: holds the files of small_files_write(); null stands for the current folder. */
 hl_status small_scene_make(hl_context *context, size_t index, const char *folder, hl_scene **scene,
                            hl_error *error);
 
-/* Writes slide.png. */
-hl_status small_slide_write(hl_context *context, const char *folder, hl_error *error);
+/* Writes the files that the last scenes name. */
+hl_status small_files_write(hl_context *context, const char *folder, hl_error *error);
 
 /* Floats of a scene's picture. */
 size_t small_scene_floats(const hl_scene *scene);

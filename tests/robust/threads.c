@@ -19,12 +19,7 @@
 
 #include <cmocka.h>
 
-enum {
-  THREADS = 4,
-  RENDER_THREADS = 3,
-  FLOATS = 24 * 20 * 4,
-  SCENES = 6
-}; /* the last two project images: see faults.c */
+enum { THREADS = 4, RENDER_THREADS = 3, FLOATS = 24 * 20 * 4, SCENES = SMALL_SCENES_WITHOUT_FILES };
 
 static float expected[SCENES][FLOATS];
 
