@@ -88,6 +88,13 @@ HL_API HL_WARN_UNUSED hl_status hl_scene_for_label_map(hl_context *context, cons
                                                        const hl_option *options, size_t option_count,
                                                        hl_scene **scene, hl_error *error);
 
+/* Shows the labels that a list names, and hides the others. show: the value of the option "show":
+ * NAME|NUMBER|all|rest[=COLOR|=own][:OPACITY], with commas between the items; "rest" stands for the labels
+ * that the list does not name. labels: [count]. HL_ERROR_ARGUMENT: an item cannot be read, or no label has
+ * its name; the message suggests a name or lists the labels. */
+HL_API HL_WARN_UNUSED hl_status hl_labels_show(hl_context *context, const char *show, hl_label *labels,
+                                               size_t count, hl_error *error);
+
 /* Finds the colour, linear RGB, of mesh or isosurface number `index` if it has no colour of its own. The
  * colours are ivory, blue, ochre, green, rose and violet, and then the same again. */
 HL_API void hl_surface_color(size_t index, double color[3]);

@@ -1,7 +1,6 @@
 /* cli/convert.c - implements `halflight convert IN OUT`, which writes a volume, or a box of it, in another
  * format, type or resolution, a volume's surface as a mesh, and pictures and meshes in another format. */
 #define _GNU_SOURCE
-#include <inttypes.h>
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -221,50 +220,6 @@ static int convert(cli_host *host, const cli_value *values, const char *in, cons
 
 /* ---- meshes ---- */
 
-/* Returns whether one of the labels has a name, or a number, of `length` characters, and makes these labels
- * visible. */
-static bool show_label(hl_label *labels, size_t count, const char *name, size_t length) {
-  bool found = false;
-  for (size_t n = 0; n < count; n++) {
-    char number[32];
-    snprintf(number, sizeof number, "%" PRId64, labels[n].value);
-    const bool named = labels[n].name != NULL && strlen(labels[n].name) == length &&
-                       strncmp(labels[n].name, name, length) == 0,
-               numbered = strlen(number) == length && strncmp(number, name, length) == 0,
-               all = length == 3 && strncmp(name, "all", 3) == 0;
-    if (named || numbered || all) labels[n].visible = 1, found = true;
-  }
-  return found;
-}
-
-/* Writes the names of the first labels, or their numbers. */
-static void list_labels(const hl_label *labels, size_t count, char *text, size_t size) {
-  size_t used = 0;
-  for (size_t n = 0; n < count && used + 60 < size; n++) {
-    const char *name = labels[n].name, *comma = n > 0 ? ", " : "";
-    used += (size_t)(name != NULL && name[0] != '\0'
-                         ? snprintf(text + used, size - used, "%s%.40s", comma, name)
-                         : snprintf(text + used, size - used, "%s%" PRId64, comma, labels[n].value));
-    if (n + 1 < count && used + 60 >= size)
-      snprintf(text + used, size - used, " and %zu more", count - n - 1);
-  }
-}
-
-/* Makes visible the labels that --show names, and no others. */
-static int show_labels(const char *list, hl_label *labels, size_t count) {
-  for (size_t n = 0; n < count; n++) labels[n].visible = 0;
-  for (const char *item = list;;) {
-    const size_t length = strcspn(item, ",");
-    if (!show_label(labels, count, item, length)) {
-      char known[400] = "none";
-      list_labels(labels, count, known, sizeof known);
-      return fail(EXIT_CODE_USAGE, "--show: '%.*s' is no label of IN: it has %s", (int)length, item, known);
-    }
-    if (item[length] == '\0') return EXIT_CODE_OK;
-    item += length + 1;
-  }
-}
-
 /* Makes the mesh of the surface of labels. */
 static int make_label_surface(cli_host *host, const cli_value *values, hl_volume *map, hl_mesh **mesh) {
   hl_label *labels = NULL;
@@ -273,13 +228,10 @@ static int make_label_surface(cli_host *host, const cli_value *values, hl_volume
   hl_status status = hl_labels_of_volume(host->context, map, values[CONVERT_LABEL_TABLE].text, &labels,
                                          &count, &error);
   if (status != HL_OK) return host_fail(host, PHASE_READ, status, &error);
-  int exit_code = show_labels(values[CONVERT_SHOW].text, labels, count);
-  if (exit_code == EXIT_CODE_OK) {
-    status = hl_mesh_of_labels(host->context, map, labels, count, mesh, &error);
-    if (status != HL_OK) exit_code = host_fail(host, PHASE_CHANGE, status, &error);
-  }
+  status = hl_labels_show(host->context, values[CONVERT_SHOW].text, labels, count, &error);
+  if (status == HL_OK) status = hl_mesh_of_labels(host->context, map, labels, count, mesh, &error);
   hl_labels_release(host->context, labels);
-  return exit_code;
+  return status == HL_OK ? EXIT_CODE_OK : host_fail(host, PHASE_CHANGE, status, &error);
 }
 
 /* Makes the mesh of the surface of the volume IN. */

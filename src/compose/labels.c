@@ -246,8 +246,7 @@ static hl_status add_map(const hl_composer *composer, hl_shown_list *show, hl_la
         "'%.300s' does not look like a label map, and --%s takes it as one: a label map over a scan is given "
         "by --labels FILE",
         path, asked[HL_ASK_SHOW].given ? "show" : "label-table");
-  /* Without a mask, the item "rest" stands for all labels that the list does not name. */
-  for (size_t s = 0; s < show->count; s++) show->labels[s].all |= show->labels[s].rest;
+  hl_let_rest_be_all(show);
   const hl_scene_volume *over = !itself && description->volume_count > 0 ? &description->volumes[0] : NULL;
   hl_status status = load_layers(composer, path, asked[HL_ASK_LABEL_TABLE].text, &reading, over, show,
                                  layers);

@@ -7,7 +7,9 @@
 #include <string.h>
 
 #include "core/context.h"
+#include "core/door.h"
 #include "core/error.h"
+#include "core/memory.h"
 #include "text/color.h"
 #include "text/edit_distance.h"
 #include "text/plain.h"
@@ -58,6 +60,10 @@ hl_status hl_read_shown(const hl_asked *value, hl_shown_list *list, hl_error *er
       item = comma != NULL ? comma + 1 : NULL;
     }
   return HL_OK;
+}
+
+void hl_let_rest_be_all(hl_shown_list *list) {
+  for (size_t s = 0; s < list->count; s++) list->labels[s].all |= list->labels[s].rest;
 }
 
 static bool is_whole(const hl_label *label, const hl_shown_label *shown) {
@@ -204,4 +210,28 @@ hl_status hl_check_shown(const hl_shown_list *list, const hl_label_layers *layer
                    list->labels[s].name, known[0] != '\0' ? known : "none");
   }
   return HL_OK;
+}
+
+hl_status hl_labels_show(hl_context *context, const char *show, hl_label *labels, size_t count,
+                         hl_error *error) {
+  HL_DOOR;
+  if (context == NULL || show == NULL || (labels == NULL && count > 0))
+    return hl_fail(error, HL_ERROR_ARGUMENT, "hl_labels_show: null context, show or labels");
+  const hl_asked asked = {.given = true, .text = show, .texts = {show}, .count = 1};
+  hl_shown_list *list = hl_allocate_zeroed(context, 1, sizeof *list);
+  hl_label_layers *layers = hl_allocate_zeroed(context, 1, sizeof *layers);
+  hl_status status = list != NULL && layers != NULL
+                         ? hl_read_shown(&asked, list, error)
+                         : hl_fail_memory(error, sizeof *list + sizeof *layers, "labels");
+  if (status == HL_OK) {
+    hl_let_rest_be_all(list);
+    hl_show_labels(list, labels, count);
+    layers->volumes[0].labels = labels;
+    layers->volumes[0].label_count = count;
+    layers->count = 1;
+    status = hl_check_shown(list, layers, error);
+  }
+  hl_release(context, layers);
+  hl_release(context, list);
+  return status;
 }

@@ -35,6 +35,9 @@ typedef struct hl_label_layers {
 
 hl_status hl_read_shown(const hl_asked *show, hl_shown_list *list, hl_error *error);
 
+/* Makes the item "rest" stand for all labels that the list does not name, as it does without a mask. */
+void hl_let_rest_be_all(hl_shown_list *list);
+
 /* Shows the labels that the list names. An empty list changes nothing. "all" shows every label that no table
  * hides. If an item names a label by its name or number, this item counts for the label, and not "all". The
  * order of the items has no effect. */
