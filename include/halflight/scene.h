@@ -541,6 +541,11 @@ HL_API HL_WARN_UNUSED hl_status hl_camera_frame_view(const hl_scene_description 
                                                      const hl_view *view, double zoom, hl_camera *camera,
                                                      hl_error *error);
 
+/* Frames everything anew, as hl_camera_frame_view() does at zoom 1. *camera keeps the direction of the
+ * description's camera. Fails as hl_view_of_camera() and hl_camera_frame_view() do. */
+HL_API HL_WARN_UNUSED hl_status hl_camera_reframe(const hl_scene_description *description, hl_camera *camera,
+                                                  hl_error *error);
+
 /* The default size of a floor (hl_scene_make_floor()). */
 #define HL_FLOOR_SIZE 3.0
 

@@ -139,12 +139,6 @@ static bool turn_view(const hl_asked *asked, hl_view *view) {
          view->roll_deg != before.roll_deg;
 }
 
-hl_status hl_frame_anew(hl_scene_description *description, hl_error *error) {
-  hl_view view;
-  hl_status status = hl_view_of_camera(description, &view);
-  return status == HL_OK ? hl_camera_frame_view(description, &view, 1, &description->camera, error) : status;
-}
-
 /* Places the camera. It frames the volumes before it is turned, so that all frames of a turn have the same
  * target and distance. */
 static hl_status place(const hl_composer *composer, bool framed, hl_scene_description *description) {
@@ -180,5 +174,5 @@ hl_status hl_compose_camera(const hl_composer *composer, bool seen, hl_scene_des
                 turns_to_cuts(composer, description);
   if (turned || framed) return place(composer, framed, description);
   bool taken_in = composer->bare && (composer->flags & HL_COMPOSE_MESHES) != 0;
-  return taken_in ? hl_frame_anew(description, composer->error) : HL_OK;
+  return taken_in ? hl_camera_reframe(description, &description->camera, composer->error) : HL_OK;
 }

@@ -125,10 +125,6 @@ hl_status hl_compose_sky(const hl_composer *composer, hl_scene_description *desc
  * volume frames the volumes anew. */
 hl_status hl_compose_camera(const hl_composer *composer, bool seen, hl_scene_description *description);
 
-/* Places the camera anew, without changing its direction, so that everything in the scene fits into the
- * picture. */
-hl_status hl_frame_anew(hl_scene_description *description, hl_error *error);
-
 /* ---- values.c ---- */
 
 /* Turns a bare label map back into a volume of values, if options ask for its values. *scene: a new scene of

@@ -114,7 +114,7 @@ static hl_status add_layers(const hl_composer *composer, const hl_label_layers *
   if (status == HL_OK && composer->bare) {
     description = *hl_scene_describe(*scene); /* in the new scene's description, transfer functions were made
                                                * from the labels; the camera is placed by these functions */
-    status = hl_frame_anew(&description, composer->error);
+    status = hl_camera_reframe(&description, &description.camera, composer->error);
     if (status == HL_OK) status = make(composer, &description, scene);
   }
   hl_release(composer->context, volumes);

@@ -257,6 +257,15 @@ hl_status hl_camera_frame_view(const hl_scene_description *description, const hl
   return status;
 }
 
+hl_status hl_camera_reframe(const hl_scene_description *description, hl_camera *camera, hl_error *error) {
+  HL_DOOR;
+  hl_view view;
+  hl_status status = description != NULL ? hl_view_of_camera(description, &view) : HL_ERROR_ARGUMENT;
+  if (status != HL_OK)
+    return hl_fail(error, status, "hl_camera_reframe: null description, or a camera without a direction");
+  return hl_camera_frame_view(description, &view, 1, camera, error);
+}
+
 /* The height of the outline along the view's up, divided by the smaller of its two widths. */
 static double flatness(const hl_outline *outline, const hl_view *view) {
   const vec3 up = vec3_of(view->up), front = vec3_of(view->front), side = vec3_cross(up, front);

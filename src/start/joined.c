@@ -7,12 +7,6 @@
 
 #include <halflight/compose.h>
 
-hl_status frame_anew(hl_scene_description *description, hl_error *error) {
-  hl_view view;
-  hl_status status = hl_view_of_camera(description, &view);
-  return status == HL_OK ? hl_camera_frame_view(description, &view, 1, &description->camera, error) : status;
-}
-
 /* Gives a grey blue to meshes that have the first standard colour, because volumes and their surfaces have
  * that colour. */
 static void set_apart(hl_scene_mesh *meshes, size_t count) {
@@ -40,7 +34,7 @@ static hl_status add_meshes(hl_context *context, const hl_scene_mesh *added, siz
   if (bare && description.volume_count > 0) set_apart(meshes + before, count);
   description.meshes = meshes;
   description.mesh_count = before + count;
-  hl_status status = bare ? frame_anew(&description, error) : HL_OK;
+  hl_status status = bare ? hl_camera_reframe(&description, &description.camera, error) : HL_OK;
   if (status == HL_OK) status = hl_scene_create(context, &description, &made, error);
   free(meshes);
   if (status != HL_OK) return status;
@@ -105,7 +99,7 @@ static hl_status join_volumes(hl_context *context, hl_scene *base, hl_scene *add
   joined.volumes = description.volumes;
   joined.volume_count = description.volume_count;
   joined.render.sheet_spacing = description.render.sheet_spacing;
-  hl_status status = frame_anew(&joined, error);
+  hl_status status = hl_camera_reframe(&joined, &joined.camera, error);
   if (status == HL_OK) status = hl_scene_create(context, &joined, scene, error);
   hl_scene_release(made);
   return status;

@@ -16,11 +16,6 @@ hl_status load_mesh(hl_context *context, const char *path, size_t index, hl_scen
 hl_status join_meshes(hl_context *context, const hl_scene_mesh *added, size_t count, bool bare,
                       hl_scene **scene, hl_error *error);
 
-/* Moves the camera along its viewing direction, and changes its zoom, so that the picture shows everything in
- * the scene.
- */
-hl_status frame_anew(hl_scene_description *description, hl_error *error);
-
 /* Makes one scene of two: the volumes and meshes of the first scene, and after them the volumes and meshes of
  * the second. Light, background and settings are taken from the first scene. Its camera keeps its direction,
  * and is moved so that it frames everything. */
