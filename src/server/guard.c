@@ -24,9 +24,10 @@ bool host_is_local(const char *host) {
   return false;
 }
 
-bool origin_is_own(const char *origin, const char *host) {
+bool origin_is_own(const char *origin, const char *site, const char *host) {
   static const char scheme[] = "http://";
   if (origin == NULL) return true;
+  if (strcmp(origin, "null") == 0) return site != NULL && strcmp(site, "same-origin") == 0;
   return strncmp(origin, scheme, sizeof scheme - 1) == 0 && strcasecmp(origin + sizeof scheme - 1, host) == 0;
 }
 

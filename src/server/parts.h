@@ -364,8 +364,10 @@ unsigned char *encode_jpeg(const uint8_t *rgba, int width, int height, int quali
  * accepted, because a tunnel may end at another port. The check refuses pages with other host names that
  * resolve to this machine. */
 bool host_is_local(const char *host);
-/* Returns whether an Origin header names the server's own page, or is absent (null). */
-bool origin_is_own(const char *origin, const char *host);
+/* Returns whether an Origin header names the server's own page, or is absent (null). site: the header
+ * Sec-Fetch-Site, which browsers alone can set; null if it is absent. Firefox tells no origin when the page
+ * leaves, since the page hides its address from other servers; then `site` tells. */
+bool origin_is_own(const char *origin, const char *site, const char *host);
 /* The rest of a path after "/TOKEN/"; null if the token is wrong. The check takes the same time for all wrong
  * tokens. */
 const char *path_after_token(const char *path, const char *token);

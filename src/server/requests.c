@@ -144,7 +144,7 @@ static unsigned check(const server *s, struct MHD_Connection *connection, const 
   *line = "this address is another machine's: open the viewer's own URL\n";
   if (!host_is_local(host)) return 403;
   *line = "requests of other pages are refused\n";
-  if (!origin_is_own(header(connection, "Origin"), host)) return 403;
+  if (!origin_is_own(header(connection, "Origin"), header(connection, "Sec-Fetch-Site"), host)) return 403;
   *line = "the URL's token is wrong: open the URL that the viewer has printed\n";
   r->path = path_after_token(url, s->token);
   if (r->path == NULL) return 403;

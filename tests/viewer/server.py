@@ -186,6 +186,9 @@ def refusals(viewer, scene):
                              (f"http://127.0.0.1:{viewer.port + 1}", 403)):
         answer = request(viewer, "POST", "scene", text, Host=local, Origin=origin)[0]
         check(answer == expected, f"Origin {origin}: {expected}, not {answer}")
+    for site, expected in (("same-origin", 200), ("same-site", 403), ("cross-site", 403), ("none", 403)):
+        answer = request(viewer, "POST", "scene", text, Host=local, Origin="null", Sec_Fetch_Site=site)[0]
+        check(answer == expected, f"no origin told, {site}: {expected}, not {answer}")
     for path in ("/", "/start.json", f"/{good[:-1]}x/", f"/{good}", f"/{good}x/", f"/{good[:-1]}/", f"//{good}/", "/" + 200 * "a"):
         check(request(viewer, "GET", path)[0] == 403, f"the path {path} is refused")
     check(request(viewer, "GET", "../secret")[0] in (403, 404) and request(viewer, "GET", "nothing.js")[0] == 404, "unknown files")
