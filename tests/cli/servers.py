@@ -123,6 +123,11 @@ def write_sharded(folder, index_location="end"):
 
 # ---- the server ----
 
+class Listener(http.server.ThreadingHTTPServer):
+    daemon_threads = True
+    request_queue_size = 128  # of connections that wait. Of five, the usual number, a client that opens sixteen waits a second to be let in
+
+
 class Server:
     """Serves a folder. faults: by path, a list of faults, one for each request, of which "always" repeats the next. sends_ranges:
     whether a part of a file is sent where one is asked for."""
@@ -132,8 +137,7 @@ class Server:
         self.sent, self.requests, self.answers, self.lock = 0, [], [], threading.Lock()
         self.hold = None  # called with the name of each file before it is sent
         self.released = threading.Event()
-        self.http = http.server.ThreadingHTTPServer(("127.0.0.1", 0), functools.partial(Handler, self))
-        self.http.daemon_threads = True
+        self.http = Listener(("127.0.0.1", 0), functools.partial(Handler, self))
         threading.Thread(target=self.http.serve_forever, daemon=True).start()
         self.url = f"http://127.0.0.1:{self.http.server_address[1]}"
 
