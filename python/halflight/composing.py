@@ -149,6 +149,14 @@ def _options(settings: Mapping[str, Any], volumes: Sequence[Volume], flags: int)
     for word in ("shadows", "kernel"):
         if settings.get(word) is not None:
             options[word] = str(settings[word])
+    if settings.get("density") is not None:
+        options["density"] = repr(_settings.number("density", settings["density"]))
+    if (at := settings.get("slice")) is not None:
+        if not isinstance(at, str):
+            raise TypeError(f"slice: {at!r} is no text such as 'z=0.5' or 'z=40mm'")
+        options["slice"] = at
+        if settings.get("sheet_spacing") is not None:
+            options["sheet-spacing"] = repr(_settings.number("sheet_spacing", settings["sheet_spacing"]))
     if flags & lib.HL_COMPOSE_BARE and _are_projected(volumes):
         options["look"] = "mip"  # several volumes get a colour each, and one fits its greys to the background
         if (background := settings.get("background")) is not None:

@@ -18,8 +18,8 @@ from .lights import Light
 from .mesh import Mesh
 from .progress import Progress, told
 from .scene import Scene, Settings, Side
-from .values import VALUES, function_for
-from .volume import Look, Source, Volume, as_volume
+from .values import VALUES, function_for, range_of_slice
+from .volume import Look, Source, Volume, as_volume, volume_from
 
 __all__ = ["Renderer", "reference", "render"]
 
@@ -200,6 +200,33 @@ def _look(volume: Volume, projected: bool, words: Mapping[str, Any]) -> Volume:
     return volume if function is None else volume.replace(transfer_function=function)
 
 
+def _read(source: Any, place: Mapping[str, Any], is_slice: bool) -> Volume:
+    """The volume of a source. A slice shows the voxels as they are; a Volume keeps what it has."""
+    words: dict[str, Any] = dict(place)
+    if is_slice and not isinstance(source, Volume):
+        words.setdefault("smooth", 0.0)
+    return Volume(source, **words)
+
+
+def _sliced(scene: Scene, count: int, look: Mapping[str, Any]) -> Scene:
+    """The scene of a slice, of whose volumes the first `count` have the functions that keywords of `Values` ask for."""
+    if not look:
+        return scene
+    volumes = [volume_from(scene._handle, n) for n in range(len(scene.volumes))]
+    for n in range(count):
+        words = _look_for(look, n, count)
+        if words.get("cmap") is not None and words.get("tf") is None and not words.get("log_scale"):
+            words["clim"] = words.get("clim") or range_of_slice(volumes[n])
+        volumes[n] = _look(volumes[n], True, words)
+    return scene.replace(volumes)
+
+
+def _refuse_beside_slice(material: Mapping[str, Any]) -> None:
+    for word in ("look", "iso"):
+        if material.get(word) is not None:
+            raise ValueError(f"slice and {word} exclude each other: give one of them")
+
+
 def _given(**words: Any) -> dict[str, Any]:
     return {word: value for word, value in words.items() if value is not None}
 
@@ -249,12 +276,14 @@ class Asked(FurtherSettings, total=False):
     labels: Any
     look: Looked
     sky: Any
+    slice: str
+    density: float
 
 
 _PLACE = ("spacing", "origin", "direction", "affine", "axes", "array", "component", "series", "time", "channel", "level", "smooth")
 _MATERIAL = ("ambient", "diffuse", "specular", "shininess", "iso", "cuts", "mask", "look",
              *(word for word in FurtherSettings.__annotations__ if word in Look.__annotations__))
-_SETTINGS = ("shadows", "lights", "camera", "size", "background", "threads", "meshes", "sky",
+_SETTINGS = ("shadows", "lights", "camera", "size", "background", "threads", "meshes", "sky", "slice", "density",
              *(word for word in FurtherSettings.__annotations__ if word in Settings.__annotations__))
 
 
@@ -289,8 +318,8 @@ def render(volume: Source = None, *, spacing: arrays.Spacing | None = None, orig
            component: int | str | None = None, series: str | None = None, time: int | None = None,
            channel: int | str | Sequence[int] | None = None, level: int | None = None, smooth: float | None = None,
            meshes: Mesh | Sequence[Mesh] | None = None, iso: Any = None, cuts: Any = None, mask: Any = None,
-           labels: Any = None, look: Looked | None = None,
-           sky: Any = None, **further: Unpack[FurtherSettings]) -> Image:
+           labels: Any = None, look: Looked | None = None, sky: Any = None, slice: str | None = None,
+           density: float | None = None, **further: Unpack[FurtherSettings]) -> Image:
     """A picture of a volume, in one call.
 
     An array's axes, and `spacing`, are in the order ``axes="zyx"``: ``array[z][y][x]``, spacing ``(dz, dy, dx)``.
@@ -364,6 +393,11 @@ def render(volume: Source = None, *, spacing: arrays.Spacing | None = None, orig
     sky : float, colour or mapping, optional
         Light from all directions in place of the automatic one, 0 for none: see `Settings`.
     **further : FurtherSettings
+    slice : str, optional
+        A slice across x, y or z, as in radiology: "z=0.5" is a fraction, "z=40mm" a place in the world, in the file's own
+        unit "z=40u". Its values are grey, or as `cmap` and `clim` say; labels of `labels` or `mask` lie over them.
+    density : float, optional
+        All matter is so many times as dense: 3 makes smoke and glass thicker, 0.3 thinner.
         What `Volume` and `Scene` take besides: `exposure`, `soft_method`, `anisotropy`, ...
 
     Returns
@@ -383,7 +417,8 @@ def render(volume: Source = None, *, spacing: arrays.Spacing | None = None, orig
         log_scale=log_scale, opacity=opacity, opacity_unit_distance=opacity_unit_distance, shade=shade, ambient=ambient, diffuse=diffuse,
         specular=specular, shininess=shininess, tf=tf, shadows=shadows, lights=lights, camera=camera, size=size,
         background=background, threads=threads, array=array, component=component, series=series, time=time,
-        channel=channel, level=level, smooth=smooth, meshes=meshes, iso=iso, cuts=cuts, mask=mask, labels=labels, look=look, sky=sky, **further)
+        channel=channel, level=level, smooth=smooth, meshes=meshes, iso=iso, cuts=cuts, mask=mask, labels=labels, look=look, sky=sky,
+        slice=slice, density=density, **further)
     with told(progress):
         scene = scene_for(volume, **asked)
     return Renderer(device).render(scene, layers=layers, progress=progress)
@@ -420,6 +455,10 @@ def _scene_of(volume: Any, place: Mapping[str, Any], material: dict[str, Any], s
     if labels is not None and _shows_itself(labels):
         material["labels"], labels = labels, None
     named = {word: material[word] for word in ("look",) if word in material}
+    is_slice = settings.get("slice") is not None
+    if is_slice:
+        _refuse_beside_slice(material)
+    at_once = {} if is_slice else look  # the functions of a slice are changed when the scene is sliced
     if isinstance(volume, Scene) or _is_scene(volume):
         for word in place:
             raise TypeError(f"{word} is for volumes: a scene says where its volumes are")
@@ -428,20 +467,23 @@ def _scene_of(volume: Any, place: Mapping[str, Any], material: dict[str, Any], s
         if "look" in named:
             settings.setdefault("compositing", "maximum" if named["look"] == "mip" else "light")
         projected = settings.get("compositing", scene.settings["compositing"]) == "maximum"
-        changed = [_look(one.replace(**named), projected, _look_for(look, n, count)).replace(**material) for n, one in enumerate(scene.volumes)]
-        return scene.replace(changed if labels is None else [*changed, _label_volume(labels)], **settings)
-    if isinstance(channels := place.get("channel"), (str, Sequence)):
+        changed = [_look(one.replace(**named), projected, _look_for(at_once, n, count)).replace(**material) for n, one in enumerate(scene.volumes)]
+        made = scene.replace(changed if labels is None else [*changed, _label_volume(labels)], **settings)
+        return _sliced(made, count, look) if is_slice else made
+    channels = place.get("channel")
+    if channels == "all" or isinstance(channels, Sequence) and not isinstance(channels, str):
         return _scene_of_channels(volume, channels, place, material, settings, look, labels)
     given = volume if isinstance(volume, list) else [volume] if volume is not None or not settings.get("meshes") else []
     sources = [one for one in given if not isinstance(one, Mesh)]
     projected = named.get("look") == "mip"
-    volumes = [_look(Volume(one, **place).replace(**named), projected, _look_for(look, n, len(sources))).replace(**material)
+    volumes = [_look(_read(one, place, is_slice).replace(**named), projected, _look_for(at_once, n, len(sources))).replace(**material)
                for n, one in enumerate(sources)]
     if not volumes:
         for word in (*place, *look, *material):
             raise TypeError(f"{word} is for volumes: the picture has none")
     others = [one for one in given if isinstance(one, Mesh)] + ([] if labels is None else [_label_volume(labels)])
-    return Scene([*volumes, *others], **settings)
+    made = Scene([*volumes, *others], **settings)
+    return _sliced(made, len(sources), look) if is_slice else made
 
 
 def _scene_of_channels(path: Any, channels: str | Sequence[int], place: Mapping[str, Any], material: Mapping[str, Any],
@@ -456,8 +498,10 @@ def _scene_of_channels(path: Any, channels: str | Sequence[int], place: Mapping[
     shown = {word: value for word, value in material.items() if word != "look"}
     count = len(scene.volumes)
     projected = material.get("look") == "mip"
-    volumes = [_look(one, projected, _look_for(look, n, count)).replace(**shown) for n, one in enumerate(scene.volumes)]
+    is_slice = settings.get("slice") is not None
+    volumes = [_look(one, projected, {} if is_slice else _look_for(look, n, count)).replace(**shown) for n, one in enumerate(scene.volumes)]
     chosen = [*(look.get(word) for word in ("clim", "opacity", "opacity_unit_distance", "tf")), shown.get("iso")]
     is_own = material.get("look", "auto") != "auto" or any(one is not None for one in chosen)
-    return scene._changed(volumes if labels is None else [*volumes, _label_volume(labels)], settings, True,
+    made = scene._changed(volumes if labels is None else [*volumes, _label_volume(labels)], settings, True,
                           lib.HL_COMPOSE_FUNCTIONS if is_own else 0)
+    return _sliced(made, count, look) if is_slice else made

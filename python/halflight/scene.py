@@ -49,6 +49,11 @@ class Settings(PictureSettings, RenderSettings, total=False):
         Triangles among the volumes.
     cuts : a mapping or a list of them
         What is cut out of all volumes, in the world: as `cuts` of a `Volume`.
+    density : float
+        All matter is so many times as dense: 3 makes smoke and glass thicker, 0.3 thinner. Labels keep their opacities.
+    slice : str
+        A slice across x, y or z, as in radiology, seen straight on: "z=0.5" is a fraction, "z=40mm" a place in the world. Its
+        values are grey, or as `cmap` and `clim` of `halflight.render` say, and labels lie over them.
     marks : a mapping or a list of them
         Measures and texts in the world, which `Image.annotate` draws: ``{"kind": "ruler", "points": [(0, 0, 0), (9, 0, 0)],
         "text": "width"}``; kinds are "ruler", "angle", "line", "arrow" and "text".
@@ -66,6 +71,8 @@ class Settings(PictureSettings, RenderSettings, total=False):
     description: str
     meshes: Mesh | Sequence[Mesh]
     cuts: Any
+    density: float
+    slice: str
     marks: Any
     sky: float | Sequence[float] | str | Mapping[str, Any]
 

@@ -227,15 +227,20 @@ def _moved(function: TransferFunction, old: Sequence[float], clim: Sequence[floa
                                lib.HL_RANGE_LOG if log else lib.HL_RANGE_LINEAR))
 
 
+def seen_range(function: TransferFunction, volume: Any) -> tuple[float, float]:
+    """The values that are seen of a volume with this function."""
+    seen, struct, keep = ffi.new("double[2]"), ffi.new("hl_transfer_function *"), list[Any]()
+    function._fill(struct, keep)
+    call(lib.hl_transfer_function_seen_range, volume, struct, seen)
+    return float(seen[0]), float(seen[1])
+
+
 def recolored(function: TransferFunction, cmap: Any, clim: list[float] | None, log: bool, volume: Any, projected: bool) -> TransferFunction:
     """The function with the colours of `cmap` over `clim`, by default over the values that are seen. projected:
     whether the function is for a maximum projection, in which a single colour becomes a ramp that begins at black.
     """
     if clim is None:
-        seen, struct, keep = ffi.new("double[2]"), ffi.new("hl_transfer_function *"), list[Any]()
-        function._fill(struct, keep)
-        call(lib.hl_transfer_function_seen_range, volume, struct, seen)
-        clim = list(seen)
+        clim = list(seen_range(function, volume))
     points = colors.sampled("cmap", cmap, *clim)
     if points is None:
         points = function_from(_made(lib.hl_transfer_function_colormap, colors.own_name(cmap), *clim)).color.tolist()

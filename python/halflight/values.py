@@ -9,7 +9,7 @@ from . import _settings, transfer
 if TYPE_CHECKING:
     from .volume import Volume
 
-__all__ = ["VALUES", "Values", "function_for"]
+__all__ = ["VALUES", "Values", "function_for", "range_of_slice"]
 
 
 class Values(TypedDict, total=False):
@@ -46,6 +46,18 @@ def _percentile(text: str, volume: Volume) -> float:
     if not 0 <= percent <= 100:
         raise ValueError(f"clim: '{text}' is no number and no percentile from '0%' to '100%'")
     return volume.percentile(percent)
+
+
+def range_of_slice(volume: Volume) -> tuple[float, float]:
+    """The values over which a colormap spreads in a slice: the window that the volume in the slice has, or else the values that
+    a maximum projection shows.
+    """
+    for channel in volume.info().channel_list:
+        if channel.chosen and channel.window is not None:
+            return channel.window
+    shown, greys = volume.look["transfer_function"], transfer.named_function("mip", volume._handle, transfer.TransferFunction([(0, 0)]))
+    ends, of_greys = ((float(one.color[0][0]), float(one.color[-1][0])) for one in (shown, greys))
+    return ends if ends != of_greys else transfer.seen_range(greys, volume._handle)
 
 
 def function_for(volume: Volume, projected: bool, *, cmap: Any = None, clim: Any = None, log_scale: Any = None, opacity: Any = None,

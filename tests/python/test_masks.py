@@ -98,6 +98,47 @@ def test_a_maximum_projection_is_the_programs(program, tmp_path):
     assert halflight.render(path, size=16, look="mip").scene.settings["compositing"] == "maximum"
 
 
+def test_a_slice_is_the_programs(program, tmp_path):
+    z, y, x = np.mgrid[-1:1:24j, -1:1:24j, -1:1:24j]
+    np.save(tmp_path / "ball.npy", np.exp(-4 * (x**2 + 2 * y**2 + z**2)).astype(np.float32))
+    path, one = str(tmp_path / "ball.npy"), str(tmp_path / "one.nrrd")
+    np.save(tmp_path / "halves.npy", (1 + (x > 0)).astype(np.uint8))
+    Volume(path).save(one)
+    halves = str(tmp_path / "halves.npy")
+    for words, asked in (([], {}), (["--view", "top"], {"camera": "top"}), (["--colormap", "red"], {"cmap": "red"}),
+                         (["--colormap", "viridis"], {"cmap": "viridis"}), (["--range", "0.2,0.6"], {"clim": (0.2, 0.6)}),
+                         (["--range", "1%,90%", "--colormap", "viridis"], {"clim": ("1%", "90%"), "cmap": "viridis"}),
+                         (["--labels", halves], {"labels": halves}), (["--sheet-spacing", "0.25"], {"sheet_spacing": 0.25})):
+        subprocess.run([program, "render", path, "--slice", "z=0.4", *words, "--size", "48x32", "--quiet", "--no-metadata",
+                        "-o", str(tmp_path / "ball.png")], check=True)
+        halflight.render(path, size=(48, 32), slice="z=0.4", **asked).save(tmp_path / "own.png", metadata=False)
+        assert (tmp_path / "own.png").read_bytes() == (tmp_path / "ball.png").read_bytes(), words
+    subprocess.run([program, "render", path, one, "--slice", "x=0.5", "--size", "48x32", "--quiet", "-o", str(tmp_path / "two.npy")], check=True)
+    assert np.array_equal(np.load(tmp_path / "two.npy"), halflight.render([path, one], size=(48, 32), slice="x=0.5"))
+    each = np.asarray(halflight.render([path, one], size=(48, 32), slice="x=0.5", cmap=["red", "blue"]))
+    assert each[16, 24, 0] > 0.4 and each[16, 24, 2] > 0.4 and each[16, 24, 1] == 0
+    for asked in ({"look": "mip"}, {"iso": 0.5}):
+        with pytest.raises(ValueError, match="slice and (look|iso) exclude each other"):
+            halflight.render(path, slice="z=0.5", **asked)
+    with pytest.raises(ValueError, match="'z=2' is not AXIS=AT"):
+        halflight.render(path, slice="z=2")
+
+
+def test_density_is_the_programs(program, tmp_path):
+    z, y, x = np.mgrid[-1:1:24j, -1:1:24j, -1:1:24j]
+    np.save(tmp_path / "ball.npy", np.exp(-4 * (x**2 + 2 * y**2 + z**2)).astype(np.float32))
+    path = str(tmp_path / "ball.npy")
+    pictures = []
+    for density in (None, 3):
+        words = [] if density is None else ["--density", str(density)]
+        subprocess.run([program, "render", path, "--look", "smoke", *words, "--size", "48x32", "--quiet", "-o", str(tmp_path / "ball.npy.npy")], check=True)
+        pictures.append(np.asarray(halflight.render(path, size=(48, 32), look="smoke", density=density)))
+        assert np.array_equal(np.load(tmp_path / "ball.npy.npy"), pictures[-1])
+    assert pictures[1][16, 24, 3] > pictures[0][16, 24, 3]
+    with pytest.raises(ValueError, match="density"):
+        halflight.render(path, density=0)
+
+
 def test_an_unknown_look_lists_those_that_exist(tmp_path):
     np.save(tmp_path / "ball.npy", np.ones((4, 4, 4), np.uint8))
     every = "auto, surface, translucent, xray, smoke, vessels, mip"
