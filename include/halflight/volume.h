@@ -160,6 +160,10 @@ typedef struct hl_volume_load_options {
   int preview_pixels; /* if above 0, a coarser one of several resolutions is read for a first picture, whose
                        * longer side has this number of pixels. hl_volume_selection.aim is then the resolution
                        * that would be read without this option. Default 0 */
+  /* In place of `channel`: the name that the file gives the channel (OME, omero), or a number as text. A
+   * number below the number of channels is never a name. Upper and lower case count only if they tell two
+   * channels apart. Default null. */
+  const char *channel_name;
 } hl_volume_load_options;
 
 HL_API void hl_volume_load_options_defaults(hl_volume_load_options *options);

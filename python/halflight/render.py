@@ -266,7 +266,7 @@ class Asked(FurtherSettings, total=False):
     component: int | str
     series: str
     time: int
-    channel: int | str | Sequence[int]
+    channel: int | str | Sequence[int | str]
     level: int
     smooth: float
     meshes: Mesh | Sequence[Mesh]
@@ -316,7 +316,7 @@ def render(volume: Source = None, *, spacing: arrays.Spacing | None = None, orig
            size: tuple[int, int] | int | str | None = None, background: Any = None, threads: int | None = None,
            layers: bool = False, progress: Progress = None, device: str | None = None, array: str | None = None,
            component: int | str | None = None, series: str | None = None, time: int | None = None,
-           channel: int | str | Sequence[int] | None = None, level: int | None = None, smooth: float | None = None,
+           channel: int | str | Sequence[int | str] | None = None, level: int | None = None, smooth: float | None = None,
            meshes: Mesh | Sequence[Mesh] | None = None, iso: Any = None, cuts: Any = None, mask: Any = None,
            labels: Any = None, look: Looked | None = None, sky: Any = None, slice: str | None = None,
            density: float | None = None, **further: Unpack[FurtherSettings]) -> Image:
@@ -372,8 +372,9 @@ def render(volume: Source = None, *, spacing: arrays.Spacing | None = None, orig
     device : str, optional
         As for `Renderer`.
     array, component, series, time, channel, level : optional
-        Of a file with several: see `Volume`. Several channels, ``channel=[0, 2]`` or ``channel="all"``, share the picture,
-        each in a colour of its own: see `Scene.of_channels`.
+        Of a file with several: see `Volume`. A channel is a number or its name in the file. Several
+        channels, ``channel=[0, "GFP"]`` or ``channel="all"``, share the picture, each in a colour of its own: see
+        `Scene.of_channels`.
     smooth : float, optional
         Smooth the voxels by a Gaussian of so many voxels: see `Volume`.
     meshes : Mesh or a list of them, optional
@@ -392,12 +393,12 @@ def render(volume: Source = None, *, spacing: arrays.Spacing | None = None, orig
         "surface", "translucent", "xray", "smoke", "vessels" or "mip", a maximum projection, in place of the automatic look.
     sky : float, colour or mapping, optional
         Light from all directions in place of the automatic one, 0 for none: see `Settings`.
-    **further : FurtherSettings
     slice : str, optional
         A slice across x, y or z, as in radiology: "z=0.5" is a fraction, "z=40mm" a place in the world, in the file's own
         unit "z=40u". Its values are grey, or as `cmap` and `clim` say; labels of `labels` or `mask` lie over them.
     density : float, optional
         All matter is so many times as dense: 3 makes smoke and glass thicker, 0.3 thinner.
+    **further : FurtherSettings
         What `Volume` and `Scene` take besides: `exposure`, `soft_method`, `anisotropy`, ...
 
     Returns
@@ -454,11 +455,11 @@ def _scene_of(volume: Any, place: Mapping[str, Any], material: dict[str, Any], s
               look: Mapping[str, Any], labels: Any) -> Scene:
     if labels is not None and _shows_itself(labels):
         material["labels"], labels = labels, None
-    named = {word: material[word] for word in ("look",) if word in material}
     is_slice = settings.get("slice") is not None
     if is_slice:
         _refuse_beside_slice(material)
     at_once = {} if is_slice else look  # the functions of a slice are changed when the scene is sliced
+    named = {word: material[word] for word in ("look",) if word in material}
     if isinstance(volume, Scene) or _is_scene(volume):
         for word in place:
             raise TypeError(f"{word} is for volumes: a scene says where its volumes are")
@@ -486,7 +487,7 @@ def _scene_of(volume: Any, place: Mapping[str, Any], material: dict[str, Any], s
     return _sliced(made, len(sources), look) if is_slice else made
 
 
-def _scene_of_channels(path: Any, channels: str | Sequence[int], place: Mapping[str, Any], material: Mapping[str, Any],
+def _scene_of_channels(path: Any, channels: str | Sequence[int | str], place: Mapping[str, Any], material: Mapping[str, Any],
                        settings: dict[str, Any], look: Mapping[str, Any], labels: Any) -> Scene:
     if not isinstance(path, (str, os.PathLike)):
         raise TypeError("channel is for files that hold several: choose by an index")

@@ -136,7 +136,7 @@ class Scene:
                             path=file))
 
     @classmethod
-    def of_channels(cls, path: str | os.PathLike[str], channels: str | Sequence[int] = "all", *, look: str = "auto",
+    def of_channels(cls, path: str | os.PathLike[str], channels: str | Sequence[int | str] = "all", *, look: str = "auto",
                     array: str | None = None, series: str | None = None, time: int | None = None, level: int | None = None,
                     spacing: Any = None) -> Scene:
         """A scene of several channels of a file, such as a microscope's. Each channel is a volume in a colour of its
@@ -146,21 +146,19 @@ class Scene:
         Parameters
         ----------
         path : path
-        channels : "all" or numbers from 0
+        channels : "all", or a list of numbers from 0 and of the file's own names
         look, array, series, time, level, spacing : optional
             As for `halflight.render`.
         """
         file = os.fspath(path)
         options, keep = load_options({word: value for word, value in (
             ("array", array), ("series", series), ("time", time), ("level", level)) if value is not None}, spacing, "zyx")
-        if isinstance(channels, str) and channels != "all":
-            raise ValueError(f"channel: {channels!r}: give a number, several as [0, 2], or 'all'")
-        numbers = [] if isinstance(channels, str) else [index_of("channel", number) for number in channels]
-        if not isinstance(channels, str) and not numbers:
-            raise ValueError("channel: [] names none: give a number, several as [0, 2], or 'all'")
+        listed = [channels] if isinstance(channels, str) else [one if isinstance(one, str) else str(index_of("channel", one)) for one in channels]
+        if not listed:
+            raise ValueError("channel: [] names none: give a number or a name, several as [0, 2], or 'all'")
         projected = choice("look", look, choices_of("look")) == "mip"
         handle = made(lib.hl_scene_for_channels, "hl_scene", lib.hl_scene_release, context, os.fsencode(file), options,
-                      ffi.new("int[]", numbers) if numbers else ffi.NULL, len(numbers), b"auto" if projected else look.encode(), path=file)
+                      ",".join(listed).encode(), b"auto" if projected else look.encode(), path=file)
         del keep  # the texts that `options` borrows are kept in this list
         if projected:
             handle = composed(lib.hl_scene_describe(handle), lib.HL_COMPOSE_BARE, {"look": "mip"})

@@ -50,7 +50,7 @@ class Volume:
     array, component, series, time, channel, level : optional
         Of a file with several: the array's name; the number of the component, "magnitude", or "color" or
         "luminance" for voxels with colours; a DICOM series by number, UID or description; the number of the time
-        step, channel and resolution. `array` chooses a variable of an xarray.Dataset, too.
+        step and resolution; the number of the channel, or its name in the file. `array` chooses a variable of an xarray.Dataset, too.
     copy : bool
         Copy the voxels of an array, which may then be changed.
     smooth : float, optional
@@ -74,7 +74,7 @@ class Volume:
     def __init__(self, source: Source, *, spacing: arrays.Spacing | None = None, origin: Any = None,
                  direction: Any = None, affine: Any = None, axes: str | None = None, array: str | None = None,
                  component: int | str | None = None, series: str | None = None, time: int | None = None,
-                 channel: int | None = None, level: int | None = None, copy: bool = False,
+                 channel: int | str | None = None, level: int | None = None, copy: bool = False,
                  smooth: float | None = None, **look: Unpack[Look]) -> None:
         check_keywords("Volume()", look, [*Look.__annotations__, "spacing", "origin", "direction", "affine", "axes", "copy", "smooth", *_OF_FILES])
         self._sharp: Any = None  # the handle of the voxels before they were smoothed
@@ -177,6 +177,10 @@ class Volume:
         self._loading = (options, keep)
         self._handle = made(lib.hl_volume_load_with, "hl_volume", lib.hl_volume_release, context, os.fsencode(path),
                             options, path=path)
+        if options.channel_name != ffi.NULL:  # a scene, and a restored volume, read the channel by its number
+            read = ffi.new("hl_volume_selection *", {"struct_size": ffi.sizeof("hl_volume_selection")})
+            if lib.hl_volume_get_selection(self._handle, read) == lib.HL_OK:
+                options.channel, options.channel_name = read.channel, ffi.NULL
 
     @classmethod
     def from_cells(cls, points: Any, cells: Any, types: Any, values: Any, **look: Unpack[Look]) -> Volume:
@@ -469,6 +473,9 @@ def load_options(chosen: Mapping[str, Any], spacing: arrays.Spacing | None, axes
             keep.append(value := ffi.new("char[]", str(value).encode()))
         elif word == "component" and value in ("magnitude", "color", "luminance"):
             value = lib.hl_component_of_name(value.encode())
+        elif word == "channel" and isinstance(value, str):
+            keep.append(value := ffi.new("char[]", value.encode()))
+            word = "channel_name"
         else:
             value = index_of(word, value)
         setattr(options, word, value)

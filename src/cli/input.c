@@ -163,31 +163,33 @@ void input_load_options(const cli_value *reading, const cli_value *spacing, hl_v
   if (component->given)
     options->component = component->chosen ? component->choice : (int)component->number[0];
   if (reading[READ_TIME].given) options->time = (int)reading[READ_TIME].number[0];
-  if (reading[READ_CHANNEL].given) options->channel = (int)reading[READ_CHANNEL].number[0];
+  if (reading[READ_CHANNEL].given) options->channel_name = reading[READ_CHANNEL].text;
   if (reading[READ_LEVEL].given) options->level = (int)reading[READ_LEVEL].number[0];
   if (spacing != NULL && spacing->given) memcpy(options->spacing, spacing->number, sizeof options->spacing);
 }
 
-int input_channels(const cli_value *said, int channels[HL_CHANNELS_MOST], size_t *count) {
-  *count = 0;
-  if (!said->given || hl_plain_equal(said->text, "all")) return EXIT_CODE_OK;
-  for (const char *text = said->text;; text++) {
-    char *end;
-    long number = strtol(text, &end, 10);
-    if (text[0] < '0' || text[0] > '9' || number > INT_MAX || (*end != ',' && *end != '\0'))
-      return fail(EXIT_CODE_USAGE,
-                  "--channel: '%s': give a number from 0 on, several as 0,2, or all: halflight info lists "
-                  "the channels' names",
-                  said->text);
-    if (*count == HL_CHANNELS_MOST)
+/* The length of a list's first item. */
+static size_t item_length(const char *list) { return strcspn(list, ","); }
+
+int input_check_channels(const cli_value *said) {
+  size_t count = 0;
+  if (!said->given) return EXIT_CODE_OK;
+  for (const char *text = said->text;; text += item_length(text) + 1) {
+    const size_t length = item_length(text);
+    if (length == 0)
+      return fail(
+          EXIT_CODE_USAGE,
+          "--channel: '%s': give a number from 0 on or a name, several as 0,2, or all: halflight info "
+          "lists the channels' names",
+          said->text);
+    if (++count > HL_CHANNELS_MOST)
       return fail(EXIT_CODE_USAGE, "--channel: '%s': a picture shows %d channels at most", said->text,
                   HL_CHANNELS_MOST);
-    for (size_t n = 0; n < *count; n++)
-      if (channels[n] == (int)number)
-        return fail(EXIT_CODE_USAGE, "--channel: '%s': channel %ld is there twice", said->text, number);
-    channels[(*count)++] = (int)number;
-    if (*end == '\0') return EXIT_CODE_OK;
-    text = end;
+    for (const char *before = said->text; before < text; before += item_length(before) + 1)
+      if (item_length(before) == length && memcmp(before, text, length) == 0)
+        return fail(EXIT_CODE_USAGE, "--channel: '%s': channel %.*s is there twice", said->text, (int)length,
+                    text);
+    if (text[length] == '\0') return EXIT_CODE_OK;
   }
 }
 
@@ -231,7 +233,9 @@ void input_name_source(const hl_volume_load_options *options, hl_scene_volume *v
   volume->component = options->component;
   volume->time = options->time, volume->channel = options->channel, volume->level = options->level;
   hl_volume_selection read = {.struct_size = sizeof read};
-  if (options->pixels > 0 && hl_volume_get_selection(volume->volume, &read) == HL_OK && read.levels > 1)
+  const bool known = hl_volume_get_selection(volume->volume, &read) == HL_OK;
+  if (options->channel_name != NULL && known) volume->channel = read.channel;
+  if (options->pixels > 0 && known && read.levels > 1)
     volume->level = read.aim; /* the scene may be drawn in another size */
   memcpy(volume->spacing, options->spacing, sizeof volume->spacing);
 }

@@ -57,13 +57,18 @@ typedef struct cli_input {
     .name = (word), .kind = OPTION_NUMBERS, .argument = "N", .help = (text), .count = 1, .whole = true, \
     .low = 0, .high = 1e9                                                                               \
   }
-#define INPUT_OPTION_TIME    INPUT_OPTION_INDEX("time", "the time step to read, from 0 (default: 0)")
-#define INPUT_OPTION_CHANNEL INPUT_OPTION_INDEX("channel", "the channel to read, from 0 (default: 0)")
-#define INPUT_OPTION_CHANNELS                                                                         \
-  {                                                                                                   \
-    .name = "channel", .also = "channels", .kind = OPTION_TEXT, .argument = "N|N,N|all",              \
-    .help = "number of the channel to show, from 0 (default: 0);\nseveral channels, or all, share a " \
-            "picture, each in its\ncolour from the file, or in green, magenta, ..."                   \
+#define INPUT_OPTION_TIME INPUT_OPTION_INDEX("time", "the time step to read, from 0 (default: 0)")
+#define INPUT_OPTION_CHANNEL                                                                 \
+  {                                                                                          \
+    .name = "channel", .kind = OPTION_TEXT, .argument = "N|NAME",                            \
+    .help = "the channel to read: its number, from 0, or its\nname in the file (default: 0)" \
+  }
+#define INPUT_OPTION_CHANNELS                                                                           \
+  {                                                                                                     \
+    .name = "channel", .also = "channels", .kind = OPTION_TEXT, .argument = "NAME|N|N,N|all",           \
+    .help = "number of the channel to show, from 0 (default: 0), or\nits name in the file; several "    \
+            "channels (DAPI,GFP or 0,2),\nor all, share a picture, each in its colour from the\nfile, " \
+            "or in green, magenta, ..."                                                                 \
   }
 #define INPUT_OPTION_LEVEL                                                                                \
   INPUT_OPTION_INDEX("level", "the resolution to read; 0 is the finest (default: the\nfinest up to 2^30 " \
@@ -93,13 +98,13 @@ int input_open(const char *path, uint64_t limit, cli_input *input);
 void input_close(cli_input *input);
 
 /* Finds the load options that the options of enum input_reading and --spacing ask for. reading: the values of
- * enum input_reading. spacing: null if the command does not have --spacing. `render` reads its channels by
- * render_load_options(), because its --channel is a text. */
+ * enum input_reading. spacing: null if the command does not have --spacing. The text of --channel becomes
+ * the name of one channel. */
 void input_load_options(const cli_value *reading, const cli_value *spacing, hl_volume_load_options *options);
 
-/* Reads the channels that --channel names. *count becomes their number; it becomes 0 for "all", and if the
- * option was not given. Other values are refused. */
-int input_channels(const cli_value *said, int channels[HL_CHANNELS_MOST], size_t *count);
+/* Refuses values of --channel that no file can have: empty items of a list, an item that is there twice, and
+ * more items than a picture shows. */
+int input_check_channels(const cli_value *said);
 
 /* Returns whether --channel may ask for more than one channel; "all" counts as several, although a file may
  * have only one. */

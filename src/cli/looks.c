@@ -72,9 +72,7 @@ typedef struct looks_job {
   char *output;      /* owned */
   cli_input opened;
   hl_volume_load_options load;
-  hl_volume *volume;              /* null if several channels share each picture */
-  int channels[HL_CHANNELS_MOST]; /* [channel_count]; the channels of --channel; none stands for all */
-  size_t channel_count;
+  hl_volume *volume; /* null if several channels share each picture */
   hl_renderer *renderer;
   hl_image *sheet;
   int side;                 /* pixels of a picture */
@@ -166,8 +164,8 @@ static hl_status scene_of(const looks_job *job, size_t index, hl_scene **scene, 
   const char *own = projected ? "auto" : name;
   hl_status status = job->volume != NULL
                          ? hl_scene_for_volume_look(context, job->volume, NULL, own, &made, error)
-                         : hl_scene_for_channels(context, job->opened.title, &job->load, job->channels,
-                                                 job->channel_count, own, &made, error);
+                         : hl_scene_for_channels(context, job->opened.title, &job->load,
+                                                 job->values[LOOKS_CHANNEL].text, own, &made, error);
   if (status == HL_OK && (projected || job->volume == NULL)) status = compose(context, name, &made, error);
   if (status == HL_OK) {
     hl_scene_description description = *hl_scene_describe(made);
@@ -220,8 +218,7 @@ static int load_volume(looks_job *job) {
   hl_error error = {0};
   const cli_value *said = &job->values[LOOKS_CHANNEL];
   input_load_options(&job->values[LOOKS_ARRAY], &job->values[LOOKS_SPACING], &job->load);
-  int exit_code = input_channels(said, job->channels, &job->channel_count);
-  job->load.channel = job->channel_count == 1 ? job->channels[0] : HL_INDEX_DEFAULT;
+  int exit_code = input_check_channels(said);
   if (exit_code == EXIT_CODE_OK)
     exit_code = input_open(job->input, job->values[LOOKS_MAX_MEMORY].bytes, input);
   if (exit_code == EXIT_CODE_OK && input->kind != INPUT_VOLUME)

@@ -8,6 +8,7 @@
 #include "core/door.h"
 #include "core/memory.h"
 #include "scene/scene.h"
+#include "text/plain.h"
 #include "text/stem.h"
 
 /* MANY_SHEETS: a scene with more sheets than this may get a warning. A single volume of 2048 voxels along
@@ -211,16 +212,28 @@ static hl_status name_channel(channel_scenes *made, const hl_volume *volume, hl_
   return HL_OK;
 }
 
-/* Makes the scene of a channel. *channels: set to the number of channels that the file has. */
-static hl_status add_channel(channel_scenes *made, int channel, size_t *channels, hl_error *error) {
+/* Refuses a channel that is there already, by its number or by its name. */
+static hl_status refuse_again(const channel_scenes *made, const hl_volume *volume, hl_error *error) {
+  for (size_t n = 0; n < made->count; n++)
+    if (made->scenes[n]->description.volumes[0].channel == volume->selection.channel)
+      return hl_fail(error, HL_ERROR_ARGUMENT, "%s: channel %d is there twice", made->path,
+                     volume->selection.channel);
+  return HL_OK;
+}
+
+/* Makes the scene of a channel. name: its number or its name. *channels: set to the number of channels that
+ * the file has. */
+static hl_status add_channel(channel_scenes *made, const char *name, size_t *channels, hl_error *error) {
   hl_volume *volume = NULL;
   hl_scene *scene = NULL;
-  made->options.channel = channel;
+  made->options.channel_name = name;
   hl_status status = hl_volume_load_with(made->context, made->path, &made->options, &volume, error);
   if (status == HL_OK) {
     *channels = volume->selection.channels;
-    status = hl_scene_for_volume_look(made->context, volume, made->path, made->look, &scene, error);
+    status = refuse_again(made, volume, error);
   }
+  if (status == HL_OK)
+    status = hl_scene_for_volume_look(made->context, volume, made->path, made->look, &scene, error);
   if (status == HL_OK) status = name_channel(made, volume, &scene, error);
   hl_volume_release(volume);
   if (status == HL_OK) made->scenes[made->count++] = scene;
@@ -228,18 +241,40 @@ static hl_status add_channel(channel_scenes *made, int channel, size_t *channels
   return status;
 }
 
-static hl_status add_channels(channel_scenes *made, const int *channels, size_t count, hl_error *error) {
-  size_t all = count;
+static hl_status add_all(channel_scenes *made, hl_error *error) {
+  size_t all = 1;
   hl_status status = HL_OK;
-  for (size_t n = 0; status == HL_OK && n < (count > 0 ? count : n == 0 ? 1 : all); n++) {
-    status = add_channel(made, count > 0 ? channels[n] : (int)n, &all, error);
-    if (status == HL_OK && count == 0 && all > HL_CHANNELS_MOST)
+  for (size_t n = 0; status == HL_OK && n < all; n++) {
+    char number[24];
+    snprintf(number, sizeof number, "%zu", n);
+    status = add_channel(made, number, &all, error);
+    if (status == HL_OK && all > HL_CHANNELS_MOST)
       status = hl_fail(error, HL_ERROR_INPUT,
                        "%s: it has %zu channels, and a picture shows %d at most: choose by \"channel\" "
                        "(--channel 0,2)",
                        made->path, all, HL_CHANNELS_MOST);
   }
   return status;
+}
+
+/* Makes the scenes of the channels that a list names. */
+static hl_status add_listed(channel_scenes *made, const char *list, hl_error *error) {
+  for (;;) {
+    char name[HL_CHANNEL_NAME_BYTES];
+    size_t unused;
+    const size_t length = strcspn(list, ",");
+    if (length == 0 || length >= sizeof name)
+      return hl_fail(error, HL_ERROR_ARGUMENT,
+                     "hl_scene_for_channels: an empty or too long name of a channel in the list");
+    if (made->count == HL_CHANNELS_MOST)
+      return hl_fail(error, HL_ERROR_ARGUMENT, "hl_scene_for_channels: give %d channels at most",
+                     HL_CHANNELS_MOST);
+    memcpy(name, list, length);
+    name[length] = 0;
+    hl_status status = add_channel(made, name, &unused, error);
+    if (status != HL_OK || list[length] == 0) return status;
+    list += length + 1;
+  }
 }
 
 /* Gives each volume the colour of its channel, which replaces the colours of its look. */
@@ -267,20 +302,17 @@ static hl_status color_channels(hl_context *context, hl_scene **scene, hl_error 
 }
 
 hl_status hl_scene_for_channels(hl_context *context, const char *path, const hl_volume_load_options *options,
-                                const int *channels, size_t count, const char *look, hl_scene **scene,
-                                hl_error *error) {
+                                const char *channels, const char *look, hl_scene **scene, hl_error *error) {
   HL_DOOR;
   if (scene != NULL) *scene = NULL;
-  if (context == NULL || path == NULL || look == NULL || scene == NULL || (count > 0 && channels == NULL))
-    return hl_fail(error, HL_ERROR_ARGUMENT,
-                   "hl_scene_for_channels: null context, path, channels, look or scene");
-  if (count > HL_CHANNELS_MOST)
-    return hl_fail(error, HL_ERROR_ARGUMENT, "hl_scene_for_channels: %zu channels: give %d at most", count,
-                   HL_CHANNELS_MOST);
+  if (context == NULL || path == NULL || look == NULL || scene == NULL)
+    return hl_fail(error, HL_ERROR_ARGUMENT, "hl_scene_for_channels: null context, path, look or scene");
   channel_scenes made = {.context = context, .path = path, .look = look};
   hl_volume_load_options_defaults(&made.options);
   if (options != NULL) made.options = *options;
-  hl_status status = add_channels(&made, channels, count, error);
+  made.options.channel = HL_INDEX_DEFAULT;
+  const bool all = channels == NULL || hl_plain_equal(channels, "all");
+  hl_status status = all ? add_all(&made, error) : add_listed(&made, channels, error);
   if (status == HL_OK) status = hl_scene_join(context, made.scenes, made.count, scene, error);
   if (status == HL_OK && made.count > 1) status = color_channels(context, scene, error);
   for (size_t n = 0; n < made.count; n++) hl_scene_release(made.scenes[n]);

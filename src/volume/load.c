@@ -321,6 +321,7 @@ static hl_status finish(hl_load_request *request, const char *path, hl_status st
                         hl_error *error) {
   if (status == HL_OK) {
     status = check_series(request, path, error);
+    if (status == HL_OK) status = hl_channel_check(request, path, error);
     if (status != HL_OK) hl_volume_release(*volume), *volume = NULL;
   }
   if (status != HL_OK) {
@@ -373,6 +374,7 @@ hl_status hl_volume_load_with(hl_context *context, const char *path, const hl_vo
                              .series = options->series,
                              .time = options->time,
                              .channel = options->channel,
+                             .channel_name = options->channel_name,
                              .level = options->level,
                              .pixels = options->pixels,
                              .preview_pixels = options->preview_pixels,

@@ -53,6 +53,7 @@ hl_volume_from_shapes name
 hl_volume_load_with options
 hl_transfer_function_load_for volume
 hl_scene_for_channels options
+hl_scene_for_channels channels
 hl_ranks_join communicator
 hl_option_kind_of name
 hl_option_choices name

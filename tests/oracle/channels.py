@@ -219,6 +219,27 @@ check("one channel has the look of its volume", isinstance(one, np.ndarray) and 
 code, out, complaint = run("render", "three.ome.tif", "--channel", "1", "--print-scene")
 check("and its scene is of one volume", code == 0 and [v.get("channel") for v in json.loads(out)["volumes"]] == [1], complaint or out)
 
+# Channels by the file's own names, in any case; a number below the number of channels is never a name, any other may be one.
+def chosen(name, words):
+    code, out, complaint = run("render", name, "--channel", words, "--print-scene")
+    return [v.get("channel", 0) for v in json.loads(out)["volumes"]] if code == 0 else complaint
+
+
+write_ome("waves.ome.tif", BALLS, ['Name="488"', 'Name="0"', 'Name="cy5"'])
+for name, words, numbers in (("three.ome.tif", "GFP", [1]), ("three.ome.tif", "dapi,Cy5", [0, 2]), ("three.ome.tif", "Cy5,1", [2, 1]),
+                             ("omero.zarr", "actin", [1]), ("omero.zarr", "actin,nuclei", [1, 0]), ("waves.ome.tif", "488", [0]),
+                             ("waves.ome.tif", "0", [0]), ("waves.ome.tif", "CY5,488", [2, 0])):
+    check(f"channels by name: {name} {words}", chosen(name, words) == numbers, chosen(name, words))
+check("a channel by its name is the one by its number", (picture("three.ome.tif", "--channel", "GFP") == picture("three.ome.tif", "--channel", "1")).all())
+for words in ("GFP", "1"):
+    code, _, complaint = run("convert", "three.ome.tif", f"{words}.nrrd", "--channel", words, "--quiet")
+    check(f"convert takes channel {words}", code == 0, complaint)
+check("and writes the same", (root / "GFP.nrrd").read_bytes() == (root / "1.nrrd").read_bytes())
+code, _, complaint = run("info", "plain.ome.tif", "--channel", "GFP")
+check("channels without names", complaint.strip().endswith("plain.ome.tif: there is no channel 'GFP': choose 0 to 1"), complaint)
+code, _, complaint = run("info", "1.nrrd", "--channel", "GFP")
+check("a file of one channel", "there is no channel 'GFP': the file has one, 0: leave" in complaint, complaint)
+
 # A series: each frame shows all channels of its own file.
 write_ome("t0.ome.tif", BALLS[:2], ['Color="65535"', 'Color="-16776961"'])
 write_ome("t1.ome.tif", BALLS[1:], ['Color="65535"', 'Color="-16776961"'])
@@ -240,10 +261,13 @@ if frames:
 
 # ---- what is refused ----
 
-numbers = "give a number from 0 on, several as 0,2, or all: halflight info lists the channels' names"
-for words, line in {("--channel", "1,9"): "three.ome.tif: there is no channel 9: choose 0 to 2",
-                    ("--channel", "0,x"): f"--channel: '0,x': {numbers}",
-                    ("--channel", "-1"): f"--channel: '-1': {numbers}",
+numbers = "give a number from 0 on or a name, several as 0,2, or all: halflight info lists the channels' names"
+known = "choose 0 to 2, or by name: DAPI, GFP, Cy5"
+for words, line in {("--channel", "1,9"): f"three.ome.tif: there is no channel 9: {known}",
+                    ("--channel", "0,x"): f"three.ome.tif: there is no channel 'x': {known}",
+                    ("--channel", "0,,1"): f"--channel: '0,,1': {numbers}",
+                    ("--channel", "-1"): f"three.ome.tif: there is no channel '-1': {known}",
+                    ("--channel", "GFP,1"): "three.ome.tif: channel 1 is there twice",
                     ("--channel", "1,1"): "--channel: '1,1': channel 1 is there twice"}.items():
     code, _, complaint = run("render", "three.ome.tif", *words, "-o", "none.png")
     check(f"refused: {' '.join(words)}", code != 0 and complaint.strip().endswith(line) and not (root / "none.png").exists(), complaint)

@@ -308,9 +308,16 @@ def test_channels_of_a_file(program, tmp_path):
             asked = {"camera": "left", "background": "white"} if words else {}
             halflight.render(tmp_path / "cells.zarr", channel="all", look=look, size=size, **asked).save(tmp_path / "b.png", metadata=False)
             assert (tmp_path / "a.png").read_bytes() == (tmp_path / "b.png").read_bytes(), (look, words)
+    assert Volume(tmp_path / "cells.zarr", channel="dapi").info().channel == 0
+    assert Volume(tmp_path / "cells.zarr", channel="DAPI") == Volume(tmp_path / "cells.zarr", channel=0)
+    named = Scene.of_channels(tmp_path / "cells.zarr", [2, "DAPI"])
+    assert named == Scene.of_channels(tmp_path / "cells.zarr", [2, 0])
+    assert Scene.from_json(named.to_json()) == named
+    with pytest.raises(ValueError, match="there is no channel 'Cy5': choose 0 to 2, or by name: DAPI, GFP"):
+        Volume(tmp_path / "cells.zarr", channel="Cy5")
     scene = Scene.of_channels(tmp_path / "cells.zarr", [2, 0])
     assert [volume.look["name"] for volume in scene.volumes] == ["channel2", "DAPI"]
-    with pytest.raises(ValueError, match="'both': give a number, several as"):
+    with pytest.raises(ValueError, match="there is no channel 'both'"):
         Scene.of_channels(tmp_path / "cells.zarr", "both")
     with pytest.raises(ValueError, match="names none"):
         halflight.render(tmp_path / "cells.zarr", channel=[])

@@ -68,28 +68,19 @@ static int pixels_of(const cli_value *values) {
   return pixels < INT_MAX ? (int)pixels : INT_MAX;
 }
 
-/* ---- channels ---- */
-
 void render_load_options(const cli_value *values, hl_volume_load_options *options) {
-  int channels[HL_CHANNELS_MOST];
-  size_t count;
   input_load_options(&values[RENDER_ARRAY], &values[RENDER_SPACING], options);
-  bool one = input_channels(&values[RENDER_CHANNEL], channels, &count) == EXIT_CODE_OK && count == 1;
-  options->channel = one ? channels[0] : HL_INDEX_DEFAULT;
+  if (input_has_channels(&values[RENDER_CHANNEL])) options->channel_name = NULL;
   options->pixels = pixels_of(values);
 }
 
 /* The scene of several channels of one file. */
 static hl_status load_channels(cli_host *host, const cli_value *values, const cli_input *input,
                                hl_volume_load_options options, hl_scene **scene, hl_error *error) {
-  int channels[HL_CHANNELS_MOST];
-  size_t count;
   const char *look = render_look_name(values);
-  if (input_channels(&values[RENDER_CHANNEL], channels, &count) != EXIT_CODE_OK)
-    count = 0; /* checked before */
   options.bytes = input->bytes;
   options.byte_count = input->length;
-  return hl_scene_for_channels(host->context, input->title, &options, channels, count,
+  return hl_scene_for_channels(host->context, input->title, &options, values[RENDER_CHANNEL].text,
                                look != NULL ? look : "auto", scene, error);
 }
 

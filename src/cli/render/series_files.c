@@ -190,7 +190,7 @@ int series_load_volume(series_job *job, int number, int channel, hl_volume **vol
   hl_error error = {0};
   if (job->files.bad[number]) return EXIT_CODE_INPUT;
   reading_of(job, number, &options);
-  if (channel >= 0) options.channel = channel;
+  if (channel >= 0) options.channel = channel, options.channel_name = NULL;
   int exit_code = input_open(job->files.names[number], job->values[RENDER_MAX_MEMORY].bytes, &input);
   if (exit_code == EXIT_CODE_OK) {
     hl_status status = input_load_volume(job->host.context, &input, &options, volume, &error);

@@ -3,10 +3,12 @@
 #include "volume/formats/format.h"
 
 #include <stdio.h>
+#include <stdlib.h>
 #include <string.h>
 
 #include "core/context.h"
 #include "core/memory.h"
+#include "text/plain.h"
 #include "volume/colors.h"
 #include "volume/convert.h"
 #include "volume/io/text.h"
@@ -113,7 +115,7 @@ static void tell_of_steps(hl_load_request *request, const char *path) {
   const hl_selection *selection = &request->selection;
   char counts[2][40] = {"", ""};
   const bool time = selection->times > 1 && request->time<0, channel = selection->channels> 1 &&
-                    request->channel < 0,
+                    request->channel < 0 && request->channel_name == NULL,
              both = time && channel;
   if (!time && !channel) return;
   if (time) snprintf(counts[0], sizeof counts[0], "%zu time steps", selection->times);
@@ -125,11 +127,27 @@ static void tell_of_steps(hl_load_request *request, const char *path) {
            channel ? "\"channel\" (--channel)" : "");
 }
 
+/* The number that a text is; -1 if it is none. */
+static int number_of(const char *text) {
+  enum { DIGITS_MOST = 9 };
+  const size_t digits = strspn(text, "0123456789");
+  return digits > 0 && digits <= DIGITS_MOST && text[digits] == 0 ? atoi(text) : -1;
+}
+
+/* Takes the text of the wanted channel as its number, if the file has a channel of this number. */
+static void take_number(hl_load_request *request, size_t channels) {
+  const int number = request->channel_name != NULL ? number_of(request->channel_name) : -1;
+  if (number < 0 || (size_t)number >= channels) return;
+  request->channel = number;
+  request->channel_name = NULL;
+}
+
 hl_status hl_steps_choose(hl_load_request *request, const char *path, size_t times, size_t channels,
                           hl_error *error) {
   hl_selection *selection = &request->selection;
   selection->times = times;
   selection->channels = channels;
+  take_number(request, channels);
   hl_status status = choose_step(path, "time", request->time, times, &selection->time, error);
   if (status == HL_OK)
     status = choose_step(path, "channel", request->channel, channels, &selection->channel, error);
@@ -151,6 +169,49 @@ void hl_channel_name(hl_channel *channel, const char *name) {
   snprintf(channel->name, sizeof channel->name, "%s", name);
   for (char *c = channel->name; *c != 0; c++)
     if ((unsigned char)*c < ' ' || *c == 0x7f) *c = '?';
+}
+
+/* Lists the names of the channels, as ", or by name: DAPI, GFP"; "" if they have none. */
+static void list_channels(const hl_load_request *request, char *list, size_t size) {
+  size_t used = 0;
+  list[0] = 0;
+  for (size_t n = 0; request->channels != NULL && n < request->selection.channels && used < size; n++) {
+    const char *name = request->channels[n].name;
+    if (name[0] != 0)
+      used += (size_t)snprintf(list + used, size - used, "%s%s", used == 0 ? ", or by name: " : ", ", name);
+  }
+}
+
+hl_status hl_channel_check(hl_load_request *request, const char *path, hl_error *error) {
+  char list[600];
+  const size_t count = request->selection.channels;
+  take_number(request, count);
+  const char *name = request->channel_name;
+  if (name == NULL) return HL_OK;
+  const char *quote = number_of(name) >= 0 ? "" : "'";
+  list_channels(request, list, sizeof list);
+  if (count <= 1)
+    return hl_fail(
+        error, HL_ERROR_INPUT,
+        "%s: there is no channel %s%.100s%s: the file has one, 0%s: leave \"channel\" (--channel) out", path,
+        quote, name, quote, list);
+  return hl_fail(error, HL_ERROR_INPUT, "%s: there is no channel %s%.100s%s: choose 0 to %zu%s", path, quote,
+                 name, quote, count - 1, list);
+}
+
+hl_status hl_channel_find(hl_load_request *request, const char *path, hl_error *error) {
+  if (request->channel_name == NULL) return HL_OK;
+  for (int exact = 1; exact >= 0; exact--)
+    for (size_t n = 0; n < request->selection.channels; n++) {
+      const char *name = request->channels[n].name;
+      if (name[0] == 0) continue;
+      if (!(exact ? strcmp(name, request->channel_name) == 0 : hl_plain_equal(name, request->channel_name)))
+        continue;
+      request->channel = request->selection.channel = (int)n;
+      request->channel_name = NULL;
+      return HL_OK;
+    }
+  return hl_channel_check(request, path, error);
 }
 
 /* ---- levels ---- */
@@ -258,6 +319,7 @@ static hl_status component_of_steps(hl_load_request *request, const char *path, 
                                     const hl_payload *payload, int *wanted, hl_error *error) {
   hl_selection *selection = &request->selection;
   if (selection->times == 1 && selection->channels == 1 && is_series) selection->times = payload->components;
+  take_number(request, selection->channels);
   hl_status status = check_steps(request, path, error);
   bool named = is_series && ((request->time >= 0 && selection->times > 1) ||
                              (request->channel >= 0 && selection->channels > 1));

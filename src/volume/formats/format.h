@@ -20,6 +20,8 @@ typedef struct hl_load_request {
   int component;            /* HL_COMPONENT_DEFAULT, HL_COMPONENT_MAGNITUDE, or an index */
   double spacing[3];        /* world units; all 0 if the file's own spacing is used */
   int time, channel, level; /* HL_INDEX_DEFAULT, or an index */
+  const char *channel_name; /* the name or the number of the wanted channel, as text, until it is found in the
+                             * file; null if there is none */
   int pixels;               /* pixels of the picture's longer side; 0 if unknown */
   int preview_pixels;       /* pixels of the longer side of a first picture; 0 if there is none */
   double window[2];         /* set by readers: the data values that are shown black and white; both equal if
@@ -74,6 +76,13 @@ hl_status hl_steps_choose(hl_load_request *request, const char *path, size_t tim
 
 /* Allocates request->channels, with empty descriptions. The number of channels must be known. */
 hl_status hl_channels_make(hl_load_request *request, hl_error *error);
+
+/* Selects the channel that the caller has named. Readers call this function when request->channels has the
+ * names, before they read voxels. An error lists the names. */
+hl_status hl_channel_find(hl_load_request *request, const char *path, hl_error *error);
+
+/* Refuses the name of a channel that no reader has found. */
+hl_status hl_channel_check(hl_load_request *request, const char *path, hl_error *error);
 
 /* Sets the name of a channel. A long name is cut, and unprintable characters become '?'. */
 void hl_channel_name(hl_channel *channel, const char *name);

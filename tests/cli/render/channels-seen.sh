@@ -41,6 +41,6 @@ tool png-pixel around.png 32 32 | "$PYTHON" -c 'red, green, blue = map(int, inpu
 halflight looks around.zarr --channel all --look auto,surface --size 64 --quiet -o looks.png
 tool png-pixel looks.png 32 32 | "$PYTHON" -c 'red, green, blue = map(int, input().split()); print("magenta:", red > 1.1 * green and blue > 1.1 * green)'
 tool png-pixel looks.png 96 32 | "$PYTHON" -c 'red, green, blue = map(int, input().split()); print("green:", green > 3 * red and green > 3 * blue)'
-for channels in 1 0,1 0,7 x; do
+for channels in 1 core 0,CORE 0,7 x 0,; do
   halflight looks around.zarr --channel $channels --look surface --size 16 --quiet -o looks.png 2>&1 || true
 done

@@ -149,6 +149,7 @@ static hl_status begin_slices(ome_reader *ome, hl_error *error) {
   ome->is_planned = true;
   hl_status status = HL_OK;
   if (ome->told == 0) status = hl_steps_choose(ome->request, ome->path, ome->size[2], ome->size[1], error);
+  else status = hl_channel_find(ome->request, ome->path, error);
   return status == HL_OK ? make_slices(ome->plan, ome->size[0], ome->path, error) : status;
 }
 

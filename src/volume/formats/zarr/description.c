@@ -59,7 +59,8 @@ static bool read_color(const char *text, double srgb[3]) {
   return true;
 }
 
-hl_status hl_zarr_describe_channels(const json_t *ome, hl_load_request *request, hl_error *error) {
+hl_status hl_zarr_describe_channels(const json_t *ome, const char *path, hl_load_request *request,
+                                    hl_error *error) {
   const json_t *channels = json_object_get(json_object_get(ome, "omero"), "channels");
   if (json_array_size(channels) == 0) return HL_OK;
   hl_status status = hl_channels_make(request, error);
@@ -75,7 +76,7 @@ hl_status hl_zarr_describe_channels(const json_t *ome, hl_load_request *request,
     channel->window[0] = json_number_value(start);
     channel->window[1] = json_number_value(end);
   }
-  return status;
+  return status == HL_OK ? hl_channel_find(request, path, error) : status;
 }
 
 hl_status hl_zarr_list_label_maps(const hl_bundle *bundle, const char *folder, hl_volume *volume,

@@ -5,8 +5,9 @@
 #include "volume/formats/zarr/metadata.h"
 
 /* Reads names, colours and windows of channels from the attribute "omero", which says how a viewer should
- * show them. request->selection must be set. */
-hl_status hl_zarr_describe_channels(const json_t *ome, hl_load_request *request, hl_error *error);
+ * show them, and selects the channel that the caller has named. request->selection must be set. */
+hl_status hl_zarr_describe_channels(const json_t *ome, const char *path, hl_load_request *request,
+                                    hl_error *error);
 
 /* Reads the colours and the names of labels that an image of labels states. A name is the property "class",
  * "name" or "label". */

@@ -110,11 +110,13 @@ static size_t count_along(const hl_zarr_image *image, const hl_zarr_array *array
 }
 
 static hl_status choose_steps(const hl_zarr_image *image, const hl_zarr_array *array, const char *path,
-                              hl_load_request *request, hl_zarr_choice *choice, hl_error *error) {
+                              const json_t *ome, hl_load_request *request, hl_zarr_choice *choice,
+                              hl_error *error) {
   int time, channel;
   size_t times = count_along(image, array, HL_ZARR_TIME, &time),
          channels = count_along(image, array, HL_ZARR_CHANNEL, &channel);
   hl_status status = hl_steps_choose(request, path, times, channels, error);
+  if (status == HL_OK && ome != NULL) status = hl_zarr_describe_channels(ome, path, request, error);
   if (time >= 0) choice->index[time] = (uint64_t)request->selection.time;
   if (channel >= 0) choice->index[channel] = (uint64_t)request->selection.channel;
   for (int axis = 0; axis < array->rank && status == HL_OK; axis++)
@@ -124,8 +126,9 @@ static hl_status choose_steps(const hl_zarr_image *image, const hl_zarr_array *a
   return status;
 }
 
-static hl_status load_image(const hl_bundle *bundle, const hl_zarr_image *image, hl_load_request *request,
-                            hl_volume **volume, hl_error *error) {
+/* Reads the voxels of an image. ome: the metadata that describe its channels; null if there are none. */
+static hl_status load_image(const hl_bundle *bundle, const hl_zarr_image *image, const json_t *ome,
+                            hl_load_request *request, hl_volume **volume, hl_error *error) {
   hl_payload payload;
   hl_zarr_choice choice;
   hl_status status = choose_level(image, bundle->path, request, error);
@@ -133,7 +136,7 @@ static hl_status load_image(const hl_bundle *bundle, const hl_zarr_image *image,
   const hl_zarr_array *array = &image->levels[request->selection.level].array;
   describe(image, request->selection.level, &payload, &choice);
   if (image->has_unit) request->unit = "micrometre";
-  status = choose_steps(image, array, bundle->path, request, &choice, error);
+  status = choose_steps(image, array, bundle->path, ome, request, &choice, error);
   if (status == HL_OK) status = hl_volume_check_grid(&payload.grid, bundle->path, error);
   if (status == HL_OK && request->array_count == 0)
     status = hl_component_only(request, bundle->path, false, &payload, error);
@@ -153,7 +156,7 @@ static hl_status load_array(const hl_bundle *bundle, const hl_zarr_array *array,
                             hl_volume **volume, hl_error *error) {
   hl_zarr_image image;
   hl_status status = hl_zarr_image_of_array(bundle, array, &image, error);
-  if (status == HL_OK) status = load_image(bundle, &image, request, volume, error);
+  if (status == HL_OK) status = load_image(bundle, &image, NULL, request, volume, error);
   hl_zarr_image_release(&image);
   return status;
 }
@@ -263,11 +266,10 @@ static hl_status load_described(const hl_bundle *bundle, const char *folder, con
                                 hl_load_request *request, hl_volume **volume, hl_error *error) {
   hl_zarr_image image;
   hl_status status = hl_zarr_image_read(bundle, folder, ome, &image, error);
-  if (status == HL_OK) status = load_image(bundle, &image, request, volume, error);
+  if (status == HL_OK) status = load_image(bundle, &image, ome, request, volume, error);
   hl_zarr_image_release(&image);
   if (status != HL_OK) return status;
-  status = hl_zarr_describe_channels(ome, request, error);
-  if (status == HL_OK) status = hl_zarr_name_labels(ome, *volume, error);
+  status = hl_zarr_name_labels(ome, *volume, error);
   if (status == HL_OK) status = hl_zarr_list_label_maps(bundle, folder, *volume, error);
   if (status != HL_OK) hl_volume_release(*volume), *volume = NULL;
   return status;
