@@ -87,9 +87,11 @@ typedef struct hl_label {
   double opacity;   /* 1: the label is solid; below 1: the label's surface is a skin that takes this fraction
                      * of the light that crosses it */
   int visible;
-  double tint; /* only for the labels of a mask: the fraction of the label's colour that the matter takes. 0:
-                * the matter keeps its own colour; 1: the matter has `color`; between: a mixture of both
-                * colours */
+  double tint;  /* only for the labels of a mask: the fraction of the label's colour that the matter takes. 0:
+                 * the matter keeps its own colour; 1: the matter has `color`; between: a mixture of both
+                 * colours */
+  int unlisted; /* non-zero: legends have no row for the label, which is only there to show where others lie.
+                 * hl_scene_compose() sets it for a translucent "rest" in "show" */
 } hl_label;
 
 /* A label map that hides, reveals or colours the matter of a volume. The mask's effect is smooth at the

@@ -92,6 +92,7 @@ static void show_label(hl_shown_label *shown, double opacity, bool exactly, hl_l
   const bool whole = is_whole(label, shown);
   shown->found = true;
   label->visible = 1;
+  label->unlisted = 0;
   label->opacity = whole ? 1 : opacity;
   if ((!shown->colored && !shown->own) || whole) return;
   if (shown->colored) memcpy(label->color, shown->color, sizeof label->color);
@@ -104,6 +105,14 @@ static void show_label(hl_shown_label *shown, double opacity, bool exactly, hl_l
  * are multiplied. */
 static double opacity_of_each(double opacity, size_t count) {
   return opacity < 1 && count > 1 ? -expm1(log1p(-opacity) / cbrt((double)count)) : opacity;
+}
+
+/* Returns whether the item "all" or "rest" shows labels that are no objects to look up in a legend: they are
+ * the faint rest around labels that the list names. */
+static bool is_faint_rest(const hl_shown_list *list, const hl_shown_label *all) {
+  bool named = false;
+  for (size_t s = 0; s < list->count; s++) named |= !list->labels[s].all;
+  return named && all->opacity < 1;
 }
 
 void hl_show_labels(hl_shown_list *list, hl_label *labels, size_t count) {
@@ -123,6 +132,7 @@ void hl_show_labels(hl_shown_list *list, hl_label *labels, size_t count) {
       if (!all->all || hidden) continue;
       show_label(all, list->of_mask ? all->opacity : opacity_of_each(all->opacity, bodies), exactly[s],
                  &labels[n]);
+      labels[n].unlisted = is_faint_rest(list, all);
     }
     for (size_t s = 0; s < list->count; s++)
       if (!list->labels[s].all) show_label(&list->labels[s], list->labels[s].opacity, exactly[s], &labels[n]);

@@ -43,9 +43,10 @@ static bool has_strip(const hl_scene_volume *volume) {
   return false;
 }
 
-/* Returns whether a label has a row: if it is seen, and a label of a mask gives matter its colour. */
+/* Returns whether a label has a row: if it is seen and listed, and a label of a mask gives matter its colour.
+ */
 static bool has_row(const hl_label *label, bool of_mask) {
-  return label->visible && label->opacity > 0 && (!of_mask || label->tint > 0);
+  return label->visible && !label->unlisted && label->opacity > 0 && (!of_mask || label->tint > 0);
 }
 
 static size_t count_rows(const hl_scene_volume *volume) {
@@ -124,7 +125,7 @@ static void draw_row(legend *made, double left, const double color[3], const cha
 }
 
 /* Finds the colour and the name that the n-th row of a volume shows. Solid labels come before translucent
- * ones, which are often the rest around them. Returns false if the volume has fewer rows. */
+ * ones, which are often what lies around them. Returns false if the volume has fewer rows. */
 static bool row_of(const hl_scene_volume *volume, size_t n, const double **color,
                    char text[NUMBER_BYTES * 4]) {
   const size_t counts[2] = {volume->label_count, volume->mask.label_count};
@@ -223,14 +224,18 @@ static void draw_rows(legend *made, const hl_scene_volume *volume) {
 
 /* ---- the strip ---- */
 
-/* Finds the values along a volume's strip. */
+/* Finds the values along a volume's strip: those that are visible, or those over which the colours go. */
 static hl_status find_scale(const legend *made, const hl_scene_volume *volume, hl_strip_scale *scale,
                             hl_error *error) {
   const double *stated = made->place->overlay->legend_range;
+  const hl_transfer_function *function = &volume->transfer_function;
   double range[2];
-  hl_status status = hl_transfer_function_visible_range(volume->volume, &volume->transfer_function, range,
-                                                        error);
+  hl_status status = hl_transfer_function_visible_range(volume->volume, function, range, error);
   if (status != HL_OK) return status;
+  if (hl_strip_is_even(function)) {
+    range[0] = function->color[0].value;
+    range[1] = function->color[function->color_count - 1].value;
+  }
   *scale = hl_strip_scale_of(&volume->transfer_function, stated[0] < stated[1] ? stated : range);
   return HL_OK;
 }

@@ -2,8 +2,8 @@
  *
  * The strip shows the function's own colours, as a fully lit surface has them. The curve beside the strip
  * shows the opacity: it touches the strip where the opacity is 0, and lies farthest from it at the greatest
- * opacity. A function whose colours were spread by logarithms has a logarithmic strip, on which each of them
- * takes the same length. */
+ * opacity. Where all values have the same opacity, there is no curve. A function whose colours were spread by
+ * logarithms has a logarithmic strip, on which each of them takes the same length. */
 #include "figure/strip.h"
 
 #include <math.h>
@@ -19,11 +19,18 @@ static const double strip_width = 1.1, curve_width = 1.6, gap = 0.45, tick = 0.3
 
 /* ---- the scale ---- */
 
+bool hl_strip_is_even(const hl_transfer_function *function) {
+  for (size_t p = 1; p < function->opacity_count; p++)
+    if (function->opacity[p].opacity != function->opacity[0].opacity) return false;
+  return function->color_count > 1 &&
+         function->color[0].value < function->color[function->color_count - 1].value;
+}
+
 hl_strip_scale hl_strip_scale_of(const hl_transfer_function *function, const double range[2]) {
-  return (hl_strip_scale){
-      .low = range[0],
-      .high = range[1],
-      .logarithmic = range[0] > 0 && hl_transfer_function_scale(function) == HL_RANGE_LOG};
+  return (hl_strip_scale){.low = range[0],
+                          .high = range[1],
+                          .logarithmic = range[0] > 0 && hl_transfer_function_scale(function) == HL_RANGE_LOG,
+                          .even = hl_strip_is_even(function)};
 }
 
 /* The place of a value along the strip: 0 at the lower end, 1 at the upper end. */
@@ -198,7 +205,8 @@ static double draw_numbers(const hl_ink *ink, const hl_strip_scale *scale, doubl
 /* ---- the whole ---- */
 
 double hl_strip_width(const hl_ink *ink, const hl_strip_scale *scale, double height) {
-  return draw_numbers(ink, scale, 0, height, 0, false) + (strip_width + curve_width) * ink->size;
+  return draw_numbers(ink, scale, 0, height, 0, false) +
+         (strip_width + (scale->even ? 0 : curve_width)) * ink->size;
 }
 
 void hl_strip_draw(const hl_ink *ink, const hl_transfer_function *function, const hl_strip_scale *scale,
@@ -209,7 +217,7 @@ void hl_strip_draw(const hl_ink *ink, const hl_transfer_function *function, cons
   cairo_save(cairo);
   cairo_pattern_t *pattern = make_pattern(function, scale, bottom, top, cairo);
   cairo_restore(cairo);
-  draw_curve(ink, function, scale, x - wide, bottom, top);
+  if (!scale->even) draw_curve(ink, function, scale, x - wide, bottom, top);
   cairo_rectangle(cairo, x - wide, top, wide, height);
   hl_ink_stroke(ink, 0.12 * ink->size);
   cairo_rectangle(cairo, x - wide, top, wide, height);

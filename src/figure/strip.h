@@ -11,7 +11,11 @@
 typedef struct hl_strip_scale {
   double low, high; /* low < high; above 0 if `logarithmic` */
   bool logarithmic; /* whether equal ways along the strip are equal ratios of values, not equal differences */
+  bool even;        /* whether all values have the same opacity, so that there is no curve */
 } hl_strip_scale;
+
+/* Whether all values have the same opacity, as in a slice, and colours alone tell them apart. */
+bool hl_strip_is_even(const hl_transfer_function *function);
 
 /* The scale on which a function's colours are spread evenly, with these values at its ends. */
 hl_strip_scale hl_strip_scale_of(const hl_transfer_function *function, const double range[2]);

@@ -15,7 +15,8 @@
 #include "scene/label/label_table.h"
 #include "scene/scene.h"
 
-static const char *const label_keys[] = {"value", "name", "color", "opacity", "visible", "tint", NULL};
+static const char *const label_keys[] = {"value",   "name", "color",    "opacity",
+                                         "visible", "tint", "unlisted", NULL};
 
 /* The labels that the volume's file or the label table describes. They are found when they are first
  * needed. */
@@ -93,7 +94,8 @@ static hl_status read_label(known_labels *known, const json_t *object, hl_label 
   if (json_object_get(object, "color") != NULL) label->tint = 1;
   if (status == HL_OK) status = hl_json_number(reader, object, "tint", &label->tint);
   if (status == HL_OK) status = hl_json_number(reader, object, "opacity", &label->opacity);
-  return status == HL_OK ? hl_json_flag(reader, object, "visible", &label->visible) : status;
+  if (status == HL_OK) status = hl_json_flag(reader, object, "visible", &label->visible);
+  return status == HL_OK ? hl_json_flag(reader, object, "unlisted", &label->unlisted) : status;
 }
 
 /* Sorts labels by number. Lists of labels are short. */

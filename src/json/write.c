@@ -329,6 +329,7 @@ static void write_labels(hl_json_writer *w, const hl_label *labels, size_t count
     hl_json_write_number(w, "opacity", label->opacity);
     hl_json_write_flag(w, "visible", label->visible);
     if (masks) hl_json_write_number(w, "tint", label->tint);
+    if (label->unlisted) hl_json_write_flag(w, "unlisted", label->unlisted);
     hl_json_close(w, "}");
   }
   hl_json_close(w, "]");

@@ -4,3 +4,13 @@ halflight render a_16x16x16_uint8.raw --size 160x160 --shading flat --colormap t
 tool png-pixel a.png 118 17 | python3 -c '
 red, green, blue = (int(code) for code in input().split())
 print("the strip ends in the red of turbo:", red > 100 and green < 60 and blue < 60)'
+# The legend of a slice goes over the values of its greys or colours, here those of soft tissue, and not over all values of the volume.
+"$PYTHON" -c "
+import math, struct
+def value(away): return -1000 if away > 10 else 60 if away > 5 else 1200 if away > 3 else 30
+open('ct_24x24x24_int16.raw', 'wb').write(b''.join(struct.pack('<h', value(math.dist((x, y, z), (11.5,) * 3)) + (7 * x + 5 * y + 3 * z) % 11)
+                                                   for z in range(24) for y in range(24) for x in range(24)))"
+for words in '' '--colormap viridis'; do
+  halflight render ct_24x24x24_int16.raw --slice z=0.5 $words --legend auto --place legend=below --size 200 --quiet -o slice.pdf
+  pdftotext -layout slice.pdf - | grep -oE '[0-9]+' | sort -n | tr '\n' ' '; echo
+done
