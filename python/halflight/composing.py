@@ -162,9 +162,16 @@ def _options(settings: Mapping[str, Any], volumes: Sequence[Volume], flags: int)
         if (background := settings.get("background")) is not None:
             named = background if isinstance(background, str) and background in ("transparent", "sky") else None
             options["background"] = named or ",".join(map(repr, map(float, colors.linear_color("background", background))))
-    elif flags & lib.HL_COMPOSE_CUT and (look := volumes[0]._changes.get("look")) not in (None, "mip"):
+    elif (flags & lib.HL_COMPOSE_CUT or _have_labels_within(volumes, flags)) and (look := volumes[0]._changes.get("look")) not in (None, "mip"):
         options["look"] = str(look)
     return options
+
+
+def _have_labels_within(volumes: Sequence[Volume], flags: int) -> bool:
+    """Whether label maps show beside volumes whose opacities are those of their look, which may hide the labels."""
+    others = [one for one in volumes if one._changes.get("labels") in (None, False)]
+    return bool(flags & lib.HL_COMPOSE_BARE) and 0 < len(others) < len(volumes) and all(
+        one._base is None and one._changes.get("transfer_function") is None and one._changes.get("iso") is None for one in others)
 
 
 def _are_projected(volumes: Sequence[Volume]) -> bool:

@@ -136,7 +136,7 @@ static hl_status change_all(const hl_composer *composer, scene_change *change) {
   bool seen = change->volumes.seen || (composer->flags & HL_COMPOSE_CHANGED) != 0;
   if (status == HL_OK) smooth_labels(composer, description);
   if (status == HL_OK) status = hl_compose_camera(composer, seen, description);
-  if (status == HL_OK) status = hl_see_through_channels(composer, description, &change->channels);
+  if (status == HL_OK) status = hl_see_through(composer, description, &change->channels);
   if (status == HL_OK) status = color_meshes(composer, change);
   if (status == HL_OK) status = add_floor(composer, change);
   if (status == HL_OK) status = hl_compose_lights(composer, description, &change->lights);

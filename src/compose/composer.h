@@ -60,13 +60,13 @@ const char *hl_text_for(const hl_composer *composer, hl_ask option, const hl_sce
  * volumes of values, and no "tf", "colormap" or "iso" names it. */
 bool hl_is_left_out(const hl_composer *composer, const hl_scene_description *description, size_t index);
 
-/* ---- see_through.c: channels ---- */
+/* ---- see_through.c ---- */
 
-/* In a bare scene of channels, makes channels translucent by which the camera hardly sees another channel,
- * and logs a line for each of them. Options that choose opacities switch this off. *changed: owned by the
- * caller; the scene's volumes, which may have changed; null if there is nothing to judge. */
-hl_status hl_see_through_channels(const hl_composer *composer, hl_scene_description *scene,
-                                  hl_scene_volume **changed);
+/* In a bare scene of channels, makes channels translucent by which the camera hardly sees another channel. In
+ * a bare scene of label maps, makes matter of a translucent look so thin that the camera sees the labels in
+ * it. Logs a line for each of the changed volumes. Options that choose opacities switch this off. *changed:
+ * owned by the caller; the scene's volumes, which may have changed; null if there is nothing to judge. */
+hl_status hl_see_through(const hl_composer *composer, hl_scene_description *scene, hl_scene_volume **changed);
 
 /* ---- isosurfaces.c ---- */
 

@@ -20,20 +20,6 @@
 
 enum { PLACES = 256, FEWEST_PLACES = 16, ALL_PLACES = 32768 };
 
-/* Finds the label of a map that a value is, if the label is visible. Returns the label's index; the number of
- * labels if there is no such label. */
-static size_t shown_label(const hl_scene_volume *map, double value) {
-  size_t low = 0, high = map->label_count;
-  while (low < high) {
-    const size_t middle = low + (high - low) / 2;
-    if ((double)map->labels[middle].value < value) low = middle + 1;
-    else high = middle;
-  }
-  const bool found = low < map->label_count && (double)map->labels[low].value == value &&
-                     map->labels[low].visible && map->labels[low].opacity > 0;
-  return found ? low : map->label_count;
-}
-
 /* What is found about one label, seen from one side. */
 typedef struct label_sight {
   uint64_t voxels, facing; /* examined voxels of the label; those of them at whose near side no label lies */
@@ -52,8 +38,7 @@ typedef struct sought_map {
   const hl_screen *own; /* the map with its cuts */
   const hl_screen *screens;
   size_t screen_count;
-  affine3 to_world, to_index;
-  double step;         /* world units */
+  affine3 to_world;
   uint64_t places;     /* the number of voxels of a label that are tried */
   vec3 ways[SIDES];    /* unit vectors to the sides */
   int side;            /* the side from which the labels are looked at now */
@@ -75,7 +60,7 @@ static bool find_voxel(const sought_map *sought, uint64_t voxel, sought_voxel *f
   const size_t at[3] = {(size_t)(voxel % size[0]), (size_t)(voxel / size[0] % size[1]),
                         (size_t)(voxel / size[0] / size[1])};
   const vec3 place = {(double)at[0], (double)at[1], (double)at[2]};
-  found->label = shown_label(map, hl_volume_value_within(map->volume, at[0], at[1], at[2]));
+  found->label = hl_screen_label(map, hl_volume_value_within(map->volume, at[0], at[1], at[2]));
   if (found->label == map->label_count || (sought->side > FROM_EYE && !sought->sights[found->label].hidden) ||
       !hl_cuts_leave(sought->own->cuts, sought->own->cut_count, place))
     return false;
@@ -83,14 +68,7 @@ static bool find_voxel(const sought_map *sought, uint64_t voxel, sought_voxel *f
   found->towards = sought->side == FROM_EYE && camera->type == HL_CAMERA_PERSPECTIVE
                        ? vec3_normalise(vec3_subtract(vec3_of(camera->position), found->point))
                        : sought->ways[sought->side];
-  const vec3 before = vec3_add(place,
-                               mat3_apply(sought->to_index.linear, vec3_scale(found->towards, sought->step)));
-  const long next[3] = {lround(before.x), lround(before.y), lround(before.z)};
-  bool within = true;
-  for (int a = 0; a < 3; a++) within &= next[a] >= 0 && next[a] < (long)size[a];
-  found->facing = !within || !hl_cuts_leave(sought->own->cuts, sought->own->cut_count, before) ||
-                  shown_label(map, hl_volume_value_within(map->volume, (size_t)next[0], (size_t)next[1],
-                                                          (size_t)next[2])) == map->label_count;
+  found->facing = hl_screen_label_faces(sought->own, place, found->towards);
   return true;
 }
 
@@ -209,8 +187,6 @@ static hl_status look_at_map(const hl_composer *composer, sought_map *sought) {
   ways[FROM_LEFT] = vec3_scale(right, -1), ways[FROM_RIGHT] = right;
   ways[FROM_ABOVE] = up, ways[FROM_BELOW] = vec3_scale(up, -1);
   sought->to_world = hl_scene_volume_index_to_world(map);
-  sought->step = mat3_shortest_column(sought->to_world.linear);
-  if (!affine3_invert(sought->to_world, &sought->to_index)) return HL_OK;
   sought->places = ALL_PLACES / (map->label_count + 1) + FEWEST_PLACES;
   if (sought->places > PLACES) sought->places = PLACES;
   sought->sights = hl_allocate_zeroed(composer->context, map->label_count, sizeof *sought->sights);

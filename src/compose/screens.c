@@ -42,7 +42,7 @@ hl_status hl_screen_begin(hl_context *context, const hl_scene_description *scene
   const hl_transfer_function *function = &volume->transfer_function;
   const double least = volume->volume->minimum, range = volume->volume->maximum - least;
   *screen = (hl_screen){.volume = volume, .step = mat3_shortest_column(to_world.linear)};
-  if (volume->label_count == 0 && affine3_invert(to_world, &screen->to_index)) {
+  if (affine3_invert(to_world, &screen->to_index) && volume->label_count == 0) {
     hl_scene_volume_box(volume, screen->low, screen->high);
     for (int n = 0; n < HL_SCREEN_TABLE; n++) {
       const double opacity = hl_transfer_function_opacity(function,
@@ -54,6 +54,30 @@ hl_status hl_screen_begin(hl_context *context, const hl_scene_description *scene
 }
 
 void hl_screen_release(hl_context *context, hl_screen *screen) { hl_release(context, screen->cuts); }
+
+size_t hl_screen_label(const hl_scene_volume *map, double value) {
+  size_t low = 0, high = map->label_count;
+  while (low < high) {
+    const size_t middle = low + (high - low) / 2;
+    if ((double)map->labels[middle].value < value) low = middle + 1;
+    else high = middle;
+  }
+  const bool found = low < map->label_count && (double)map->labels[low].value == value &&
+                     map->labels[low].visible && map->labels[low].opacity > 0;
+  return found ? low : map->label_count;
+}
+
+bool hl_screen_label_faces(const hl_screen *screen, vec3 place, vec3 towards) {
+  const hl_scene_volume *map = screen->volume;
+  const size_t *size = map->volume->dimension;
+  const vec3 before = vec3_add(place, mat3_apply(screen->to_index.linear, vec3_scale(towards, screen->step)));
+  const long next[3] = {lround(before.x), lround(before.y), lround(before.z)};
+  bool within = true;
+  for (int a = 0; a < 3; a++) within &= next[a] >= 0 && next[a] < (long)size[a];
+  return !within || !hl_cuts_leave(screen->cuts, screen->cut_count, before) ||
+         hl_screen_label(map, hl_volume_value_within(map->volume, (size_t)next[0], (size_t)next[1],
+                                                     (size_t)next[2])) == map->label_count;
+}
 
 double hl_screen_opacity(const hl_screen *screen, double value) {
   const hl_volume *volume = screen->volume->volume;

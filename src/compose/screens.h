@@ -38,6 +38,14 @@ hl_status hl_screen_begin(hl_context *context, const hl_scene_description *scene
                           const hl_scene_volume *volume, hl_screen *screen, hl_error *error);
 void hl_screen_release(hl_context *context, hl_screen *screen);
 
+/* The index of the label of a map that a value is, if the label is visible; the number of labels if there is
+ * no such label. */
+size_t hl_screen_label(const hl_scene_volume *map, double value);
+
+/* Whether a visible label faces a side: whether a step from its place, in the index space of its map, leads
+ * out of the map's visible labels. towards: a unit vector of the world. */
+bool hl_screen_label_faces(const hl_screen *map, vec3 place, vec3 towards);
+
 /* The opacity of a step within matter of a value; 0 for values that are not finite. */
 double hl_screen_opacity(const hl_screen *screen, double value);
 

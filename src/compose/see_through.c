@@ -1,9 +1,11 @@
-/* compose/see_through.c - makes channels of a file translucent that hide other channels of the file.
+/* compose/see_through.c - makes channels of a file translucent that hide other channels of the file, and
+ * makes translucent matter thin that hides label maps.
  *
  * A volume is judged at places of its matter that the camera would see if the volume were alone. If other
  * matter leaves almost no light of most of these places, the volume is hidden. The matter that hides it is
  * made so thin that most of the light passes: its transfer function gets a longer unit distance. */
 #include <math.h>
+#include <stdio.h>
 #include <string.h>
 
 #include "compose/composer.h"
@@ -12,6 +14,7 @@
 #include "core/context.h"
 #include "core/memory.h"
 #include "guess/sample.h"
+#include "text/stem.h"
 
 /* A volume is hidden if a smaller fraction of its places is seen. */
 #define ENOUGH 0.25
@@ -23,7 +26,7 @@
 /* The least fraction that is told from nothing. */
 #define LEAST 1e-30
 
-enum { PLACES = 256, TRIED = 16384 };
+enum { PLACES = 256, TRIED = 16384, NAME_BYTES = 61 };
 
 /* The volumes of a scene, of which some hide others. */
 typedef struct channel_views {
@@ -74,6 +77,28 @@ static void keep_place(channel_views *views, kept_places *kept, vec3 point) {
   views->places[views->place_count++] = point;
 }
 
+/* Finds places of the surfaces of a map's labels that face the camera. Labels that are there only to show
+ * where others lie do not count. */
+static void find_label_places(channel_views *views, const hl_screen *screen) {
+  const hl_scene_volume *map = screen->volume;
+  const size_t *size = map->volume->dimension;
+  const uint64_t all = (uint64_t)size[0] * size[1] * size[2], looks = hl_examined_voxels(all);
+  const affine3 to_world = hl_scene_volume_index_to_world(map);
+  kept_places kept = {.every = 1};
+  views->place_count = 0;
+  for (uint64_t n = 0; n < looks; n++) {
+    const uint64_t voxel = hl_examined_voxel(n, all);
+    const size_t i = (size_t)(voxel % size[0]), j = (size_t)(voxel / size[0] % size[1]),
+                 k = (size_t)(voxel / size[0] / size[1]);
+    const vec3 at = {(double)i, (double)j, (double)k}, point = affine3_apply(to_world, at);
+    const size_t label = hl_screen_label(map, hl_volume_value_within(map->volume, i, j, k));
+    if (label < map->label_count && !map->labels[label].unlisted &&
+        hl_cuts_leave(screen->cuts, screen->cut_count, at) &&
+        hl_screen_label_faces(screen, at, towards_eye(views, point)))
+      keep_place(views, &kept, point);
+  }
+}
+
 /* Finds places at the front of a volume. */
 static void find_places(channel_views *views, const hl_screen *screen) {
   const size_t *size = screen->volume->volume->dimension;
@@ -91,6 +116,10 @@ static void find_places(channel_views *views, const hl_screen *screen) {
     if (hl_screen_passing(screen, point, towards_eye(views, point), HIDES) >= HIDES)
       keep_place(views, &kept, point);
   }
+}
+
+static bool is_map(const channel_views *views, size_t volume) {
+  return views->scene->volumes[volume].label_count > 0;
 }
 
 /* The middle one of the fractions of light that a volume lets pass from all places. */
@@ -120,17 +149,20 @@ static double seen_part(const channel_views *views, size_t of) {
   return views->place_count > 0 ? (double)seen / (double)views->place_count : 1;
 }
 
-/* If a volume is hidden, makes the volumes thin that hide it. Derived: the transmittances of all of them are
- * multiplied, and the factor f makes the transmittance t^f. */
+/* If a volume is hidden, makes the volumes thin that hide it. Places of labels are hidden if most of their
+ * light is lost, as they lie in matter that is meant to be seen through. Derived: the transmittances of all
+ * of them are multiplied, and the factor f makes the transmittance t^f. */
 static hl_status thin_before(hl_context *context, channel_views *views, size_t of, hl_error *error) {
   double middle[HL_CHANNELS_MOST];
   size_t hiding = 0;
   hl_status status = HL_OK;
-  find_places(views, &views->screens[of]);
-  if (seen_part(views, of) >= ENOUGH) return HL_OK;
+  if (is_map(views, of)) find_label_places(views, &views->screens[of]);
+  else find_places(views, &views->screens[of]);
+  if (views->place_count == 0 || (!is_map(views, of) && seen_part(views, of) >= ENOUGH)) return HL_OK;
   for (size_t v = 0; v < views->count && status == HL_OK; v++) {
     middle[v] = 1;
-    if (v != of) status = find_middle(context, views, &views->screens[v], &middle[v], error);
+    if (v != of && !is_map(views, v))
+      status = find_middle(context, views, &views->screens[v], &middle[v], error);
     hiding += middle[v] < HIDES;
   }
   for (size_t v = 0; v < views->count && status == HL_OK; v++) {
@@ -142,40 +174,60 @@ static hl_status thin_before(hl_context *context, channel_views *views, size_t o
   return status;
 }
 
-static const char *name_of(const hl_scene_volume *volume) {
-  return volume->name != NULL ? volume->name : "a volume";
+/* The volume's name, or the name of its file without folder and extension. */
+static const char *name_of(const hl_scene_volume *volume, char name[NAME_BYTES]) {
+  const char *text = volume->name != NULL ? volume->name : volume->file != NULL ? volume->file : "a volume";
+  size_t length = strlen(text);
+  if (volume->name == NULL && volume->file != NULL) text = hl_stem(text, &length);
+  snprintf(name, NAME_BYTES, "%.*s", (int)fmin((double)length, NAME_BYTES - 1), text);
+  return name;
 }
 
-static hl_status thin_all(hl_context *context, channel_views *views, hl_scene_volume *volumes,
-                          hl_error *error) {
+/* Makes the volumes thin that hide others. "density" multiplies what is found. */
+static void make_thin(const hl_composer *composer, const channel_views *views, hl_scene_volume *volumes) {
+  const hl_asked *density = &composer->asked[HL_ASK_DENSITY];
+  for (size_t v = 0; v < views->count; v++) {
+    if (!(views->thin[v] < 1)) continue;
+    const bool of_map = is_map(views, views->hidden[v]);
+    char names[2][NAME_BYTES];
+    volumes[v].transfer_function.unit_distance /= views->thin[v] * (density->given ? density->number[0] : 1);
+    hl_log(composer->context, HL_LOG_INFO,
+           of_map ? "%s would hide %s, and is shown thinner: --density 3 shows more of it"
+                  : "%s would hide %s, and is shown translucent: --look surface keeps it opaque",
+           name_of(&volumes[v], names[0]), name_of(&volumes[views->hidden[v]], names[1]));
+  }
+}
+
+static hl_status thin_all(const hl_composer *composer, channel_views *views, hl_scene_volume *volumes) {
+  hl_context *context = composer->context;
   hl_status status = HL_OK;
   for (size_t v = 0; v < views->count && status == HL_OK; v++) {
-    status = hl_screen_begin(context, views->scene, &volumes[v], &views->screens[v], error);
+    status = hl_screen_begin(context, views->scene, &volumes[v], &views->screens[v], composer->error);
     views->thin[v] = 1;
   }
-  for (size_t v = 0; v < views->count && status == HL_OK; v++) status = thin_before(context, views, v, error);
-  for (size_t v = 0; v < views->count && status == HL_OK; v++) {
-    if (!(views->thin[v] < 1)) continue;
-    volumes[v].transfer_function.unit_distance /= views->thin[v];
-    hl_log(context, HL_LOG_INFO,
-           "%.60s would hide %.60s, and is shown translucent: --look surface keeps it opaque",
-           name_of(&volumes[v]), name_of(&volumes[views->hidden[v]]));
-  }
+  bool with_maps = false;
+  for (size_t v = 0; v < views->count; v++) with_maps |= is_map(views, v);
+  for (size_t v = 0; v < views->count && status == HL_OK; v++)
+    if (!with_maps || is_map(views, v)) status = thin_before(context, views, v, composer->error);
+  if (status == HL_OK) make_thin(composer, views, volumes);
   for (size_t v = 0; v < views->count; v++) hl_screen_release(context, &views->screens[v]);
   return status;
 }
 
-/* Returns whether the scene consists of channels of one file, all of them with opacities that were chosen
- * automatically. */
-static bool has_chosen_channels(const hl_composer *composer, const hl_scene_description *scene) {
+/* Returns whether a bare scene's opacities were chosen automatically. */
+static bool has_chosen_opacities(const hl_composer *composer, const hl_scene_description *scene) {
   const hl_asked *asked = composer->asked;
+  return composer->bare && (composer->flags & HL_COMPOSE_FUNCTIONS) == 0 && scene->volume_count >= 2 &&
+         scene->volume_count <= HL_CHANNELS_MOST && !hl_is_maximum(composer, scene) &&
+         !asked[HL_ASK_SLICE].given && !asked[HL_ASK_TF].given && !asked[HL_ASK_THRESHOLD].given &&
+         !asked[HL_ASK_ISO].given;
+}
+
+/* Returns whether the scene consists of channels of one file, without a look that an option chooses. */
+static bool has_channels(const hl_composer *composer, const hl_scene_description *scene) {
+  const hl_asked *look = &composer->asked[HL_ASK_LOOK];
   const hl_scene_volume *first = scene->volumes;
-  if (!composer->bare || (composer->flags & HL_COMPOSE_FUNCTIONS) != 0 || scene->volume_count < 2 ||
-      scene->volume_count > HL_CHANNELS_MOST ||
-      (asked[HL_ASK_LOOK].given && asked[HL_ASK_LOOK].choice != HL_LOOK_AUTO) ||
-      hl_is_maximum(composer, scene) || asked[HL_ASK_SLICE].given || asked[HL_ASK_TF].given ||
-      asked[HL_ASK_THRESHOLD].given || asked[HL_ASK_ISO].given)
-    return false;
+  if (look->given && look->choice != HL_LOOK_AUTO) return false;
   for (size_t v = 0; v < scene->volume_count; v++)
     if (!hl_screen_can_hide(&scene->volumes[v]) || first->file == NULL || scene->volumes[v].file == NULL ||
         strcmp(scene->volumes[v].file, first->file) != 0 ||
@@ -184,13 +236,32 @@ static bool has_chosen_channels(const hl_composer *composer, const hl_scene_desc
   return true;
 }
 
-hl_status hl_see_through_channels(const hl_composer *composer, hl_scene_description *scene,
-                                  hl_scene_volume **changed) {
+/* Returns whether the scene consists of label maps and of matter that an option's look lets be seen through.
+ */
+static bool has_labels_in_glass(const hl_composer *composer, const hl_scene_description *scene) {
+  const hl_asked *look = &composer->asked[HL_ASK_LOOK];
+  size_t maps = 0;
+  if (!look->given ||
+      (look->choice != HL_LOOK_TRANSLUCENT && look->choice != HL_LOOK_XRAY && look->choice != HL_LOOK_SMOKE))
+    return false;
+  for (size_t v = 0; v < scene->volume_count; v++) {
+    const hl_scene_volume *volume = &scene->volumes[v];
+    if (volume->label_count == 0 && !hl_screen_can_hide(volume)) return false;
+    if (volume->label_count > 0 && !hl_is_at_hand(volume->volume)) return false;
+    maps += volume->label_count > 0;
+  }
+  return maps > 0 && maps < scene->volume_count;
+}
+
+hl_status hl_see_through(const hl_composer *composer, hl_scene_description *scene,
+                         hl_scene_volume **changed) {
   hl_context *context = composer->context;
   const size_t count = scene->volume_count;
   vec3 right, up;
   channel_views views = {.scene = scene, .count = count};
-  if (!has_chosen_channels(composer, scene) || !hl_camera_basis(&scene->camera, &right, &up, &views.forward))
+  if (!has_chosen_opacities(composer, scene) ||
+      (!has_channels(composer, scene) && !has_labels_in_glass(composer, scene)) ||
+      !hl_camera_basis(&scene->camera, &right, &up, &views.forward))
     return HL_OK;
   *changed = hl_allocate(context, count, sizeof **changed);
   views.screens = hl_allocate_zeroed(context, count, sizeof *views.screens);
@@ -202,7 +273,7 @@ hl_status hl_see_through_channels(const hl_composer *composer, hl_scene_descript
                                           "channels that are seen");
   if (status == HL_OK) {
     memcpy(*changed, scene->volumes, count * sizeof **changed);
-    status = thin_all(context, &views, *changed, composer->error);
+    status = thin_all(composer, &views, *changed);
     scene->volumes = *changed;
   }
   hl_release(context, views.screens);

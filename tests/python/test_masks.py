@@ -124,6 +124,17 @@ def test_a_slice_is_the_programs(program, tmp_path):
         halflight.render(path, slice="z=2")
 
 
+def test_labels_in_glass_are_the_programs(program, tmp_path):
+    z, y, x = np.mgrid[-1:1:24j, -1:1:24j, -1:1:24j]
+    away = np.sqrt(x**2 + y**2 + z**2)
+    np.save(tmp_path / "head.npy", np.clip(200 + 400 * (0.8 - away), 0, 255).astype(np.uint8))
+    np.save(tmp_path / "core.npy", (away < 0.3).astype(np.uint8))
+    head, core = str(tmp_path / "head.npy"), str(tmp_path / "core.npy")
+    for look in ("translucent", "surface"):
+        subprocess.run([program, "render", head, "--labels", core, "--look", look, "--size", "48x32", "--quiet", "-o", str(tmp_path / "own.npy")], check=True)
+        assert np.array_equal(np.load(tmp_path / "own.npy"), halflight.render(head, labels=core, look=look, size=(48, 32))), look
+
+
 def test_density_is_the_programs(program, tmp_path):
     z, y, x = np.mgrid[-1:1:24j, -1:1:24j, -1:1:24j]
     np.save(tmp_path / "ball.npy", np.exp(-4 * (x**2 + 2 * y**2 + z**2)).astype(np.float32))
