@@ -194,13 +194,14 @@ typedef struct hl_volume_save_options {
 
 HL_API void hl_volume_save_options_defaults(hl_volume_save_options *options);
 
-/* Writes a volume's file: .nrrd (gzip), .nii, .nii.gz, .mha (zlib), .vti, .mrc, .mrc.gz, .npy (axes
- * [k][j][i]), .raw or .raw.gz, by the name's ending; the name of a raw file must state size and type, as for
- * reading. Data values and placement are kept. For NIfTI and MetaImage, the world is converted to the
- * format's anatomical space. A grid that MRC cannot hold is refused. If the written type holds whole numbers,
- * values are rounded to the nearest one, and values that are not finite become 0. Warnings tell the number of
- * values that were beyond the type's range or not finite, and the parts of the placement that the format
- * cannot state. If options is null, the defaults. The file appears whole or not at all. */
+/* Writes a volume's file: .nrrd (gzip), .nii, .nii.gz, .mha (zlib), .vti, .mrc, .mrc.gz, .tif (a stack of
+ * ImageJ), .npy (axes [k][j][i]), .raw or .raw.gz, by the name's ending; the name of a raw file must state
+ * size and type, as for reading. Data values and placement are kept. For NIfTI and MetaImage, the world is
+ * converted to the format's anatomical space. A grid that MRC cannot hold is refused. If the written type
+ * holds whole numbers, values are rounded to the nearest one, and values that are not finite become 0.
+ * Warnings tell the number of values that were beyond the type's range or not finite, and the parts of the
+ * placement that the format cannot state. If options is null, the defaults. The file appears whole or not at
+ * all. */
 HL_API HL_WARN_UNUSED hl_status hl_volume_save_with(hl_context *context, const hl_volume *volume,
                                                     const char *path, const hl_volume_save_options *options,
                                                     hl_error *error);

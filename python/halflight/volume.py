@@ -295,7 +295,7 @@ class Volume:
         return arrays.Place(tuple(info.origin.tolist()), tuple(map(tuple, (info.direction * info.spacing).T.tolist())))
 
     def save(self, path: str | os.PathLike[str], *, type: str | None = None, shrink: int = 1, unit: str | None = None) -> None:
-        """Write the voxels with their place: .nrrd, .nii, .nii.gz, .mha, .vti, .mrc, .npy, .raw or .raw.gz, by the name's ending.
+        """Write the voxels with their place: .nrrd, .nii, .nii.gz, .mha, .vti, .mrc, .tif, .npy, .raw or .raw.gz, by the name's ending.
 
         Parameters
         ----------

@@ -292,10 +292,12 @@ static int convert_mesh(cli_host *host, const cli_value *values, const char *in,
 
 static bool is_picture_name(const char *path) { return has_extension_among(path, picture_extensions); }
 
-/* Returns whether IN and OUT are pictures. NumPy's arrays may be pictures or volumes, so that IN decides. */
+/* Returns whether IN and OUT are pictures. NumPy's arrays and TIFFs may be pictures or volumes, so that IN
+ * decides. */
 static bool are_pictures(const char *in, const char *out) {
-  return has_extension(out, ".npy") ? has_extension(in, ".png") || has_extension(in, ".exr")
-                                    : is_picture_name(out);
+  const bool tiff = has_extension(out, ".tif") || has_extension(out, ".tiff");
+  if (!tiff && !has_extension(out, ".npy")) return is_picture_name(out);
+  return has_extension(in, ".png") || has_extension(in, ".exr") || (tiff && has_extension(in, ".npy"));
 }
 
 /* Refuses options that are not for what OUT is: options of volumes if OUT is a picture or a mesh, those of
@@ -331,14 +333,18 @@ static void read_picture_options(const cli_value *values, hl_image_write_options
   if (values[CONVERT_TONE].given) options->tone = (hl_tone)values[CONVERT_TONE].choice;
 }
 
-/* Writes a picture in another format. */
-static int convert_picture(cli_host *host, const cli_value *values, const char *in, const char *out) {
+/* Writes a picture in another format. An .npy that is no picture is a volume. */
+static int convert_picture(cli_host *host, const cli_value *values, const char *in, const char *out,
+                           hl_volume_save_options *of_volume) {
   double started = clock_seconds();
   hl_image *image = NULL;
   hl_error error = {0};
   hl_image_write_options options;
   read_picture_options(values, &options);
   hl_status status = hl_image_read(host->context, in, &image, &error);
+  if (status == HL_ERROR_UNSUPPORTED && has_extension(in, ".npy") && !has_extension(out, ".png") &&
+      !has_extension(out, ".exr"))
+    return convert(host, values, in, out, of_volume);
   if (status == HL_ERROR_UNSUPPORTED && !is_picture_name(in))
     return fail(
         EXIT_CODE_INPUT,
@@ -379,7 +385,7 @@ static int run_convert(const cli_value *values, char **operands) {
                                    .operands = operands};
   exit_code = host_open(&host_options, &host);
   if (exit_code == EXIT_CODE_OK)
-    exit_code = picture ? convert_picture(&host, values, operands[0], out)
+    exit_code = picture ? convert_picture(&host, values, operands[0], out, &options)
                 : mesh  ? convert_mesh(&host, values, operands[0], out)
                         : convert(&host, values, operands[0], out, &options);
   host_close(&host);
@@ -395,10 +401,10 @@ const cli_command convert_command = {
     .description =
         "Writes the volume IN, of any format that render reads, to the file OUT: .nrrd, .nii, .nii.gz, "
         ".mha,\n"
-        ".vti, .mrc, .mrc.gz, NumPy's .npy, or .raw and .raw.gz, whose names state size and\n"
-        "type (x_256x256x128_uint8.raw).\n"
+        ".vti, .mrc, .mrc.gz, .tif (ImageJ's stack), NumPy's .npy, or .raw and .raw.gz, whose names state\n"
+        "size and type (x_256x256x128_uint8.raw).\n"
         "Values and placement are kept. A warning names everything that OUT's format cannot store.\n"
-        "Where OUT is a picture, .png, .tif or .exr, IN is a picture, too; the .npy of a .png or an\n"
+        "Where OUT is a picture, .png or .exr, IN is a picture, too; the .npy or .tif of a .png or an\n"
         ".exr is a picture. Where OUT is a mesh, .ply, .stl or .obj, IN is a mesh, too, or a volume\n"
         "whose surface --iso names, or a label map whose labels --show names.",
     .options = convert_options,

@@ -16,8 +16,8 @@
 
 const char *const picture_extensions[] = {".png", ".exr", ".npy", ".tif", ".tiff", NULL};
 const char *const figure_extensions[] = {".png", ".exr", ".npy", ".tif", ".tiff", ".pdf", ".svg", NULL};
-const char *const volume_extensions[] = {".nrrd",   ".nii", ".nii.gz", ".mha",    ".vti", ".mrc",
-                                         ".mrc.gz", ".npy", ".raw",    ".raw.gz", NULL};
+const char *const volume_extensions[] = {".nrrd", ".nii",  ".nii.gz", ".mha", ".vti",    ".mrc", ".mrc.gz",
+                                         ".tif",  ".tiff", ".npy",    ".raw", ".raw.gz", NULL};
 
 const char *const mesh_extensions[] = {".ply", ".stl", ".obj", NULL};
 

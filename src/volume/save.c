@@ -363,6 +363,14 @@ static hl_status state_size(saving *s, size_t at, hl_error *error) {
   return HL_OK;
 }
 
+/* Writes the bytes after the voxels that a format makes piece by piece. */
+static void write_pieces(saving *s, const hl_written_header *header) {
+  unsigned char piece[HL_WRITER_HEADER_BYTES];
+  size_t length;
+  for (size_t n = 0; (length = s->writer->make_piece(&s->grid, header, n, piece)) > 0; n++)
+    fwrite(piece, 1, length, s->output.file);
+}
+
 static hl_status write_file(saving *s, const char *path, hl_error *error) {
   hl_written_header header = {.unit = s->unit};
   hl_status status = s->writer->make_header(path, &s->grid, &header, error);
@@ -373,6 +381,7 @@ static hl_status write_file(saving *s, const char *path, hl_error *error) {
   s->packs = s->writer->packing != HL_PACKING_NONE;
   status = write_rows(s, error);
   if (status == HL_OK && header.end != NULL) fputs(header.end, s->output.file);
+  if (status == HL_OK && s->writer->make_piece != NULL) write_pieces(s, &header);
   if (status == HL_OK && header.size_at > 0) status = state_size(s, header.size_at, error);
   if (status == HL_OK) return hl_output_commit(&s->output, error);
   hl_output_abort(&s->output);
@@ -424,9 +433,13 @@ static hl_status check_raw_name(const saving *s, const char *path, hl_error *err
                  path, n[0], n[1], n[2], hl_voxel_type_name(s->grid.type));
 }
 
-static bool has_place(const hl_volume_description *grid) {
+/* Returns whether a grid has an origin, directions or a space; with `spacing`, also where its voxels are no
+ * cubes of the length 1. */
+static bool has_place(const hl_volume_description *grid, bool spacing) {
   hl_volume_description plain;
   hl_volume_description_defaults(&plain);
+  if (!spacing && grid->space != HL_SPACE_UNKNOWN) return true;
+  for (int axis = 0; axis < 3 && !spacing; axis++) plain.axis[axis][axis] = fabs(grid->axis[axis][axis]);
   return memcmp(grid->axis, plain.axis, sizeof plain.axis) != 0 ||
          memcmp(grid->origin, plain.origin, sizeof plain.origin) != 0;
 }
@@ -446,11 +459,15 @@ static void tell_evaluation(const saving *s, const char *path) {
 static void tell_losses(const saving *s, const char *path) {
   hl_context *context = s->context;
   const char *loses = s->writer->loses, *type = hl_voxel_type_name(s->grid.type);
-  if (loses != NULL && strcmp(loses, "place") == 0 && has_place(&s->grid))
+  if (loses != NULL && strcmp(loses, "place") == 0 && has_place(&s->grid, true))
     hl_log(context, HL_LOG_WARNING,
            "%s: %s files hold no spacing, origin and directions: give them where the file is read", path,
            s->writer->ending);
-  else if (loses != NULL && s->grid.space != HL_SPACE_UNKNOWN)
+  else if (loses != NULL && strcmp(loses, "origin") == 0 && has_place(&s->grid, false))
+    hl_log(context, HL_LOG_WARNING,
+           "%s: %s files hold the lengths of voxels, but neither origin nor directions: .nrrd does", path,
+           s->writer->ending);
+  else if (loses != NULL && strcmp(loses, "space") == 0 && s->grid.space != HL_SPACE_UNKNOWN)
     hl_log(context, HL_LOG_WARNING, "%s: %s files do not tell that their world is %s: remember it", path,
            s->writer->ending, hl_space_name(s->grid.space));
   if (s->writer->claims != NULL && s->grid.space == HL_SPACE_UNKNOWN)
@@ -499,8 +516,8 @@ hl_status hl_volume_save_with(hl_context *context, const hl_volume *volume, cons
   if (s.writer == NULL)
     return hl_fail(
         error, HL_ERROR_ARGUMENT,
-        "%s: volumes are written as .nrrd, .nii, .nii.gz, .mha, .vti, .mrc, .mrc.gz, .npy, .raw or .raw.gz: "
-        "end the name in one of these",
+        "%s: volumes are written as .nrrd, .nii, .nii.gz, .mha, .vti, .mrc, .mrc.gz, .tif, .npy, .raw or "
+        ".raw.gz: end the name in one of these",
         path);
   hl_volume_description_defaults(&s.grid);
   hl_status status = set_box(&s, options, path, error);

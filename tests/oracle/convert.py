@@ -136,6 +136,27 @@ def test_formats():
                     check("the space is told", seen_by_us(target)[3] is not None)
 
 
+def test_tiff():
+    try:
+        import tifffile
+    except ImportError:
+        print("skipped: tifffile")
+        return
+    origin, axes = np.zeros(3), np.diag([0.3, 0.25, 1.7])
+    for kind in ("uint8", "int8", "uint16", "int16", "uint32", "int32", "float32", "float64"):
+        wanted = voxels_of(kind), origin, axes, None
+        write_nrrd(root / "source.nrrd", *wanted)
+        told = convert(root / "source.nrrd", root / "target.tif", "--unit", "um")
+        check(f"{kind} as .tif", told.returncode == 0 and not told.stderr, told.stderr)
+        judge(f"{kind} as .tif, seen by us", seen_by_us(root / "target.tif"), wanted, False)
+        with tifffile.TiffFile(root / "target.tif") as file:
+            spacing = [page.tags[tag].value[1] / page.tags[tag].value[0] for page in file.pages for tag in ("XResolution", "YResolution")]
+            check(f"{kind} as .tif: pages", file.is_imagej and len(file.pages) == SIZE[0], len(file.pages))
+            check(f"{kind} as .tif: lengths", np.allclose(spacing, [0.3, 0.25] * SIZE[0], rtol=1e-8)
+                  and file.imagej_metadata["spacing"] == 1.7 and file.imagej_metadata["unit"] == "um", (spacing, file.imagej_metadata))
+            check(f"{kind} as .tif: voxels", np.array_equal(file.asarray(), wanted[0], equal_nan=True))
+
+
 def test_mrc():
     axes = np.array([[2, 0.5, 0.25], [0, 3, -0.5], [0, 0, 4]])
     for kind in ("uint8", "int8", "uint16", "int16", "float32"):
@@ -249,6 +270,7 @@ def test_types():
 
 
 test_formats()
+test_tiff()
 test_mrc()
 test_boxes_and_means()
 test_means_of_a_ramp()

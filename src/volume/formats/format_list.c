@@ -28,7 +28,8 @@ hl_status hl_volume_get_format(size_t index, hl_file_format *format) {
     hl_endings_add(format->read_endings, f->endings[n]);
   if (f->more_endings != NULL) hl_endings_add(format->read_endings, f->more_endings);
   const hl_writer *writer;
-  for (size_t n = 0; (writer = hl_writer_at(n)) != NULL; n++)
+  /* a format that this build cannot read is not offered for writing */
+  for (size_t n = 0; format->missing == NULL && (writer = hl_writer_at(n)) != NULL; n++)
     if (strcmp(writer->format, format->name) == 0) hl_endings_add(format->written_endings, writer->ending);
   format->reads = format->missing == NULL;
   format->writes = format->written_endings[0] != 0;

@@ -326,6 +326,126 @@ static hl_status make_npy(const char *path, const hl_volume_description *grid, h
   return HL_OK;
 }
 
+/* ---- TIFF 6.0: a page for each slice, with the voxels' lengths as ImageJ writes them ----
+ *
+ * The first page's directory is in the header, the pixels of all pages follow it, and the other pages'
+ * directories follow the pixels. ImageJ's own way for files above 4 GB is one page: places have 32 bits, and
+ * the description tells how many pictures follow each other. */
+
+enum { TIFF_ENTRIES = 14, TIFF_ENTRY_BYTES = 12, TIFF_HEADER_BYTES = 1024 };
+/* places in the header: the directory, the two resolutions, and the description */
+enum { TIFF_DIRECTORY = 8, TIFF_RESOLUTIONS = 192, TIFF_DESCRIPTION = 208 };
+/* the length of a directory: the number of entries, the entries, the place of the next directory */
+enum { TIFF_DIRECTORY_BYTES = 2 + TIFF_ENTRIES * TIFF_ENTRY_BYTES + 4 };
+
+static uint64_t slice_bytes(const hl_volume_description *grid) {
+  return (uint64_t)grid->dimensions[0] * grid->dimensions[1] * hl_voxel_type_bytes(grid->type);
+}
+
+/* The place of a page's directory after the voxels; directories begin at even places. */
+static uint64_t directory_at(const hl_volume_description *grid, size_t page) {
+  const uint64_t end = TIFF_HEADER_BYTES + slice_bytes(grid) * grid->dimensions[2];
+  return end + end % 2 + (page - 1) * (uint64_t)TIFF_DIRECTORY_BYTES;
+}
+
+/* Returns whether all pages have a directory, because their places have 32 bits. */
+static bool has_all_pages(const hl_volume_description *grid) {
+  return directory_at(grid, grid->dimensions[2]) <= UINT32_MAX;
+}
+
+/* Writes a page's directory. description: the text in the header, to which all pages point. */
+static void put_directory(const hl_volume_description *grid, const char *description, size_t page,
+                          unsigned char *bytes) {
+  enum { SHORT = 3, LONG = 4, RATIONAL = 5, ASCII = 2 };
+  const hl_voxel_type type = grid->type;
+  const bool whole = type != HL_VOXEL_F16 && type != HL_VOXEL_F32 && type != HL_VOXEL_F64,
+             is_signed = type == HL_VOXEL_I8 || type == HL_VOXEL_I16 || type == HL_VOXEL_I32 ||
+                         type == HL_VOXEL_I64,
+             last = page + 1 == grid->dimensions[2] || !has_all_pages(grid);
+  const uint32_t next = last ? 0 : (uint32_t)directory_at(grid, page + 1),
+                 height = (uint32_t)grid->dimensions[1];
+  const struct {
+    uint16_t tag, kind;
+    uint32_t count, value;
+  } entries[TIFF_ENTRIES] = {
+      {256, LONG, 1, (uint32_t)grid->dimensions[0]},
+      {257, LONG, 1, height},
+      {258, SHORT, 1, 8 * (uint32_t)hl_voxel_type_bytes(type)}, /* bits of a sample */
+      {259, SHORT, 1, 1},                                       /* no compression */
+      {262, SHORT, 1, 1},                                       /* black is 0 */
+      {270, ASCII, (uint32_t)strlen(description) + 1, TIFF_DESCRIPTION},
+      {273, LONG, 1, (uint32_t)(TIFF_HEADER_BYTES + page * slice_bytes(grid))}, /* place of the pixels */
+      {277, SHORT, 1, 1},                                                       /* samples of a pixel */
+      {278, LONG, 1, height},                                                   /* rows of a strip */
+      {279, LONG, 1, (uint32_t)slice_bytes(grid)},
+      {282, RATIONAL, 1, TIFF_RESOLUTIONS},
+      {283, RATIONAL, 1, TIFF_RESOLUTIONS + 8},
+      {296, SHORT, 1, 1}, /* the resolution's unit is not an inch */
+      {339, SHORT, 1,
+       !whole      ? 3
+       : is_signed ? 2
+                   : 1}};
+  const uint16_t count = TIFF_ENTRIES;
+  memcpy(bytes, &count, sizeof count);
+  for (size_t n = 0; n < TIFF_ENTRIES; n++) {
+    unsigned char *at = bytes + 2 + n * TIFF_ENTRY_BYTES;
+    const uint16_t word = (uint16_t)entries[n].value;
+    memcpy(at, &entries[n].tag, 2);
+    memcpy(at + 2, &entries[n].kind, 2);
+    memcpy(at + 4, &entries[n].count, 4);
+    if (entries[n].kind == SHORT) memcpy(at + 8, &word, 2);
+    else memcpy(at + 8, &entries[n].value, 4);
+  }
+  memcpy(bytes + TIFF_DIRECTORY_BYTES - 4, &next, 4);
+}
+
+/* Writes the number of pixels in a length of 1 as a fraction of whole numbers of 32 bits. Derived: the larger
+ * one is near 2^31, so that the fraction's relative error is below 2^-31. Returns false if there is none. */
+static bool put_resolution(double spacing, unsigned char *bytes) {
+  const double most = 0x1p31, pixels = 1 / spacing, below = pixels < 1 ? most : floor(most / pixels);
+  const double above = pixels < 1 ? floor(most * pixels) : floor(pixels * below + 0.5);
+  const double under = pixels < 1 ? floor(above * spacing + 0.5) : below;
+  if (!(above >= 1 && under >= 1 && above <= UINT32_MAX && under <= UINT32_MAX)) return false;
+  const uint32_t fraction[2] = {(uint32_t)above, (uint32_t)under};
+  memcpy(bytes, fraction, sizeof fraction);
+  return true;
+}
+
+static hl_status make_tiff(const char *path, const hl_volume_description *grid, hl_written_header *header,
+                           hl_error *error) {
+  double length[3], unit[3][3];
+  const uint16_t mark = 42;
+  const uint32_t first = TIFF_DIRECTORY;
+  find_steps(grid, length, unit);
+  if (slice_bytes(grid) > UINT32_MAX || grid->dimensions[0] > INT32_MAX || grid->dimensions[1] > INT32_MAX)
+    return hl_fail(error, HL_ERROR_UNSUPPORTED,
+                   "%s: a TIFF's page has less than 4 GiB: write .nrrd, or less by --crop or --shrink", path);
+  memcpy(header->bytes, is_little() ? "II" : "MM", 2);
+  memcpy(header->bytes + 2, &mark, sizeof mark);
+  memcpy(header->bytes + 4, &first, sizeof first);
+  if (!put_resolution(length[0], header->bytes + TIFF_RESOLUTIONS) ||
+      !put_resolution(length[1], header->bytes + TIFF_RESOLUTIONS + 8))
+    return hl_fail(error, HL_ERROR_UNSUPPORTED,
+                   "%s: a TIFF states no voxels with edges of %.6g and %.6g: give a --unit, or write .nrrd",
+                   path, length[0], length[1]);
+  header->length = TIFF_DESCRIPTION;
+  add(header, "ImageJ=1.54f\nimages=%zu\nslices=%zu\n", grid->dimensions[2], grid->dimensions[2]);
+  if (header->unit != NULL) add(header, "unit=%s\n", short_name(header->unit));
+  add(header, "spacing=%.17g\nloop=false\n", length[2]);
+  put_directory(grid, (const char *)header->bytes + TIFF_DESCRIPTION, 0, header->bytes + TIFF_DIRECTORY);
+  header->length = TIFF_HEADER_BYTES;
+  return HL_OK;
+}
+
+static size_t make_tiff_piece(const hl_volume_description *grid, const hl_written_header *header, size_t n,
+                              unsigned char bytes[HL_WRITER_HEADER_BYTES]) {
+  if (!has_all_pages(grid) || n + 1 >= grid->dimensions[2]) return 0;
+  const size_t gap = n > 0 ? 0 : slice_bytes(grid) * grid->dimensions[2] % 2;
+  bytes[0] = 0;
+  put_directory(grid, (const char *)header->bytes + TIFF_DESCRIPTION, n + 1, bytes + gap);
+  return gap + TIFF_DIRECTORY_BYTES;
+}
+
 static hl_status make_raw(const char *path, const hl_volume_description *grid, hl_written_header *header,
                           hl_error *error) {
   (void)path, (void)grid, (void)header, (void)error;
@@ -334,17 +454,22 @@ static hl_status make_raw(const char *path, const hl_volume_description *grid, h
 
 static const hl_writer writers[] = {
     {"NRRD", ".nrrd", HL_PACKING_GZIP_VOXELS, PLAIN_TYPES, make_nrrd, NULL,
-     "metre|millimetre|micrometre|angstrom", NULL},
-    {"NIfTI", ".nii", HL_PACKING_NONE, PLAIN_TYPES, make_nifti, NULL, "micrometre|millimetre|metre", "RAS"},
-    {"NIfTI", ".nii.gz", HL_PACKING_GZIP_ALL, PLAIN_TYPES, make_nifti, NULL, "micrometre|millimetre|metre",
+     "metre|millimetre|micrometre|angstrom", NULL, NULL},
+    {"NIfTI", ".nii", HL_PACKING_NONE, PLAIN_TYPES, make_nifti, NULL, "micrometre|millimetre|metre", NULL,
      "RAS"},
-    {"MetaImage", ".mha", HL_PACKING_ZLIB_VOXELS, PLAIN_TYPES, make_metaimage, NULL, NULL, NULL},
-    {"VTK .vti", ".vti", HL_PACKING_NONE, PLAIN_TYPES, make_vti, "space", NULL, NULL},
-    {"MRC", ".mrc", HL_PACKING_NONE, MRC_TYPES, make_mrc, "space", "angstrom", NULL},
-    {"MRC", ".mrc.gz", HL_PACKING_GZIP_ALL, MRC_TYPES, make_mrc, "space", "angstrom", NULL},
-    {"NumPy .npy", ".npy", HL_PACKING_NONE, ALL_TYPES, make_npy, "place", NULL, NULL},
-    {"bare voxels", ".raw", HL_PACKING_NONE, ALL_TYPES, make_raw, "place", NULL, NULL},
-    {"bare voxels", ".raw.gz", HL_PACKING_GZIP_ALL, ALL_TYPES, make_raw, "place", NULL, NULL},
+    {"NIfTI", ".nii.gz", HL_PACKING_GZIP_ALL, PLAIN_TYPES, make_nifti, NULL, "micrometre|millimetre|metre",
+     NULL, "RAS"},
+    {"MetaImage", ".mha", HL_PACKING_ZLIB_VOXELS, PLAIN_TYPES, make_metaimage, NULL, NULL, NULL, NULL},
+    {"VTK .vti", ".vti", HL_PACKING_NONE, PLAIN_TYPES, make_vti, "space", NULL, NULL, NULL},
+    {"MRC", ".mrc", HL_PACKING_NONE, MRC_TYPES, make_mrc, "space", "angstrom", NULL, NULL},
+    {"MRC", ".mrc.gz", HL_PACKING_GZIP_ALL, MRC_TYPES, make_mrc, "space", "angstrom", NULL, NULL},
+    {"TIFF", ".tif", HL_PACKING_NONE, ALL_TYPES, make_tiff, "origin", "micrometre|millimetre|metre",
+     make_tiff_piece, NULL},
+    {"TIFF", ".tiff", HL_PACKING_NONE, ALL_TYPES, make_tiff, "origin", "micrometre|millimetre|metre",
+     make_tiff_piece, NULL},
+    {"NumPy .npy", ".npy", HL_PACKING_NONE, ALL_TYPES, make_npy, "place", NULL, NULL, NULL},
+    {"bare voxels", ".raw", HL_PACKING_NONE, ALL_TYPES, make_raw, "place", NULL, NULL, NULL},
+    {"bare voxels", ".raw.gz", HL_PACKING_GZIP_ALL, ALL_TYPES, make_raw, "place", NULL, NULL, NULL},
 };
 
 const hl_writer *hl_writer_for(const char *path) {

@@ -34,11 +34,15 @@ typedef struct hl_writer {
    * dimensions, type, origin, axes, space. */
   hl_status (*make_header)(const char *path, const hl_volume_description *grid, hl_written_header *header,
                            hl_error *error);
-  const char *loses;  /* the name of the property of the grid's place that the format cannot state, such as
-                       * "the space"; null if there is none */
-  const char *units;  /* units of length that the format can state, separated by '|'. Lengths in other units
-                       * are converted to the first of them. Null if the format states no units; then lengths
-                       * are written as they are */
+  const char *loses; /* what the format cannot state of the grid's place: "space"; "origin", with the
+                      * directions and the space; "place", which is all; null if there is nothing */
+  const char *units; /* units of length that the format can state, separated by '|'. Lengths in other units
+                      * are converted to the first of them. Null if the format states no units; then lengths
+                      * are written as they are */
+  /* Makes the n-th piece of bytes that follows the voxels, from 0 on; returns its length, 0 after the last
+   * one. Null if there are no such bytes. */
+  size_t (*make_piece)(const hl_volume_description *grid, const hl_written_header *header, size_t n,
+                       unsigned char bytes[HL_WRITER_HEADER_BYTES]);
   const char *claims; /* the anatomical space that every file of the format states, as "RAS", also if the grid
                        * has none; null if the format can leave it open */
 } hl_writer;
