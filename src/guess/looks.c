@@ -126,6 +126,34 @@ static void keep_colors(hl_function_writer *w, const hl_volume *volume, const hl
   hl_add_color(w, 0, white);
 }
 
+/* The window of values in which a file shows the channel that the volume was read from (omero, ImageJ). Null
+ * if the file tells none. */
+static const double *channel_window(const hl_volume *volume) {
+  const double *window = volume->channels != NULL ? volume->channels[volume->selection.channel].window : NULL;
+  return window != NULL && window[0] < window[1] ? window : NULL;
+}
+
+/* Narrows the visible values of a function to the window of a channel: what the file shows black is clear,
+ * and what it shows at full brightness is fully opaque. Ends of the window beyond the visible values change
+ * nothing, because many files state the whole range of their type. */
+static hl_status narrow(hl_context *context, const hl_volume *volume, hl_transfer_function *function,
+                        hl_error *error) {
+  const double *window = channel_window(volume);
+  double visible[2], range[2];
+  hl_transfer_function narrowed = {0};
+  if (window == NULL || function->plane.second != HL_SECOND_NONE) return HL_OK;
+  hl_status status = hl_transfer_function_visible_range(volume, function, visible, error);
+  if (status != HL_OK) return status;
+  range[0] = fmax(window[0], visible[0]);
+  range[1] = fmin(window[1], visible[1]);
+  if (!(range[0] < range[1]) || memcmp(range, visible, sizeof range) == 0) return HL_OK;
+  status = hl_transfer_function_spread(context, function, visible, range, HL_RANGE_LINEAR, &narrowed, error);
+  if (status != HL_OK) return status;
+  hl_transfer_function_release(context, function);
+  *function = narrowed;
+  return HL_OK;
+}
+
 hl_status hl_look_write(const hl_look *look, const hl_look *style, hl_context *context,
                         const hl_volume *volume, const hl_data_analysis *analysis,
                         hl_transfer_function *function, hl_error *error) {
@@ -134,7 +162,11 @@ hl_status hl_look_write(const hl_look *look, const hl_look *style, hl_context *c
   if (style != NULL) hl_style_write(style, look, &w);
   else look->write(&w);
   if (volume->colors != NULL) keep_colors(&w, volume, style);
-  return hl_finish_function(&w, context, volume, function, error);
+  hl_status status = hl_finish_function(&w, context, volume, function, error);
+  if (status != HL_OK || w.direction < 0) return status;
+  status = narrow(context, volume, function, error);
+  if (status != HL_OK) hl_transfer_function_release(context, function);
+  return status;
 }
 
 hl_status hl_transfer_function_automatic(hl_context *context, const hl_volume *volume,
@@ -342,12 +374,13 @@ static double projected_white(const hl_volume *volume) {
   return metal ? DENSE_BONE : white;
 }
 
-/* Returns whether the window of values that a file asks for (DICOM) ends where a projection can end. Windows
- * are meant for slices. A pixel of a projection has the greatest of some hundred values. If more than about
- * one value in 200 lies above the window, as bone lies above a window of soft tissue, most of the pixels
- * would be white. */
+/* Returns whether the window of values that a file asks for ends where a projection can end. Windows of
+ * channels are meant for pictures of any kind. Other windows (DICOM) are meant for slices. A pixel of a
+ * projection has the greatest of some hundred values. If more than about one value in 200 lies above the
+ * window, as bone lies above a window of soft tissue, most of the pixels would be white. */
 static bool is_window_for_projections(const hl_volume *volume) {
-  return isfinite(volume->window[1]) && share_above(volume, volume->window[1]) < 0.005;
+  return channel_window(volume) != NULL ||
+         (isfinite(volume->window[1]) && share_above(volume, volume->window[1]) < 0.005);
 }
 
 /* The distance above the background that noise reaches. A projection has the greatest of some hundred values,

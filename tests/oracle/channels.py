@@ -202,6 +202,22 @@ check("a stepped channel is smoothed", isinstance(smoothed, list) and any(smooth
 seen = hues(picture("stepped.zarr", "--channel", "all", "--look", "mip"))
 check("colours of smoothed channels", isinstance(seen, set) and letters("blue", "orange") <= seen, seen)
 
+# The window of a channel narrows opacities as --range does; one that is wider than what is seen changes nothing. Projections are white from its end on.
+def opacities(name, *words):
+    code, out, complaint = run("render", name, *words, "--print-scene")
+    return json.loads(out)["volumes"][0]["transfer_function"]["opacity"] if code == 0 else complaint
+
+
+for name, window in (("narrow.zarr", (40, 90)), ("wide.zarr", (0, 255)), ("unsaid.zarr", None)):
+    write_zarr(name, BALLS[:2], {"channels": [{"window": {"start": window[0], "end": window[1]}}] if window else [{}]})
+for look in ("auto", "surface", "translucent", "xray", "smoke"):
+    check(f"a channel's window in the look {look}", opacities("narrow.zarr", "--channel", 0, "--look", look)
+          == opacities("unsaid.zarr", "--channel", 0, "--look", look, "--range", "40,90"), opacities("narrow.zarr", "--channel", 0, "--look", look))
+    check(f"a wide window in the look {look}", opacities("wide.zarr", "--channel", 0, "--look", look)
+          == opacities("unsaid.zarr", "--channel", 0, "--look", look))
+whites = [(picture(name, "--channel", "0", "--look", "mip") >= 250).all(axis=2).sum() for name in ("narrow.zarr", "unsaid.zarr")]
+check("a projection is white from the window's end on", whites[0] > 3 * whites[1], whites)
+
 # One command, and its scene again: the same bytes.
 first = picture("three.ome.tif", "--channel", "all")
 again = run("render", "a.png", "--quiet", "-o", "b.png")
