@@ -123,12 +123,18 @@ static bool is_whole(const film_key *key, const char *name) {
 }
 
 /* Makes the value of a key at a frame as JSON: a number, which is rounded where only whole numbers are taken,
- * or the three numbers of a colour. name: the last part of the key's path. */
+ * or three numbers. name: the last part of the key's path. */
 static json_t *value_at(const film_key *key, int frame, const char *name) {
-  const double value = film_key_value(key, frame, 0);
-  if (key->components == 3)
-    return json_pack("[f, f, f]", value, film_key_value(key, frame, 1), film_key_value(key, frame, 2));
-  return is_whole(key, name) ? json_integer(llround(value)) : json_real(value);
+  double value[3];
+  film_key_value(key, frame, value);
+  if (key->components == 3) return json_pack("[f, f, f]", value[0], value[1], value[2]);
+  return is_whole(key, name) ? json_integer(llround(value[0])) : json_real(value[0]);
+}
+
+/* Returns whether a setting is a colour, or where `color` is false any three numbers. */
+static bool has_three(const hl_setting *setting, bool color) {
+  return has_type(setting, HL_SETTING_COLOR) ||
+         (!color && (has_type(setting, HL_SETTING_POINT) || has_type(setting, HL_SETTING_DIRECTION)));
 }
 
 /* Makes a part that the scene leaves out, with its defaults: three numbers, or an object without keys. The
@@ -136,8 +142,7 @@ static json_t *value_at(const film_key *key, int frame, const char *name) {
  * part is a list. */
 static json_t *part_with_defaults(const char *path, size_t length) {
   const hl_setting *setting = setting_of(path, length);
-  if (has_type(setting, HL_SETTING_COLOR) || has_type(setting, HL_SETTING_POINT) ||
-      has_type(setting, HL_SETTING_DIRECTION))
+  if (has_three(setting, false))
     return json_pack("[f, f, f]", setting->standard[0], setting->standard[1], setting->standard[2]);
   const bool is_list = strspn(path + length + 1, "0123456789") > 0;
   return is_list || setting_of(path, strlen(path)) == NULL ? NULL : json_object();
@@ -157,13 +162,14 @@ static json_t *step_or_add(json_t *at, const char *name, const char *path, size_
 static hl_status write_value(json_t *root, const film_key *key, int frame, hl_error *error) {
   char *names = strdup(key->path), *rest = names, *name;
   if (names == NULL) return no_memory(error);
-  const bool color = key->components == 3;
+  const bool has_parts = key->components == 3;
   json_t *at = root;
   while ((name = strsep(&rest, ".")) != NULL && rest != NULL && at != NULL)
     at = step_or_add(at, name, key->path, (size_t)(name - names) + strlen(name));
   json_t *before = at != NULL ? step_into(at, name) : NULL;
-  bool good = color
-                  ? json_is_object(at) && has_type(setting_of(key->path, strlen(key->path)), HL_SETTING_COLOR)
+  bool good = has_parts ? json_is_object(at) &&
+                              (has_three(setting_of(key->path, strlen(key->path)), key->is_color) ||
+                               (!key->is_color && json_array_size(before) == 3))
               : before != NULL ? json_is_number(before)
                                : json_is_object(at) && name[0] != '\0';
   int written = -1;
@@ -172,7 +178,10 @@ static hl_status write_value(json_t *root, const film_key *key, int frame, hl_er
   if (!good)
     snprintf(error->message, sizeof error->message,
              "%s: the scene has no %s there: `halflight render SCENE --print-scene` shows its keys",
-             key->path, color ? "colour" : "number");
+             key->path,
+             key->is_color ? "colour"
+             : has_parts   ? "point, direction or colour"
+                           : "number");
   free(names);
   if (!good) return HL_ERROR_ARGUMENT;
   return written == 0 ? HL_OK : no_memory(error);
@@ -210,10 +219,11 @@ static hl_status turn_camera(const film *f, int frame, hl_camera *camera,
   if (status == HL_OK && f->turntable > 0) view.azimuth_deg += 360.0 * frame / f->turntable;
   for (size_t k = 0; status == HL_OK && k < f->key_count; k++) {
     int turn = turn_of(f->keys[k].path);
-    double value = film_key_value(&f->keys[k], frame, 0);
-    if (turn == TURN_ZOOM && !(value >= 1e-6 && value <= 1e6)) status = HL_ERROR_ARGUMENT;
-    else if (turn == TURN_ZOOM) film_zoom(camera, value);
-    else if (turn >= 0) *angles[turn] = value, turns = true;
+    double value[3];
+    film_key_value(&f->keys[k], frame, value);
+    if (turn == TURN_ZOOM && !(*value >= 1e-6 && *value <= 1e6)) status = HL_ERROR_ARGUMENT;
+    else if (turn == TURN_ZOOM) film_zoom(camera, *value);
+    else if (turn >= 0) *angles[turn] = *value, turns = true;
   }
   if (status == HL_OK && turns) status = hl_camera_turn(&view, camera);
   if (status != HL_OK && error->message[0] == '\0')
@@ -253,7 +263,7 @@ static hl_status turn_lights(const film *f, int frame, hl_light *lights, const h
   for (size_t k = 0; k < f->key_count; k++) {
     size_t number;
     bool azimuth;
-    double angles[2];
+    double angles[2], value[3];
     if (!is_light_turn(f->keys[k].path, &number, &azimuth)) continue;
     if (number >= scene->light_count || lights[number].type != HL_LIGHT_DIRECTIONAL) {
       snprintf(error->message, sizeof error->message,
@@ -261,7 +271,8 @@ static hl_status turn_lights(const film *f, int frame, hl_light *lights, const h
       return HL_ERROR_ARGUMENT;
     }
     angles_of(&lights[number], &scene->camera, &angles[0], &angles[1]);
-    angles[azimuth ? 0 : 1] = film_key_value(&f->keys[k], frame, 0);
+    film_key_value(&f->keys[k], frame, value);
+    angles[azimuth ? 0 : 1] = *value;
     direction_at(&lights[number], &scene->camera, angles[0], angles[1], lights[number].direction);
   }
   return HL_OK;
@@ -300,6 +311,11 @@ hl_status film_scene(const film *f, int frame, hl_scene **scene, hl_error *error
 
 /* ---- the film ---- */
 
+/* Returns whether the values of a key are directions: those of a setting that is one. */
+static bool is_direction(const film_key *key) {
+  return key->components == 3 && has_type(setting_of(key->path, strlen(key->path)), HL_SETTING_DIRECTION);
+}
+
 static hl_status read_keys(film *f, const film_options *options, hl_error *error) {
   hl_status status = HL_OK;
   f->keys = calloc(options->key_count + 1, sizeof *f->keys);
@@ -308,8 +324,9 @@ static hl_status read_keys(film *f, const film_options *options, hl_error *error
     status = film_key_read(options->keys[f->key_count], options->frames_per_second, &f->keys[f->key_count],
                            error);
     f->keys[f->key_count].smooth = options->smooth;
+    f->keys[f->key_count].turns = is_direction(&f->keys[f->key_count]);
     if (status == HL_OK && is_turn(f->keys[f->key_count].path) && f->keys[f->key_count].components != 1) {
-      snprintf(error->message, sizeof error->message, "%s: a turn is a number, not a colour",
+      snprintf(error->message, sizeof error->message, "%s: a turn is a single number",
                f->keys[f->key_count].path);
       status = HL_ERROR_ARGUMENT;
     }

@@ -1,11 +1,11 @@
 /* film/film.h - makes films. A film is one scene in which some numbers change from frame to frame.
  *
  * A key's path names a number of the scene's file. The path consists of keys of objects and numbers of
- * elements, with points between ("volumes.0.transfer_function.opacity.2.1"). Four more paths move the camera
- * as the options of `halflight render` do: camera.azimuth, camera.elevation and camera.roll are in degrees,
- * and camera.zoom is a factor on the scene's own zoom. The paths lights.N.azimuth and lights.N.elevation turn
- * a directional light as `--light` does. These angles are seen from the camera, after the camera was
- * turned. */
+ * elements, with points between ("volumes.0.transfer_function.opacity.2.1"). Points, directions and colours
+ * can change as a whole, too ("lights.0.direction"). Four more paths move the camera as the options of
+ * `halflight render` do: camera.azimuth, camera.elevation and camera.roll are in degrees, and camera.zoom is
+ * a factor on the scene's own zoom. The paths lights.N.azimuth and lights.N.elevation turn a directional
+ * light as `--light` does. These angles are seen from the camera, after the camera was turned. */
 #ifndef HL_FILM_FILM_H
 #define HL_FILM_FILM_H
 

@@ -73,7 +73,9 @@ static const cli_option animate_options[ANIMATE_OPTION_COUNT] = {
                              ".zoom (factor) turn the camera;\n"
                              "lights.0.azimuth and .elevation turn a light, as --light\n"
                              "does. Settings that are colours go from colour to colour:\n"
-                             "lights.0.color=0:orange,48:#2060ff. With several files\n"
+                             "lights.0.color=0:orange,48:#2060ff, points go straight\n"
+                             "and directions turn the shortest way:\n"
+                             "lights.0.direction=0:-1,0,0,48:0,0,-1. With several files\n"
                              "FRAME is the number of a file, from 0. May be given again",
                      .repeatable = true},
     [ANIMATE_EASE] =
