@@ -154,16 +154,12 @@ export class Overlay {
       this.#lights.replaceChildren();
       return;
     }
-    const active = this.#svg.getRootNode().activeElement;
-    const focused = this.#lights.contains(active) ? active.dataset.light : undefined;
-    if (this.#lights.childElementCount !== lights.length + 1) {
-      const rim = make("svg:circle", { class: "light-sphere" });
-      this.#lights.replaceChildren(rim, ...lights.map((_, l) => this.#makeHandle(l)));
-    }
+    if (this.#lights.childElementCount === 0) this.#lights.append(make("svg:circle", { class: "light-sphere" }));
+    while (this.#lights.childElementCount > lights.length + 1) this.#lights.lastElementChild.remove();
+    while (this.#lights.childElementCount < lights.length + 1) this.#lights.append(this.#makeHandle(this.#lights.childElementCount - 1)); // the focus stays where it is
     const rim = this.#lights.firstElementChild;
     for (const [key, value] of [["cx", sphere.x], ["cy", sphere.y], ["r", sphere.radius]]) rim.setAttribute(key, value);
     lights.forEach((light, l) => this.#placeHandle(this.#lights.children[l + 1], light, l, camera, sphere));
-    if (focused !== undefined) this.#lights.children[+focused + 1]?.focus();
   }
 
   #placeHandle(handle, light, l, camera, sphere) {
@@ -187,7 +183,7 @@ export class Overlay {
     const target = make("svg:circle", { class: "target", r: 12, onpointerdown: (event) => this.#grab(event, l, "place") });
     return make("svg:g", {
       class: "light", tabindex: 0, role: "slider", "aria-label": `Light ${l + 1}`, "aria-valuenow": l + 1, "data-light": l,
-      onfocus: () => this.#choose(l), onkeydown: (event) => this.#key(event, l),
+      onkeydown: (event) => this.#key(event, l), // the focus alone chooses nothing: a window that comes to the front again has it, too
     }, ring, dot, target);
   }
 
@@ -233,12 +229,12 @@ export class Overlay {
   #key(event, l) {
     const light = this.#store.scene.lights[l], camera = this.#store.scene.camera;
     const arrows = { ArrowLeft: [-1, 0], ArrowRight: [1, 0], ArrowUp: [0, 1], ArrowDown: [0, -1] };
+    if (!arrows[event.key] && event.key !== "+" && event.key !== "-") return;
+    this.#choose(l);
     if (arrows[event.key]) {
       const direction = steppedDirection(directionOf(light, camera), ...arrows[event.key], KEY_STEP);
       this.#store.changeLight(l, "place", (changed) => withDirection(changed, camera, direction));
-    } else if (event.key === "+" || event.key === "-") {
-      this.resizeLight(l, sizeOf(light, camera) + (event.key === "+" ? 1 : -1));
-    } else return;
+    } else this.resizeLight(l, sizeOf(light, camera) + (event.key === "+" ? 1 : -1));
     event.preventDefault();
     event.stopPropagation();
   }
