@@ -14,11 +14,15 @@ from checks import check
 
 PROGRAM = os.path.abspath(sys.argv[1])
 STAGE = "globalThis.halflight?.frames.statistics.stage"
+# All of a person's work. Which sections are unfolded is told by an event that comes later.
+STATE = "(({ sections, ...page }) => JSON.stringify([halflight.store.scene, halflight.store.marks, page]))(halflight.store.page)"
+# The keys in the timeline: their paths and frames.
+KEYS = "[...document.querySelectorAll('.timeline .key')].map((key) => [key.dataset.path, +key.dataset.frame])"
 
 
 def rest(browser):
     """Waits for the final picture; returns the SHA-256 of the pixels on the screen, R, G, B, A."""
-    browser.wait(f"{STAGE} === 'final' && document.querySelector('.gallery[data-busy]') === null")
+    browser.wait(f"{STAGE} === 'final' && document.getElementById('stage')?.dataset.stage !== 'waiting' && document.querySelector('.gallery[data-busy]') === null")
     return browser.run("""(() => {
       const canvas = document.getElementById('picture');
       const { data } = canvas.getContext('2d').getImageData(0, 0, canvas.width, canvas.height);
@@ -98,6 +102,17 @@ def open_section(browser, title):
     browser.run(f"""[...document.querySelectorAll('details')].forEach((d) => {{
       d.open = d.querySelector('summary').textContent === {json.dumps(title)}; }})""")
     browser.wait("[...document.querySelectorAll('details')].some((d) => d.open)")
+
+
+def undo(browser):
+    press_named(browser, "Undo")
+
+
+def reload(browser):
+    browser.run("globalThis.before = true")
+    browser.reload()
+    browser.wait("globalThis.before === undefined && globalThis.halflight !== undefined")
+    rest(browser)
 
 
 def undone(browser, key, before, what):

@@ -1,4 +1,4 @@
-// The panel of films. A film has a turn, and keys for the camera and for numbers of the scene, which the
+// The panel of films. A film has a turn, and keys for the camera and for numbers and vectors of the scene, which the
 // timeline shows. `halflight animate` makes the same film. "Pictures" are numbered PNGs in a zip archive,
 // which need no ffmpeg.
 
@@ -6,7 +6,7 @@ import { reshaped } from "./camera.js";
 import { button, isActive, make, row, section, select, toggle } from "./controls.js";
 import { download, fileWord, quoted, sceneText, stem } from "./export.js";
 import { placesOf } from "./light.js";
-import { CAMERA, FORMATS, MOST_FPS, MOST_FRAMES, keyTexts, readFilm, stretched, trackName, withKey } from "./timeline.js";
+import { CAMERA, FORMATS, MOST_FPS, MOST_FRAMES, isKeyable, joined, keyTexts, readFilm, stretched, trackName, trackOf, valueAt, withKey } from "./timeline.js";
 import { timelineStrip } from "./timeline_strip.js";
 
 const ASK_EVERY = 300; // milliseconds between questions for the film's progress
@@ -18,11 +18,9 @@ export function numberPaths(value, path = "") {
   return Object.entries(value).flatMap(([key, part]) => numberPaths(part, path ? `${path}.${key}` : key));
 }
 
-export const numberAt = (scene, path) => path.split(".").reduce((at, key) => at?.[key], scene);
-
-// Whether a scene has a place for the number of a path. What an object leaves out has its defaults, but not the elements of a list.
+// Whether a scene has a place for what a track changes. What an object leaves out has its defaults, but not the elements of a list.
 function hasPlace(scene, path) {
-  const names = path.split("."), present = names.findIndex((_, n) => numberAt(scene, names.slice(0, n + 1).join(".")) === undefined);
+  const names = path.split("."), present = names.findIndex((_, n) => valueAt(scene, names.slice(0, n + 1).join(".")) === undefined);
   return present < 0 || !names.slice(present).some((name) => /^\d+$/.test(name));
 }
 
@@ -59,7 +57,7 @@ class Film {
   #take() {
     const { scene, page } = this.#viewer.store, { from, ...film } = readFilm(page.film);
     this.#kept = page.film;
-    Object.assign(this, NEW, film);
+    Object.assign(this, NEW, film, { tracks: joined(film.tracks, scene) });
     this.scene = this.turns && from !== undefined ? { ...scene, camera: reshaped(from.camera, from.image, scene.image) } : scene;
   }
 
@@ -144,7 +142,7 @@ class Film {
 
   // Shows the scene of the film's frame. Of frames that are asked for meanwhile, only the last one is shown.
   async #showScene() {
-    const { channel, store, report } = this.#viewer, gone = this.#gone;
+    const { channel, store, report, waits } = this.#viewer, gone = this.#gone;
     if (!channel.sceneAt) return;
     if (gone !== undefined) {
       this.playing = false;
@@ -154,6 +152,12 @@ class Film {
     this.#again = store.isDue = true;
     if (this.#asking) return;
     this.#asking = true;
+    await waits(this.#takeScenes());
+  }
+
+  // Takes the scene of the frame as long as another one is asked for. No picture is final meanwhile.
+  async #takeScenes() {
+    const { channel, store, report } = this.#viewer;
     while (this.#again) {
       this.#again = false;
       const before = this.#edits;
@@ -182,7 +186,7 @@ class Film {
 // The buttons that make the film, its progress, and a button that ends it.
 function maker(film, { store, channel }) {
   const bar = make("progress", { max: 1, value: 0, hidden: true, "aria-label": "The film" }), told = make("p", { class: "facts", role: "status" });
-  const go = button("make film", run, { class: "primary" }), stop = button("stop", () => channel.stopFilm(), { hidden: true });
+  const go = button("make film", run, { class: "primary" }), stop = button("stop", () => channel.cancel("-film"), { hidden: true });
 
   async function tellProgress(began) {
     const { done, frames } = await channel.filmProgress().catch(() => ({ done: 0, frames: 0 }));
@@ -231,9 +235,9 @@ export function filmPanel(viewer) {
 
   const addKey = (name, value) => film.set({ tracks: withKey(film.tracks, name, film.frame, value) });
   function addKeys({ paths, write }) {
-    const isThere = () => paths.every((name) => typeof numberAt(store.scene, name) === "number");
+    const isThere = () => paths.every((name) => isKeyable(valueAt(store.scene, name)));
     if (!isThere()) write?.();
-    if (isThere()) paths.forEach((name) => addKey(name, numberAt(store.scene, name)));
+    if (isThere()) paths.forEach((name) => addKey(name, valueAt(store.scene, name)));
     else report("This number is not in the scene yet: change it first.");
   }
   root.addEventListener("halflight-key", ({ detail }) => addKeys(detail)); // a button beside a slider (controls.js)
@@ -243,15 +247,15 @@ export function filmPanel(viewer) {
     else report("The scene has no light.");
   }
   function addNumber() {
-    const name = path.value.trim(), value = numberAt(store.scene, name);
-    if (typeof value === "number") addKey(name, value);
+    const name = trackOf(store.scene, path.value.trim()), value = valueAt(store.scene, name);
+    if (isKeyable(value)) addKey(name, value);
     else report("Choose a number of the scene first: the list has all of them.");
   }
 
   function unfold() {
     strip.element.hidden = !element.open;
     root.classList.toggle("filming", element.open);
-    if (element.open) names.replaceChildren(...numberPaths(store.scene).map((value) => make("option", { value })));
+    if (element.open) names.replaceChildren(...[...new Set(numberPaths(store.scene).map((one) => trackOf(store.scene, one)))].map((value) => make("option", { value })));
     strip.update();
   }
   element.addEventListener("toggle", () => {

@@ -232,7 +232,8 @@ export class HttpChannel {
     return (await this.#ask("film.json", { page: `${this.#page}-film` }, {})).json();
   }
 
-  async stopFilm() {
-    await this.#ask("cancel", { page: `${this.#page}-film`, number: ++this.#number });
+  // Gives up what is being made in a lane.
+  async cancel(lane) {
+    await this.#ask("cancel", { page: this.#page + lane, number: ++this.#number });
   }
 }

@@ -110,5 +110,5 @@ export const newLight = () => ({
   angular_diameter_deg: 7, color: [1, 1, 1], intensity: 0.8,
 });
 
-// The paths in a scene of the numbers that say where a light is.
-export const placesOf = (light, index) => ["direction", "position"].filter((key) => light[key]).flatMap((key) => [0, 1, 2].map((axis) => `lights.${index}.${key}.${axis}`));
+// The paths in a scene of what says where a light is.
+export const placesOf = (light, index) => ["direction", "normal", "edge1", "edge2", "position"].filter((key) => light[key]).map((key) => `lights.${index}.${key}`);

@@ -66,7 +66,7 @@ export function lightPanel(viewer) {
   ];
   const own = make("div", {}, ...rows.map((r) => r.element));
   const ambient = slider({
-    label: "Ambient", low: 0, high: 1, path: () => [0, 1, 2].map((c) => `ambient.${c}`), get: () => Math.max(...(store.scene.ambient ?? [0.2, 0.2, 0.2])),
+    label: "Ambient", low: 0, high: 1, path: () => "ambient", get: () => Math.max(...(store.scene.ambient ?? [0.2, 0.2, 0.2])),
     set: (level) => store.change("ambient", (scene) => ({ ...scene, ambient: [level, level, level] })),
   });
   const rigs = rigsOf(viewer), place = row(make("span", { class: "name" }, "Place"), make("span", { class: "facts" }, "drag it in the picture"), keyButton("the light's place", () => placesOf(light(), current.light)));

@@ -1,4 +1,4 @@
-// Keys over time, as the timeline shows them: tracks { path, points: [[frame, value], ...] }, of numbers of the scene and of
+// Keys over time, as the timeline shows them: tracks { path, points: [[frame, value], ...] }, of numbers and vectors of the scene and of
 // the camera as a whole, whose path is "camera" and whose values are cameras. Every function returns a new list of tracks.
 
 import { axes, distance, withType } from "./camera.js";
@@ -6,7 +6,19 @@ import { add, rotate, scale, subtract, turnOfFrames } from "./vector.js";
 
 export const CAMERA = "camera";
 
-// The name of a track for people: "light 1, intensity" for lights.0.intensity, "light 1, direction x" for lights.0.direction.0.
+// What changes as a whole: its three numbers have one track, as otherwise a direction would pass through wrong ones between its keys.
+const VECTORS = /(^|[._])(ambient|background|albedo|color|direction|normal|axis|up|position|target|translate|center|point|edge1|edge2)$/;
+
+// What lies at a path of a scene: a number, a vector, or something without a track.
+export const valueAt = (scene, path) => path.split(".").reduce((at, key) => at?.[key], scene);
+
+// The path of the track of a number.
+export function trackOf(scene, path) {
+  const whole = path.replace(/\.[012]$/, "");
+  return VECTORS.test(whole) && isVector(valueAt(scene, whole)) ? whole : path;
+}
+
+// The name of a track for people: "light 1, intensity" for lights.0.intensity, "volume 1, clip min x" for volumes.0.clip.min.0.
 export function trackName(path) {
   const [kind, number, ...rest] = path.split("."), isOne = ["lights", "volumes", "meshes"].includes(kind) && rest.length > 0;
   const words = (isOne ? rest : path.split(".")).map((word, n, all) => (n === all.length - 1 && /^[012]$/.test(word) ? "xyz"[word] : word.replaceAll("_", " ").replace(/ deg$/, "")));
@@ -50,9 +62,28 @@ export function stretched(tracks, before, frames) {
 const isVector = (value) => Array.isArray(value) && value.length === 3 && value.every(Number.isFinite);
 const isCamera = (value) => typeof value === "object" && value !== null && ["position", "target", "up"].every((key) => isVector(value[key])) &&
   Number.isFinite(value.type === "orthographic" ? value.height : value.fovy_deg);
+export const isKeyable = (value) => Number.isFinite(value) || isVector(value);
 const isTrack = (track) => typeof track?.path === "string" && Array.isArray(track.points) && track.points.length > 0 &&
   track.points.every((point, n, all) => Array.isArray(point) && Number.isInteger(point[0]) && point[0] >= 0 && (n === 0 || point[0] > all[n - 1][0]) &&
-    (track.path === CAMERA ? isCamera(point[1]) : Number.isFinite(point[1])));
+    (track.path === CAMERA ? isCamera(point[1]) : isKeyable(point[1]) && Array.isArray(point[1]) === Array.isArray(all[0][1])));
+
+// The value of a track of numbers at a frame.
+function numberBetween(points, frame) {
+  const next = points.findIndex(([at]) => at >= frame);
+  if (next <= 0) return points.at(next)[1];
+  const [[from, a], [to, b]] = points.slice(next - 1, next + 1);
+  return a + ((b - a) * (frame - from)) / (to - from);
+}
+
+// Films of earlier versions have a track for each number of a vector: all three become one.
+export function joined(tracks, scene) {
+  return tracks.flatMap((track) => {
+    const { path } = track, whole = trackOf(scene, path), parts = [0, 1, 2].map((k) => tracks.find((one) => one.path === `${whole}.${k}`));
+    if (whole === path || parts.includes(undefined) || tracks.some((one) => one.path === whole)) return [track];
+    const frames = [...new Set(parts.flatMap(({ points }) => points.map(([frame]) => frame)))].sort((a, b) => a - b);
+    return track === parts[0] ? [{ path: whole, points: frames.map((frame) => [frame, parts.map(({ points }) => numberBetween(points, frame))]) }] : [];
+  });
+}
 
 // What is right of a film in a file: its numbers within their bounds, and its tracks that are tracks. from: { camera, image }, the view from
 // which a film turns.
@@ -80,10 +111,8 @@ export function cameraBetween(a, b, part) {
   };
 }
 
-const cameraNumbers = (camera) => [
-  ...["position", "target", "up"].flatMap((key) => camera[key].map((x, k) => [`camera.${key}.${k}`, x])),
-  camera.type === "orthographic" ? ["camera.height", camera.height] : ["camera.fovy_deg", camera.fovy_deg],
-];
+const cameraParts = ({ type }) => ["position", "target", "up", type === "orthographic" ? "height" : "fovy_deg"];
+const keyText = (path, points) => `${path}=${points.map(([frame, value]) => `${frame}:${value}`).join(",")}`;
 
 // The frames and cameras of a camera's track, so close that straight lines between them follow the arc.
 function cameraPoints(points, type) {
@@ -101,9 +130,8 @@ function cameraPoints(points, type) {
 // The keys as `halflight animate` takes them. type: of the scene's camera.
 export function keyTexts(tracks, type) {
   return tracks.flatMap(({ path, points }) => {
-    if (path !== CAMERA) return [`${path}=${points.map(([frame, value]) => `${frame}:${value}`).join(",")}`];
-    const rows = cameraPoints(points, type).map(([frame, camera, exact]) =>
-      [frame, cameraNumbers(camera).map(([, x]) => (exact ? x : +x.toPrecision(DIGITS)))]);
-    return cameraNumbers(withType(points[0][1], type)).map(([name], n) => `${name}=${rows.map(([frame, numbers]) => `${frame}:${numbers[n]}`).join(",")}`);
+    if (path !== CAMERA) return [keyText(path, points)];
+    const cameras = cameraPoints(points, type), rounded = (value) => [value].flat().map((x) => +x.toPrecision(DIGITS));
+    return cameraParts(withType(points[0][1], type)).map((part) => keyText(`camera.${part}`, cameras.map(([frame, camera, exact]) => [frame, exact ? camera[part] : rounded(camera[part])])));
   });
 }

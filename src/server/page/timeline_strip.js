@@ -1,7 +1,7 @@
 // The timeline under the picture: a row for each track with its keys, which are dragged, and below them a slider of frames, which stays where it
 // is while tracks are added.
 
-import { button, make } from "./controls.js";
+import { button, make, shortNumber } from "./controls.js";
 import { followDrag } from "./drag.js";
 import { CAMERA, trackName, withMovedKey, withoutKey } from "./timeline.js";
 
@@ -46,7 +46,7 @@ export function timelineStrip({ get, setTracks, show, play, canShow }) {
 
   const keyMark = (path, [frame, value]) => {
     const mark = button("", () => show(frame), {
-      class: "key", "data-path": path, "data-frame": frame, title: path === CAMERA ? `frame ${frame + 1}` : `frame ${frame + 1}: ${value}`,
+      class: "key", "data-path": path, "data-frame": frame, title: path === CAMERA ? `frame ${frame + 1}` : `frame ${frame + 1}: ${[value].flat().map(shortNumber).join(", ")}`,
       "aria-label": `Key of ${trackName(path)} at frame ${frame + 1}. Arrow keys move it, Delete removes it.`,
       onpointerdown: (event) => drag(event, path, frame), onkeydown: (event) => onKey(event, path, frame),
     });

@@ -69,7 +69,7 @@ export function volumePanel(viewer) {
         get: () => scattering().anisotropy ?? 0, set: (g) => set("anisotropy", { anisotropy: Math.abs(g) < 0.02 ? 0 : g }),
       }),
       slider({
-        label: "Albedo", path: () => [0, 1, 2].map((c) => `volumes.${current.volume}.scattering.albedo.${c}`), low: 0, high: 1, title: "The fraction of light that a medium scatters; the rest is lost",
+        label: "Albedo", path: () => `volumes.${current.volume}.scattering.albedo`, low: 0, high: 1, title: "The fraction of light that a medium scatters; the rest is lost",
         get: level, set: (most) => set("albedo", { albedo: ofTint(tint(), most) }),
       }),
       color({ label: "Tint", get: () => hexOf(tint()), set: (hex) => set("tint", { albedo: ofTint(linearOf(hex), level()) }) }),
