@@ -108,6 +108,46 @@ def looks(browser):
     check(browser.run("document.querySelector('[aria-label=Looks] [aria-pressed=true]')?.textContent") != "translucent", "and the panel follows")
 
 
+def looks_follow(browser):
+    """The small pictures follow cuts as soon as the picture rests: each is asked for once. One that is being made when something moves is given up. The view and marks make none anew."""
+    browser.run("""(() => { const own = window.fetch; window.small = []; window.fetch = (path, options) => {
+      if (/^frame\\?page=\\w+-small&/.test(path)) small.push(halflight.frames.statistics.stage); return own(path, options); }; })()""")
+    drawn = f"""{pictures_of(browser, 'Looks')}.map((canvas) => canvas.getContext('2d').getImageData(0, 0, 112, 80).data.reduce((sum, x, n) => (sum * 31 + x * n) % 1000003, 7))"""
+    count = browser.run(f"{pictures_of(browser, 'Looks')}.length")
+
+    def follow(what, act):
+        browser.run("small.length = 0")
+        before = browser.run(drawn)
+        act()
+        rest(browser)
+        after, asked = browser.run(drawn), browser.run("small")
+        check(all(one != other for one, other in zip(before, after)), f"{what}: each picture is another one: {before}, {after}")
+        check(len(asked) == count and set(asked) == {"final"}, f"{what}: each is made once, at rest: {asked}")
+
+    middle = "halflight.start.volumes[0].axes.reduce((point, axis, a) => point.map((x, k) => x + (axis[k] * halflight.start.volumes[0].dimensions[a]) / 2), halflight.start.volumes[0].origin)"
+    follow("a cut", lambda: browser.run(f"halflight.store.changeVolume(0, 'cuts', (v) => ({{ ...v, cuts: [{{ type: 'plane', point: {middle}, normal: halflight.store.scene.camera.position.map((x, k) => x - halflight.store.scene.camera.target[k]) }}] }}))"))
+    check(browser.run("document.querySelector('[aria-label=Looks] [aria-pressed=true]')?.textContent") == "auto", "the look is still the one it was")
+    x, y = center(browser, "#view")
+    browser.run("small.length = 0")
+    browser.drag([x - 90, y + 60], [x + 60, y + 90], 12)
+    rest(browser)
+    browser.run("halflight.store.setMarks('test', [{ kind: 'text', points: [[0, 0, 0]], text: 'here' }])")
+    rest(browser)
+    check(browser.run("small") == [], "another view and a mark change no small picture")
+    browser.run("halflight.store.undoCamera()")
+    press_named(browser, "Undo")
+    browser.run("halflight.store.changeVolume(0, 'cuts', (v) => ({ ...v, cuts: [{ ...v.cuts[0], normal: v.cuts[0].normal.map((x) => -x) }] }))")
+    browser.wait("small.length > 0")
+    browser.drag([x - 90, y + 60], [x + 60, y + 90], 12)
+    rest(browser)
+    asked = browser.run("small")
+    check(set(asked) == {"final"} and count <= len(asked) <= count + 1, f"none is begun while something moves, and the one under way once more: {asked}")
+    browser.run("halflight.store.undoCamera()")
+    for _ in range(2):
+        press_named(browser, "Undo")
+    rest(browser)
+
+
 def projection_of_surfaces(browser):
     """A volume with an isosurface becomes a maximum projection, which has none, in one step."""
     with_surface = "({ ...scene, volumes: scene.volumes.map((volume) => ({ ...volume, iso: [{ value: 100, color: [1, 1, 1], opacity: 1 }] })) })"
@@ -313,6 +353,7 @@ with tempfile.TemporaryDirectory() as folder:
             coarse_first(browser)
             points_in_order(browser)
             looks(browser)
+            looks_follow(browser)
             projection_of_surfaces(browser)
             rigs(browser)
             two_pictures(browser)

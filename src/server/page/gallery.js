@@ -1,35 +1,43 @@
-// Small pictures of the open scene with each of some choices. They are made while the picture rests; a click
+// Small pictures of the open scene with each of some choices, which follow what is seen. They are made while the picture rests; a click
 // takes one.
 
 import { reshaped } from "./camera.js";
 import { make } from "./controls.js";
+import { difference } from "./link.js";
 
 const SIDES = { width: 112, height: 80 }; // pixels
 const STEP = 2; // voxels between sheets
 
+const LANE = "-small";
+
 // The small pictures of all galleries are made in turn, by one lane of the channel. The viewer has one
 // renderer for them, which ends with the last picture. Returns a function of a scene, which asks for a
-// picture as a channel's fetchFrame() does.
-export function smallPictures(channel) {
-  let last = Promise.resolve();
+// picture as a channel's fetchFrame() does. A picture that is being made when something changes is given up.
+export function smallPictures(channel, store) {
+  let last = Promise.resolve(), shown = store.scene, underWay = 0;
+  store.listen((scene) => {
+    if (scene !== shown && underWay > 0) channel.cancel?.(LANE).catch(() => {}); // a lost viewer has been told
+    shown = scene;
+  });
   return (scene) => {
-    const picture = last.then(() => channel.fetchFrame(scene, { quality: 85, moving: true, lane: "-small" }));
+    underWay++;
+    const picture = last.then(() => channel.fetchFrame(scene, { quality: 85, moving: true, lane: LANE })).finally(() => { underWay--; });
     last = picture.catch(() => {}); // the caller that has asked for the picture is told
     return picture;
   };
 }
 
 // names: the choices. made(name) resolves to the scene with one of them; take(name, scene) takes it; isTaken(scene of a choice): whether
-// the viewer shows it now. Returns { element, update, atRest }: atRest() is called when the picture has come to rest.
-export function gallery({ label, names, viewer: { store, smallPicture, failed, frames, waits }, made, take, isTaken }) {
-  const canvases = new Map(), scenes = new Map(); // by name
+// the viewer shows it now; seen(scene of a choice): the part of it that makes its picture another one. Returns { element, update, atRest }: atRest() is called when the picture has come to rest.
+export function gallery({ label, names, viewer: { store, smallPicture, failed, frames, waits }, made, take, isTaken, seen }) {
+  const canvases = new Map(), scenes = new Map(), pictured = new Map(); // by name; pictured: what the small picture shows
   const buttons = names.map((name) => {
     const canvas = make("canvas", { "aria-hidden": "true", ...SIDES });
     canvases.set(name, canvas);
     return make("button", { type: "button", class: "choice", "aria-pressed": "false", onclick: () => choose(name) }, canvas, make("span", {}, name));
   });
   const element = make("div", { class: "gallery", role: "group", "aria-label": label }, ...buttons);
-  let busy = false, drawn = 0; // drawn: number of the pictures that are there
+  let busy = false, shown = null, drawn = 0; // drawn: number of the pictures that are there of the scene `shown`
 
   async function choose(name) {
     try {
@@ -41,14 +49,16 @@ export function gallery({ label, names, viewer: { store, smallPicture, failed, f
     }
   }
 
-  const isResting = () => frames().statistics.stage === "final" && element.offsetParent !== null;
+  const isResting = () => frames().statistics.stage === "final" && element.checkVisibility();
 
   async function draw(name) {
     const scene = await made(name), image = { ...scene.image, ...SIDES };
     scenes.set(name, scene);
     const small = { ...scene, image, camera: reshaped(store.scene.camera, store.scene.image, image), render: { ...scene.render, sheet_spacing: Math.max(STEP, scene.render.sheet_spacing), pixel_samples: 0 } };
+    if (pictured.has(name) && difference(pictured.get(name), seen(scene)) === undefined) return true;
     const frame = await smallPicture(small);
     if (frame === null) return false;
+    pictured.set(name, seen(scene));
     const bitmap = await createImageBitmap(frame.blob), canvas = canvases.get(name);
     canvas.getContext("2d").drawImage(bitmap, 0, 0);
     canvas.dataset.drawn = "";
@@ -60,8 +70,12 @@ export function gallery({ label, names, viewer: { store, smallPicture, failed, f
     if (busy) return;
     busy = true;
     element.dataset.busy = ""; // tests wait for it
+    const follow = () => {
+      if (shown !== store.scene) [shown, drawn] = [store.scene, 0];
+      return drawn < names.length;
+    };
     try {
-      while (drawn < names.length && isResting()) if (await draw(names[drawn])) drawn++;
+      while (isResting() && follow()) if (await draw(names[drawn])) drawn++;
     } catch {
       drawn = names.length; // the names are enough without pictures
     }

@@ -15,6 +15,7 @@ function rigsOf(viewer) {
   const told = (scene) => JSON.stringify([scene.lights, scene.sky]);
   const rigs = gallery({
     label: "Light rigs", names: start.rigs ?? [], viewer, made: (rig) => channel.completeScene({ ...store.scene, lights, ...(sky ? { sky } : {}), ...(ambient ? { ambient } : {}) }, { rig }),
+    seen: ({ camera: _, image: __, ...rest }) => rest, // not the view: all small pictures take seconds of processor time
     isTaken: (scene) => told(scene) === told(store.scene),
     take: (name, made) => store.change(`rig ${name}`, (scene) => ({ ...scene, lights: made.lights, sky: made.sky, ambient: made.ambient })),
   });

@@ -9,7 +9,7 @@ const PROJECTION = "mip"; // the look that is no surface and no medium: its grey
 // The scene that a maximum projection can show: without isosurfaces and meshes.
 const projected = ({ meshes: _, ...scene }) => ({ ...scene, volumes: scene.volumes.map(({ iso: __, ...volume }) => (volume.labels ? volume : { ...volume, transfer_function: { preset: PROJECTION } })) });
 
-// A text about a look of a scene.
+// What makes a look of a scene, whichever its view and light.
 const seen = ({ camera: _, lights: __, sky: ___, ambient: ____, image: _____, ...rest }) => rest;
 
 export function lookPanel(viewer) {
@@ -17,7 +17,7 @@ export function lookPanel(viewer) {
   const names = start.looks ?? [], isOf = () => names.length > 0 && store.scene.volumes.some((volume) => !volume.labels);
   const looks = gallery({
     label: "Looks", names, viewer, made: (look) => channel.completeScene(look === PROJECTION ? projected(store.scene) : store.scene, { look }),
-    isTaken: (scene) => difference(seen(scene), seen(store.scene)) === undefined,
+    seen, isTaken: (scene) => difference(seen(scene), seen(store.scene)) === undefined,
     take: (name, made) => store.change(`look ${name}`, ({ camera, image: { width, height } }) => ({ ...made, camera, image: { ...made.image, width, height } })),
   });
   viewer.atRest.push(looks.atRest);

@@ -225,7 +225,7 @@ export function mount(element, channel, whole, { keyboard = element, reopen = ()
   const ended = new AbortController();
   const start = startOf(kept?.scene ?? whole.scene, whole);
   const store = new Store(kept?.scene ?? start.scene, { ...kept, source: kept?.own ?? source, title: kept?.title ?? whole.title }), report = messageBox(find("message"));
-  const viewer = { store, start, channel, smallPicture: smallPictures(channel), report, reopen, root, find, source, startAfresh, choose, copy: copier(report, store), current: new Current(store), address, atRest: [], frames: () => frames, waits: (promise) => status.wait(promise) };
+  const viewer = { store, start, channel, smallPicture: smallPictures(channel, store), report, reopen, root, find, source, startAfresh, choose, copy: copier(report, store), current: new Current(store), address, atRest: [], frames: () => frames, waits: (promise) => status.wait(promise) };
   const connection = watchConnection(root.querySelector("main"), channel, report, { onBack: () => { frames.move(); viewer.slices.update(); }, save: () => viewer.saveSession() });
   viewer.failed = connection.failed;
   if (restore !== null) viewer.openSession = (file) => openSession(file, restore, viewer);
