@@ -65,8 +65,8 @@ static void put_histogram(FILE *out, const hl_volume_info *info) {
   fputc(']', out);
 }
 
-/* Writes the range and the histogram of the values before smoothing, which slices show. Writes null if the
- * volume was not smoothed. */
+/* Writes the type, the range and the histogram of the values before smoothing, which slices show. Writes null
+ * if the volume was not smoothed. */
 static void put_unsmoothed(FILE *out, const hl_volume *volume) {
   hl_volume_info info = {.struct_size = sizeof info};
   fputs(",\"unsmoothed\":", out);
@@ -74,7 +74,7 @@ static void put_unsmoothed(FILE *out, const hl_volume *volume) {
     fputs("null", out);
     return;
   }
-  fputc('{', out);
+  fprintf(out, "{\"type\":\"%s\",", hl_voxel_type_name(info.type));
   put_histogram(out, &info);
   fputc('}', out);
 }

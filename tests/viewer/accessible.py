@@ -18,7 +18,7 @@ import checks
 import seen
 from browser import Browser
 from checks import check
-from hands import PROGRAM, center, press, rest, scene_of
+from hands import PROGRAM, center, press, press_named, rest, scene_of
 from viewer import Viewer, need_viewer
 
 SIZES = ((390, 844), (820, 1180), (1280, 720), (1920, 1080))
@@ -96,6 +96,12 @@ def fit(browser, size):
     rest(browser)
 
 
+def keys_line_up(browser, what):
+    """The keys of all tracks lie above the slider of frames, at its scale; a narrow page keeps room for them."""
+    ends = browser.run("[...document.querySelectorAll('.track-keys, .track input')].map((e) => { const { left, right } = e.getBoundingClientRect(), margin = e.matches('input') ? 7 : 0; return [Math.round(left + margin), Math.round(right - margin)]; })")
+    check(len(ends) > 2 and all(end == ends[0] for end in ends) and ends[0][1] - ends[0][0] > 140, f"{what}: the timeline's columns: {ends}")
+
+
 def status_fits(browser, size):
     """What the line below the picture tells is not cut."""
     cut = browser.run("""[...document.querySelectorAll('footer > *')].filter((e) => e.getBoundingClientRect().width > 0 &&
@@ -130,6 +136,7 @@ with tempfile.TemporaryDirectory() as folder:
                 status_fits(browser, size)
             browser.run(OPEN_ALL)
             press(browser, "key of the camera now")
+            press_named(browser, "Add a key of Intensity")
             rest(browser)
             seen.edges_are_seen(browser, theme)
             if axe is not None:
@@ -140,6 +147,7 @@ with tempfile.TemporaryDirectory() as folder:
             for size in SIZES:
                 fit(browser, size)
                 nothing_is_cut(browser, f"{theme}, {size}")
+                keys_line_up(browser, f"{theme}, {size}")
             if axe is not None:
                 fit(browser, SIZES[0])
                 check(browser.run("document.querySelector('header').clientHeight") < 80, "two rows of buttons on a phone")

@@ -133,6 +133,12 @@ def as_radiologists_look(browser, voxels):
     check(pixel(browser, "sagittal", (11, 5, 15))[0] < center(browser, area("sagittal"))[0] - 20, "sagittal: the front is at the left")
     letters = browser.run(f"[...document.querySelector('{area('axial')}').querySelectorAll('.edge')].map((e) => e.textContent)")
     check(letters == ["R", "L", "A", "P"], f"the axial plane's letters: {letters}")
+    crossed = browser.run("""[...document.querySelectorAll('.slice:not([hidden])')].flatMap((slice) => {
+      const [, y, x] = slice.querySelector('.crosshair').getAttribute('d').match(/^M0 ([^H]+)H.*M([^ ]+) 0V/);
+      return [...slice.querySelectorAll('.edge')].filter((letter) => { const b = letter.getBBox(); return (b.x < x && x < b.x + b.width) || (b.y < y && y < b.y + b.height); }).map((letter) => letter.textContent); })""")
+    check(crossed == [], f"the crosshair runs through no letter: {crossed}")
+    facts = browser.run("[...document.querySelectorAll('.facts')].map((p) => p.textContent).find((text) => text.includes('voxels of'))")
+    check(", int16, " in facts and "values -1000 to 3000" in facts, f"the panel tells the file's values: {facts}")
     long, tall = pixel(browser, "axial", (39, 0, 15)), pixel(browser, "axial", (0, 49, 15))
     check(abs(abs(long[0] - tall[0]) / abs(long[1] - tall[1]) - 39 * 1.5 / 49) < 0.01, "voxels are as wide as they are")
     for name in ("axial", "coronal", "sagittal"):

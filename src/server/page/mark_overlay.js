@@ -62,7 +62,7 @@ export class Marks {
 
   #draw({ shapes, handles }, project, ways, width, height, faintness) {
     const taken = [], inside = ([x, y]) => x >= 0 && y >= 0 && x <= width && y <= height, points = [];
-    shapes.replaceChildren(...this.#all.flatMap((mark, m) => {
+    const made = this.#all.flatMap((mark, m) => {
       const places = mark.points.map(project), style = faintness(mark);
       if (places.length === 0 || places.includes(null) || style === null) return [];
       if (m < this.#viewer.store.marks.length)
@@ -71,7 +71,8 @@ export class Marks {
       // Of a mark that is being made, a single point has no length yet; its points are seen as dots.
       return [...drawn(mark, places, places.length > 1 ? captionOf(mark, this.#viewer) : mark.text ?? "", `mark ${style}`, taken),
         ...places.map(([x, y]) => make("svg:circle", { cx: x, cy: y, r: DOT, class: "mark-dot" }))];
-    }));
+    }), isText = (one) => one.localName === "text";
+    shapes.replaceChildren(...made.filter((one) => !isText(one)), ...made.filter(isText)); // no line covers a text
     handles.draw(points, project, points[0]?.at ?? [0, 0, 0], width, height);
   }
 

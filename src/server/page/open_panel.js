@@ -38,7 +38,7 @@ export function openPanel(viewer) {
     try {
       const folder = await channel.folder(at), up = at.includes("/") ? at.slice(0, at.lastIndexOf("/")) : "";
       const inside = (name) => (at ? `${at}/${name}` : name);
-      where.textContent = at ? `in ${at}` : "in the folder that the viewer was started in; or drop a file anywhere";
+      where.textContent = at ? `in ${at}` : "Files in the folder that the viewer was started in. You can also drop a file anywhere.";
       const opener = (path, name, text, more) => button(text, () => openListed(path, name), { class: "file", ...more });
       list.replaceChildren(
         ...(at ? [make("li", {}, button("‹ back", () => show(up)), opener(at, at, "open as one volume", { title: "DICOM, slices or Zarr" }))] : []),

@@ -11,8 +11,8 @@ import { directionOf, sizeOf, steppedDirection, withDirection, withSize } from "
 import { SkyRing } from "./sky_ring.js";
 import { symbolOf } from "./units.js";
 
-const MARKER = { size: 34, left: 64, bottom: 64, roomy: 360 }; // pixels; in a picture whose shorter side is less than roomy it is smaller
-const BAR_WIDTH = 140; // the most pixels
+const MARKER = { size: 34, left: 64, bottom: 64, roomy: 360, letter: 24 }; // pixels; in a picture whose shorter side is less than roomy it is smaller
+const BAR_WIDTH = 140, LEAST_BAR = 20; // the most pixels, and the fewest where there is no room
 // Radius of the sphere on which lights are moved, as a part of the picture's shorter side.
 const SPHERE_OF_HEIGHT = 0.42;
 const RING_PER_DEGREE = 1.6; // a handle's ring has this radius in pixels for each degree of the light's size
@@ -105,10 +105,13 @@ export class Overlay {
     this.#drawLights();
   }
 
+  // The marker's size in this picture, as a part of its full size.
+  get #markerPart() { return Math.min(Math.max(Math.min(this.#width, this.#height) / MARKER.roomy, 0.5), 1); }
+
   #drawMarker() {
     const frame = axes(this.#store.scene.camera);
     const names = AXIS_NAMES[this.#start.volumes[0]?.space] ?? ["x", "y", "z"];
-    const part = Math.min(Math.max(Math.min(this.#width, this.#height) / MARKER.roomy, 0.5), 1), size = part * MARKER.size;
+    const part = this.#markerPart, size = part * MARKER.size;
     const middle = [part * MARKER.left, this.#height - part * MARKER.bottom];
     const arrows = [0, 1, 2].map((k) => ({ k, right: frame.right[k], up: frame.up[k], depth: frame.towards[k] }));
     arrows.sort((a, b) => a.depth - b.depth);
@@ -123,8 +126,8 @@ export class Overlay {
 
   #drawBar() {
     const perPixel = worldHeight(this.#store.scene.camera) / this.#height;
-    const size = roundLength(BAR_WIDTH * perPixel), pixels = size / perPixel;
-    const right = this.#width - 24, y = this.#height - 26;
+    const right = this.#width - 24, room = right - this.#markerPart * (MARKER.left + MARKER.size) - MARKER.letter; // beside the marker
+    const size = roundLength(Math.min(BAR_WIDTH, Math.max(room, LEAST_BAR)) * perPixel), pixels = size / perPixel, y = this.#height - 26;
     const path = `M${right - pixels} ${y - 5}v5h${pixels}v-5`;
     this.#bar.replaceChildren(
       make("svg:path", { d: path, class: "halo" }), make("svg:path", { d: path }),

@@ -85,7 +85,7 @@ export function helpSheet(dialog, keys) {
   dialog.append(
     make("h2", { id: "help-title" }, "Mouse, fingers and keys"),
     make("div", { class: "sheet" }, table(all.slice(0, half)), table(all.slice(half))),
-    make("p", {}, "Of the light's handle the arrow keys move the light, + and − change its size. In the drawing of the " +
+    make("p", {}, "While a light's handle has the focus, arrow keys move the light, and + and − change its size. In the drawing of the " +
       "transfer function they move the chosen point; Page Up and Page Down choose another."),
     make("form", { method: "dialog" }, make("button", { class: "primary", autofocus: true }, "Close")));
 }

@@ -4,6 +4,7 @@ import { unplaced } from "./boxes.js";
 import { button, isActive, make, row, section, segments, select, shortNumber, slider, toggle } from "./controls.js";
 import { anatomical, isAnatomical, pointAt, planeTitle, PLANES } from "./sections.js";
 import { DRAGS, LAYOUTS } from "./slices.js";
+import { lengthUnit } from "./units.js";
 import { length, withoutErrors } from "./vector.js";
 
 const BLENDS = [["maximum", "Maximum"], ["mean", "Mean"], ["minimum", "Minimum"]];
@@ -46,7 +47,7 @@ export function slicePanel(viewer) {
   const level = number("Level", () => (ends()[0] + ends()[1]) / 2, (value) => setWidth(ends()[1] - ends()[0], value));
   const finest = () => Math.min(...slices.source.grid.axes.map((axis) => Math.hypot(...axis)));
   const thickness = slider({
-    label: "Thickness", low: 0, high: 200 * finest(), step: finest(), title: "Of a slab around each plane, of which one value shows; 0: the plane alone",
+    label: "Thickness", low: 0, high: 200 * finest(), step: finest(), unit: lengthUnit(viewer), title: "Of a slab around each plane, of which one value shows; 0: the plane alone",
     get: () => slices.thickness, set: (value) => store.setPage({ thickness: value }),
   });
   const blend = select({ label: "Slab shows", choices: BLENDS, get: () => slices.blend, set: (name) => store.setPage({ blend: name }) });
@@ -60,7 +61,7 @@ export function slicePanel(viewer) {
     const { grid, transform } = source, point = withoutErrors(unplaced(slices.cursor, transform), length(grid.axes[0]) * grid.dimensions[0]);
     value.textContent = readout.inside ? [exact(readout.value), ...readout.labels].join(" · ") : "beside the volume";
     const own = `x ${shortNumber(point[0])} y ${shortNumber(point[1])} z ${shortNumber(point[2])}`;
-    place.textContent = isAnatomical(grid) ? `${anatomical(grid, point)} (${own})` : own;
+    place.replaceChildren(...(isAnatomical(grid) ? [`${anatomical(grid, point)} `, make("span", { class: "whole" }, `(${own})`)] : [own]));
     index.forEach((one) => one.update());
   }
   slices.onReadout = tell;

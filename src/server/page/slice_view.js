@@ -14,6 +14,7 @@ const WHEEL_STEP = 40; // pixels of the wheel for each plane
 const DRAG_STEP = 8; // pixels of a drag through the planes for each plane
 const STILL = 6; // pixels that a finger may move during a tap
 const LEAST_ZOOM = 0.2, MOST_ZOOM = 60;
+const EDGE = 14; // pixels from a line of the crosshair to a letter beside it
 const SMOOTH_UP_TO = 3; // up to this many pixels of the screen, a voxel is not drawn as a square
 
 export class SliceView {
@@ -154,7 +155,8 @@ export class SliceView {
     const [cross, letters] = this.#svg.children, [x, y] = this.project(this.#slices.cursor), gap = 7;
     cross.setAttribute("d", `M0 ${y}H${x - gap}M${x + gap} ${y}H${wide}M${x} 0V${y - gap}M${x} ${y + gap}V${tall}`);
     const [left, right, upper, lower] = this.#plane.edges;
-    const places = [[left, 10, tall / 2], [right, wide - 10, tall / 2], [upper, wide / 2, 12], [lower, wide / 2, tall - 10]];
+    const beside = (at, line) => (Math.abs(at - line) < EDGE ? line + EDGE : at), across = beside(wide / 2, x), down = beside(tall / 2, y); // of the crosshair's lines
+    const places = [[left, 10, down], [right, wide - 10, down], [upper, across, 12], [lower, across, tall - 10]];
     letters.replaceChildren(...places.map(([text, lx, ly]) => make("svg:text", { x: lx, y: ly, class: "edge" }, text)));
   }
 

@@ -11,10 +11,10 @@ import { CAMERA, trackName, withMovedKey, withoutKey } from "./timeline.js";
 // update }.
 export function timelineStrip({ get, setTracks, show, play, canShow }) {
   const slider = make("input", { type: "range", min: 0, step: 1, "aria-label": "Frame", oninput: () => show(+slider.value) });
-  const told = make("output", { class: "time" });
+  const told = make("span", {}), seconds = make("span", {});
   const player = button("play", play, { disabled: !canShow, title: "Plays the film in small pictures" });
   const rows = make("div", {});
-  const element = make("div", { class: "timeline", hidden: true }, rows, make("div", { class: "track frame" }, player, slider, told));
+  const element = make("div", { class: "timeline", hidden: true }, rows, make("div", { class: "track frame" }, player, slider, make("output", { class: "time" }, told, seconds)));
 
   const left = (frame) => `${(100 * frame) / Math.max(get().frames - 1, 1)}%`;
 
@@ -67,7 +67,8 @@ export function timelineStrip({ get, setTracks, show, play, canShow }) {
     slider.max = frames - 1;
     slider.value = frame;
     slider.style.setProperty("--filled", left(frame));
-    told.textContent = `${frame + 1} of ${frames} · ${(frame / fps).toFixed(2)} s`;
+    told.textContent = `${frame + 1} of ${frames}`;
+    seconds.textContent = ` · ${(frame / fps).toFixed(2)} s`;
     slider.setAttribute("aria-valuetext", `frame ${frame + 1} of ${frames}`);
     player.textContent = playing ? "stop playing" : "play";
     if (drawn?.tracks === tracks && drawn.frames === frames) return;

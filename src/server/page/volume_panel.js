@@ -5,6 +5,7 @@ import { hexOf, linearOf } from "./color.js";
 import { button, color, keyButton, make, row, section, segments, select, shortNumber, slider, toggle } from "./controls.js";
 import { absenceOf } from "./refinement.js";
 import { seriesOf, seriesRow } from "./series.js";
+import { measured } from "./slice_values.js";
 import { symbolOf } from "./units.js";
 import { length } from "./vector.js";
 
@@ -107,8 +108,8 @@ export function volumePanel(viewer) {
     const casts = toggle({ label: "Casts shadows", get: () => volume().casts_shadow !== false, set: (on) => change("casts", (v) => ({ ...v, casts_shadow: on })) });
     const material = materialSliders();
     const unit = about.unit ? ` ${symbolOf(about.unit)}` : "", edges = about.axes.map((axis) => shortNumber(length(axis))).join(" × ");
-    const series = seriesRow(viewer, about, volume().file);
-    const facts = make("p", { class: "facts" }, `${about.dimensions.join(" × ")} voxels of ${edges}${unit}, ${about.type}, values ${about.range.map(shortNumber).join(" to ")}${absenceOf(about) ? `; ${absenceOf(about)}` : ""}${seriesOf(about) ? `; ${seriesOf(about)}` : ""}`);
+    const series = seriesRow(viewer, about, volume().file), own = measured(about); // as the file has them
+    const facts = make("p", { class: "facts" }, `${about.dimensions.join(" × ")} voxels of ${edges}${unit}, ${own.type}, values ${own.range.map(shortNumber).join(" to ")}${absenceOf(about) ? `; ${absenceOf(about)}` : ""}${seriesOf(about) ? `; ${seriesOf(about)}` : ""}`);
     parts = [...rows, labelled, shading, ...scattering, visible, casts, ...material];
     body.replaceChildren(facts, ...series, ...rows.map((r) => r.element), reset, labelled.element, shading.element,
       ...[...material, ...scattering, visible, casts].map((part) => part.element));
