@@ -23,11 +23,26 @@ static const double MOST_BETWEEN = 0.4;
 
 enum {
   BINS = HL_HISTOGRAM_BINS,
-  REACH = 4 /* REACH: the number of bins to each side over which counts are smoothed */
+  TENT = 5 /* the least distance, in bins, from the middle of the tent that smooths counts to its ends */
 };
 
-/* Counts the objects' voxels in bins of rising distance. A tent smooths the counts, so that the gaps of
- * quantised data close. Returns the number of bins. *first: the distance of the first bin. */
+/* The distance, in bins, between neighbouring values of quantised data: at least half of the voxels have a
+ * value whose next higher value is at most as far away. */
+static int value_step(const double *raw, int count) {
+  double voxels[BINS] = {0}, all = 0; /* voxels: [distance to the next higher value] */
+  for (int n = 0, last = -1; n < count; n++) {
+    if (!(raw[n] > 0)) continue;
+    if (last >= 0) voxels[n - last] += raw[last], all += raw[last];
+    last = n;
+  }
+  int step = 1;
+  for (double sum = voxels[1]; 2 * sum < all; sum += voxels[step]) step++;
+  return step;
+}
+
+/* Counts the objects' voxels in bins of rising distance. A tent smooths the counts. Its ends are a multiple
+ * of the distance of quantised values from its middle, so that it closes the gaps between these values
+ * exactly. Returns the number of bins. *first: the distance of the first bin. */
 static int object_bins(const hl_volume *volume, const hl_data_analysis *a, double counts[BINS],
                        double *first) {
   double width = (volume->maximum - volume->minimum) / BINS, raw[BINS];
@@ -39,11 +54,12 @@ static int object_bins(const hl_volume *volume, const hl_data_analysis *a, doubl
     if (count == 0) *first = distance;
     raw[count++] = (double)volume->histogram[bin];
   }
+  const int step = value_step(raw, count), tent = (TENT + step - 1) / step * step;
   for (int n = 0; n < count; n++) {
     double sum = 0, weights = 0;
-    for (int m = n - REACH; m <= n + REACH; m++) {
+    for (int m = n - tent + 1; m < n + tent; m++) {
       if (m < 0 || m >= count) continue;
-      double weight = REACH + 1 - (m > n ? m - n : n - m);
+      double weight = tent - (m > n ? m - n : n - m);
       sum += weight * raw[m];
       weights += weight;
     }

@@ -495,6 +495,24 @@ static double block(int i, int j, int k) {
   return 10 + 200 * part + 2 * noise(i, j, k);
 }
 
+/* The head has one material, also if its values are rounded to so few levels that the histogram has gaps. */
+static double rounded_head(int i, int j, int k) { return 4 * floor(head_in_mr(i, j, k) / 4); }
+
+static void levels_are_no_materials(void **state) {
+  (void)state;
+  hl_context *context = make_context();
+  for (int rounded = 0; rounded < 2; rounded++) {
+    hl_data_analysis analysis;
+    fill(rounded ? rounded_head : head_in_mr);
+    hl_volume *volume = make_volume(context, N, values);
+    assert_int_equal(hl_data_analyse(volume, &analysis, NULL), HL_OK);
+    assert_int_equal(analysis.kind, HL_DATA_SURFACES);
+    assert_int_equal(analysis.material_count, 1);
+    hl_volume_release(volume);
+  }
+  hl_context_destroy(context);
+}
+
 static void boundaries_are_no_materials(void **state) {
   (void)state;
   hl_context *context = make_context();
@@ -573,6 +591,7 @@ int main(void) {
       cmocka_unit_test(labels_have_colors_of_their_own),
       cmocka_unit_test(flows_show_their_extremes),
       cmocka_unit_test(materials_have_colors_of_their_own),
+      cmocka_unit_test(levels_are_no_materials),
       cmocka_unit_test(boundaries_are_no_materials),
       cmocka_unit_test(looks_by_name),
   };
