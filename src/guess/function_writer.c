@@ -14,7 +14,11 @@
 
 #define FLOW_DEPTH   2.0  /* optical depth of a flow in which all values are shown */
 #define MEDIUM_DEPTH 10.0 /* optical depth of smoke across the whole object */
+#define METAL_DEPTH  12.0 /* optical depth of matter around metal across the whole object */
 #define SHELL        0.2  /* optical depth of the shell of a field, along a line that crosses the shell */
+/* The least mean distance of dense matter that is metal from the background, as a multiple of the objects'
+ * mean distance. Measured: a stent in vessels has 4.3, and seven scans without metal have at most 2.1. */
+#define METAL 3
 /* The width of an object, in voxels, for which the opacities of solid matter were chosen. */
 #define FINE 96
 
@@ -62,6 +66,30 @@ static void color_materials(hl_function_writer *w) {
   }
 }
 
+/* Returns whether the dense matter of scanned objects is metal: it is far brighter than all other matter. */
+static bool holds_metal(const hl_data_analysis *a) {
+  return a->material_count <= 1 && a->dense_mean > METAL * a->mean;
+}
+
+/* Writes matter around metal: flesh, bone and steel. The matter lets some light pass, so that metal is seen
+ * within it, as a stent in a vessel. */
+static void write_metal(hl_function_writer *w) {
+  static const double wall[3] = {0.44, 0.12, 0.08}, flesh[3] = {0.60, 0.20, 0.12},
+                      bone[3] = {0.89, 0.80, 0.65}, steel[3] = {0.62, 0.72, 0.82};
+  const hl_data_analysis *a = w->analysis;
+  const double metal = dense_of(a), before = fmax(0.85 * metal, a->solid),
+               veil = hl_opacity_for(a, METAL_DEPTH);
+  hl_add_opacity(w, a->faint, 0);
+  hl_add_opacity(w, a->solid, veil);
+  hl_add_opacity(w, before, veil);
+  hl_add_opacity(w, metal, 0.9);
+  hl_add_opacity(w, top_of(a), 0.97);
+  hl_add_color(w, a->faint, wall);
+  hl_add_color(w, a->solid, flesh);
+  hl_add_color(w, before, bone);
+  hl_add_color(w, metal, steel);
+}
+
 /* Writes ivory for one material, whose values differ by noise alone. Two tissues, such as the grey and the
  * white matter of a head, are ivory in two shades, so that they differ on the faces of cuts. */
 void hl_write_matter(hl_function_writer *w) {
@@ -75,7 +103,8 @@ void hl_write_matter(hl_function_writer *w) {
                        {a->light_mean, {0.64, 0.57, 0.46}},
                        {dense_of(a), {0.97, 0.96, 0.94}},
                        {top_of(a), {0.97, 0.97, 0.97}}};
-  if (hl_data_is_one_material(a)) write_solid(w, one, sizeof one / sizeof *one);
+  if (holds_metal(a)) write_metal(w);
+  else if (hl_data_is_one_material(a)) write_solid(w, one, sizeof one / sizeof *one);
   else write_solid(w, two, sizeof two / sizeof *two);
   if (a->material_count > 1) color_materials(w);
 }

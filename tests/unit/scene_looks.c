@@ -513,6 +513,26 @@ static void levels_are_no_materials(void **state) {
   hl_context_destroy(context);
 }
 
+/* Matter that is several times as bright as the rest is steel, which is seen within the rest. */
+static void metal_is_seen_within_matter(void **state) {
+  (void)state;
+  hl_context *context = make_context();
+  hl_transfer_function f;
+  double flesh[3], steel[3];
+  fill(beads);
+  hl_volume *volume = make_volume(context, N, values);
+  assert_int_equal(hl_transfer_function_automatic(context, volume, &f, NULL), HL_OK);
+  hl_transfer_function_color(&f, 100, flesh);
+  hl_transfer_function_color(&f, 380, steel);
+  assert_true(flesh[0] > 2 * flesh[2] && steel[2] > steel[0]);
+  const double opacity = hl_transfer_function_opacity(&f, 100);
+  assert_true(opacity > 0.1 && opacity < 0.4 && hl_transfer_function_opacity(&f, 380) > 0.85);
+  hl_transfer_function_release(context, &f);
+  hl_volume_release(volume);
+  assert_int_equal(hl_context_memory_held(context), 0);
+  hl_context_destroy(context);
+}
+
 static void boundaries_are_no_materials(void **state) {
   (void)state;
   hl_context *context = make_context();
@@ -592,6 +612,7 @@ int main(void) {
       cmocka_unit_test(flows_show_their_extremes),
       cmocka_unit_test(materials_have_colors_of_their_own),
       cmocka_unit_test(levels_are_no_materials),
+      cmocka_unit_test(metal_is_seen_within_matter),
       cmocka_unit_test(boundaries_are_no_materials),
       cmocka_unit_test(looks_by_name),
   };
