@@ -16,6 +16,7 @@
 #define MEDIUM_DEPTH 10.0 /* optical depth of smoke across the whole object */
 #define METAL_DEPTH  12.0 /* optical depth of matter around metal across the whole object */
 #define SHELL        0.2  /* optical depth of the shell of a field, along a line that crosses the shell */
+#define PALE         0.25 /* part of white in the shell's colour */
 /* The least mean distance of dense matter that is metal from the background, as a multiple of the objects'
  * mean distance. Measured: a stent in vessels has 4.3, and seven scans without metal have at most 2.1. */
 #define METAL 3
@@ -138,26 +139,27 @@ void hl_write_brain(hl_function_writer *w) {
   write_solid(w, shades, sizeof shades / sizeof *shades);
 }
 
-/* Adds the opacities of a field on one side of its background (+1: above; -1: below): a clear shell, around
- * an opaque core, in thin matter. Reflections show the shape of the shell, and the core is seen through
- * it. */
+/* The distance from the background at which a field's core begins. */
+static double core_of(const hl_data_analysis *a) {
+  return a->solid + 0.35 * (fmax(a->top, a->solid * 1.001) - a->solid);
+}
+
+/* Adds the opacities of a field on one side of its background (+1: above; -1: below): a clear shell around an
+ * opaque core. Reflections show the shape of the shell, and the core is seen through it. Between the two
+ * is a trace of matter, which hardly dims the core; the inside of the shell counts as matter where the grid
+ * cuts it off. */
 static void add_shell_and_core(hl_function_writer *w, int side) {
   const hl_data_analysis *a = w->analysis;
   const double ramp = a->solid - a->faint, top = fmax(a->top, a->solid * 1.001), way = top - a->solid;
-  const double shell = a->faint + 0.35 * ramp, core = a->solid + 0.35 * way,
+  const double shell = a->faint + 0.35 * ramp, core = core_of(a),
                half = fmin(fmin(0.03 * top, 0.25 * ramp), 0.15 * way);
-  const double thin = 0.3; /* the optical depth, across the object, of matter on both sides of the shell */
+  const double trace = 0.05; /* the optical depth, across the object, of matter between shell and core */
   /* The greatest opacity of the shell. Derived: if a field falls from its top to nothing over half of the
    * object, the values of the shell, which have the width 2 half, take the fraction half / top of the object.
    * The mean of a tent is half its peak. */
   const double peak = SHELL * 2 * top / half;
-  const double rows[][2] = {{a->faint, 0},
-                            {shell - half, thin},
-                            {shell, thin + peak},
-                            {shell + half, thin},
-                            {core - half, 1.5},
-                            {core, 80},
-                            {top, 80}};
+  const double rows[][2] = {{shell - half, 0},    {shell, peak}, {shell + half, trace},
+                            {core - half, trace}, {core, 80},    {top, 80}};
   enum { ROWS = sizeof rows / sizeof *rows };
   for (int n = 0; n < ROWS; n++) {
     const double *row = rows[side > 0 ? n : ROWS - 1 - n];
@@ -169,9 +171,15 @@ void hl_write_field(hl_function_writer *w) {
   const hl_data_analysis *a = w->analysis;
   const double way = fmax(a->top, a->solid * 1.001) - a->solid;
   add_shell_and_core(w, 1);
-  /* The darkest part of the map is left out, because a shell of its colours hardly stands out from a dark
-   * background. */
-  hl_add_colormap(w, "plasma", a->faint, a->solid + 0.6 * way, 0.45, 0.95);
+  hl_add_colormap(w, "plasma", a->faint, core_of(a), 0.2, 0.8);
+  /* White is mixed into the colours of the shell, because a shell of the map's dark colours would hardly
+   * stand out from a dark background. */
+  for (size_t n = 0; n < w->color_count; n++)
+    for (int c = 0; c < 3; c++) {
+      const double pale = PALE * (1 - (double)n / (double)w->color_count);
+      w->color[n].color[c] += pale * (1 - w->color[n].color[c]);
+    }
+  hl_add_colormap(w, "plasma", core_of(a), a->solid + 0.6 * way, 0.8, 0.95);
 }
 
 /* Writes the function for particles. Their densities extend over many powers of ten, so the values are

@@ -17,6 +17,7 @@ typedef struct hl_look {
   bool on_black;    /* whether a bare volume gets a black background */
   const char *next; /* the name of the style to try next for such data */
   bool aside;       /* whether the key light comes from the side, for media */
+  bool glossy;      /* whether surfaces have sharp reflections, as glass has */
 } hl_look;
 
 #endif

@@ -29,29 +29,30 @@ typedef enum subject {
   PARTICLES
 } subject;
 
-/* The columns: name, writer, shading, kernel; intensities of key, fill and sky; left; on_black; next; aside.
+/* The columns: name, writer, shading, kernel; intensities of key, fill and sky; left; on_black; next; aside;
+ * glossy.
  * If `left` is not 0, the exposure scales the intensities afterwards. */
 static const hl_look looks[] = {
     [BODY] = {"scanned body", hl_write_body, HL_SHADING_PHONG, HL_KERNEL_BSPLINE, 1.45, 0.06, 0.62, 0.75,
-              false, "translucent", false},
+              false, "translucent", false, false},
     [BRAIN] = {"scanned brain", hl_write_brain, HL_SHADING_PHONG, HL_KERNEL_BSPLINE, 1.45, 0.06, 0.62, 0.7,
-               false, "translucent", false},
+               false, "translucent", false, false},
     [MATTER] = {"scanned matter", hl_write_matter, HL_SHADING_PHONG, HL_KERNEL_BSPLINE, 1.30, 0.05, 0.56,
-                0.76, false, "translucent", false},
+                0.76, false, "translucent", false, false},
     [LABELS] = {"labels", hl_write_labels, HL_SHADING_PHONG, HL_KERNEL_LINEAR, 0.90, 0.12, 0.44, 0, false,
-                "surface", false},
+                "surface", false, false},
     [FIELD] = {"field", hl_write_field, HL_SHADING_PHONG, HL_KERNEL_BSPLINE, 1.40, 0.20, 0.56, 0.65, false,
-               "surface", false},
+               "surface", false, true},
     [FLOW] = {"flow", hl_write_flow, HL_SHADING_PHONG, HL_KERNEL_BSPLINE, 1.20, 0.20, 0.50, 0.9, false,
-              "translucent", false},
+              "translucent", false, false},
     [SIGNED] = {"signed field", hl_write_signed, HL_SHADING_PHONG, HL_KERNEL_BSPLINE, 1.05, 0.15, 0.44, 0.8,
-                false, "translucent", false},
+                false, "translucent", false, true},
     [MEDIUM] = {"smoke or cloud", hl_write_medium, HL_SHADING_NONE, HL_KERNEL_BSPLINE, 1.35, 0, 0.45, 0,
-                false, "surface", true},
+                false, "surface", true, false},
     [CONSTANT] = {"one value", hl_write_constant, HL_SHADING_PHONG, HL_KERNEL_BSPLINE, 1.20, 0.10, 0.44, 0,
-                  false, "surface", false},
+                  false, "surface", false, false},
     [PARTICLES] = {"particles", hl_write_particles, HL_SHADING_NONE, HL_KERNEL_BSPLINE, 1.15, 0.35, 0.45,
-                   0.85, true, "xray", false},
+                   0.85, true, "xray", false, false},
 };
 
 static bool ends_with(const char *text, const char *end) {
@@ -108,7 +109,10 @@ const hl_look *hl_look_automatic(const hl_volume *volume, const char *file,
 
 void hl_look_material(const hl_look *look, hl_scene_volume *volume) {
   volume->shading = look->shading;
-  volume->material = (hl_material){.ambient = 1, .diffuse = 0.85, .specular = 0.15, .shininess = 24};
+  volume->material = (hl_material){.ambient = 1,
+                                   .diffuse = 0.85,
+                                   .specular = look->glossy ? 0.35 : 0.15,
+                                   .shininess = look->glossy ? 40 : 24};
 }
 
 /* Keeps the colours of voxels with colours of their own, which white does not change. A voxel's alpha is its

@@ -114,13 +114,15 @@ static void write_vessels(hl_function_writer *w) {
 /* Rows are as in looks.c. */
 static const hl_look styles[] = {
     {"surface", write_surface, HL_SHADING_PHONG, HL_KERNEL_BSPLINE, 1.35, 0.06, 0.95, 0.72, false,
-     "translucent", false},
+     "translucent", false, false},
     {"translucent", write_translucent, HL_SHADING_PHONG, HL_KERNEL_BSPLINE, 1.40, 0.25, 0.95, 0.72, false,
-     "surface", false},
-    {"xray", write_xray, HL_SHADING_FLAT, HL_KERNEL_BSPLINE, 1.20, 0, 0, 0, true, "translucent", false},
-    {"smoke", write_smoke, HL_SHADING_NONE, HL_KERNEL_BSPLINE, 1.35, 0, 0.45, 0, false, "surface", true},
-    {"vessels", write_vessels, HL_SHADING_PHONG, HL_KERNEL_BSPLINE, 1.45, 0.15, 0.90, 0.75, true, "surface",
+     "surface", false, false},
+    {"xray", write_xray, HL_SHADING_FLAT, HL_KERNEL_BSPLINE, 1.20, 0, 0, 0, true, "translucent", false,
      false},
+    {"smoke", write_smoke, HL_SHADING_NONE, HL_KERNEL_BSPLINE, 1.35, 0, 0.45, 0, false, "surface", true,
+     false},
+    {"vessels", write_vessels, HL_SHADING_PHONG, HL_KERNEL_BSPLINE, 1.45, 0.15, 0.90, 0.75, true, "surface",
+     false, false},
 };
 
 enum { STYLES = sizeof styles / sizeof *styles };

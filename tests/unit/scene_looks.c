@@ -224,7 +224,11 @@ static void fields_show_a_core_through_a_shell(void **state) {
   double from = a.background + a.faint, shell = from + 0.35 * (a.solid - a.faint),
          opacity = hl_transfer_function_opacity(&f, shell);
   assert_true(opacity > 3 * hl_transfer_function_opacity(&f, from + 0.02 * a.top));
-  assert_true(opacity > 3 * hl_transfer_function_opacity(&f, shell + 0.04 * a.top));
+  for (double value = shell + 0.04 * a.top; value < core - 0.04 * a.top; value += 0.02 * a.top)
+    assert_true(hl_transfer_function_opacity(&f, value) < 0.02 * opacity);
+  double glass[3];
+  hl_transfer_function_color(&f, shell, glass);
+  for (int c = 0; c < 3; c++) assert_true(glass[c] > 0.15); /* no part of the shell's colour is dark */
   hl_transfer_function_release(context, &f);
   hl_volume_release(volume);
   assert_int_equal(hl_context_memory_held(context), 0);
