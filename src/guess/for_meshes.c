@@ -5,13 +5,12 @@
 
 /* The intensities of the key light, of the fill light and of the sky. Their ratios are the ratios for scanned
  * matter (looks.c). A white face that looks at the key light and at the sky sends about 1.6. */
-#define KEY  1.1
+#define KEY  1.18
 #define FILL 0.04
-#define SKY  0.47
+#define SKY  0.41
 
 static void choose_light(hl_context *context, hl_light lights[2], hl_scene_description *description) {
-  hl_scene_key_light(&lights[0]);
-  lights[0].intensity = KEY;
+  hl_scene_warm_key_light(KEY, &lights[0]);
   hl_scene_fill_light(&lights[1]);
   lights[1].intensity = FILL;
   description->lights = lights;

@@ -54,6 +54,13 @@ void hl_scene_key_light(hl_light *light) {
   light->intensity = 1.7;
 }
 
+void hl_scene_warm_key_light(double intensity, hl_light *light) {
+  static const double warm[3] = HL_WARM_LIGHT;
+  hl_scene_key_light(light);
+  light->intensity = intensity;
+  memcpy(light->color, warm, sizeof warm);
+}
+
 void hl_scene_fill_light(hl_light *light) {
   hl_light_defaults(light);
   light->frame = HL_LIGHT_FRAME_CAMERA;
@@ -72,9 +79,8 @@ hl_status hl_scene_frame(const hl_scene_description *description, hl_camera *cam
 
 /* Chooses the key light and, where the look asks for it, a fill light. *count: 1 or 2. */
 static void choose_lights(const hl_look *look, hl_light lights[2], size_t *count) {
-  hl_scene_key_light(&lights[0]);
+  hl_scene_warm_key_light(look->key, &lights[0]);
   if (look->aside) hl_light_direction_beside(ASIDE_AZIMUTH, ASIDE_ELEVATION, lights[0].direction);
-  lights[0].intensity = look->key;
   *count = look->fill > 0 ? 2 : 1;
   hl_scene_fill_light(&lights[1]);
   lights[1].intensity = look->fill;
@@ -91,7 +97,7 @@ static bool has_room(const hl_volume *volume, uint64_t bytes) {
 }
 
 void hl_scene_choose_sky(double strength, hl_scene_description *description) {
-  static const double zenith[3] = {1.00, 1.04, 1.09}, horizon[3] = {0.76, 0.76, 0.77},
+  static const double zenith[3] = {0.90, 1.02, 1.22}, horizon[3] = {0.68, 0.74, 0.86},
                       ground[3] = {0.16, 0.14, 0.12};
   hl_sky *sky = &description->sky;
   for (int channel = 0; channel < 3; channel++) description->ambient[channel] = BESIDE_SKY * strength;

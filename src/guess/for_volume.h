@@ -12,6 +12,16 @@ hl_status hl_scene_frame(const hl_scene_description *description, hl_camera *cam
  * camera. */
 void hl_scene_key_light(hl_light *light);
 
+/* The colours, linear RGB, of lamps that make the lit side of objects warm and the rest cool. Together they
+ * are nearly white. */
+#define HL_WARM_LIGHT \
+  { 1.06, 1, 0.92 }
+#define HL_COOL_LIGHT \
+  { 0.90, 0.98, 1.12 }
+
+/* The key light of bare volumes and meshes: the light of hl_scene_key_light(), in a warm colour. */
+void hl_scene_warm_key_light(double intensity, hl_light *light);
+
 /* A fill light from the eye, without shadows. The caller sets its intensity. */
 void hl_scene_fill_light(hl_light *light);
 
@@ -25,7 +35,7 @@ void hl_scene_choose_background(hl_scene_description *description);
 /* Constant light beside a sky, as a fraction of the sky's strength, so that no hollow is black. */
 #define BESIDE_SKY 0.04
 
-/* Chooses a sky that is brighter above than below, so that folds and hollows are darker, and a little
+/* Chooses a cool sky that is brighter above than below, so that folds and hollows are darker, and a little
  * constant light beside it. If the strength is 0, there is no sky and no constant light. */
 void hl_scene_choose_sky(double strength, hl_scene_description *description);
 

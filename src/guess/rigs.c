@@ -30,10 +30,6 @@ typedef struct rig {
 
 #define WHITE \
   { 1, 1, 1 }
-#define WARM \
-  { 1.06, 1, 0.92 }
-#define COOL \
-  { 0.90, 0.98, 1.12 }
 
 /* clang-format off */
 enum { STUDIO, RAKING, RIM, OVERCAST, RIGS };
@@ -44,22 +40,22 @@ const hl_setting_choice hl_light_rig_choices[] = {
 static const rig rigs[RIGS] = {
     /* a large lamp at the upper left, a weak lamp at the right, and a lamp behind the object that lights its
      * edges */
-    [STUDIO] = {3, {{-42, 38, 24, 0.95, WARM, true},
-                   {  55, 5,  0, 0.16, COOL, false},
-                   { 150, 45, 8, 0.55, COOL, true}}, 0.75},
+    [STUDIO] = {3, {{-42, 38, 24, 0.95, HL_WARM_LIGHT, true},
+                   {  55, 5,  0, 0.16, HL_COOL_LIGHT, false},
+                   { 150, 45, 8, 0.55, HL_COOL_LIGHT, true}}, 0.94},
     /* a small lamp at the left, whose light grazes the object: surface relief shows, and shadows are long */
-    [RAKING] = {1, {{-82, 14,  4, 1.70, WARM, true}}, 0.40},
+    [RAKING] = {1, {{-82, 14,  4, 1.70, HL_WARM_LIGHT, true}}, 0.50},
     /* two lamps behind the object light its outline; a weak lamp lights the front */
-    [RIM] = {3, {{-112, 30, 8, 1.70, COOL, true},
-                   { 118, 18, 8, 1.50, WARM, true},
-                   { -25, 35, 24, 0.16, WHITE, true}}, 0.22},
+    [RIM] = {3, {{-112, 30, 8, 1.70, HL_COOL_LIGHT, true},
+                   { 118, 18, 8, 1.50, HL_WARM_LIGHT, true},
+                   { -25, 35, 24, 0.16, WHITE, true}}, 0.275},
     /* only light from a cloudy sky: folds and hollows are darker, and no shadow has an edge */
-    [OVERCAST] = {1, {{0, 80, 60, 0.30, WHITE, true}}, 2.2}};
+    [OVERCAST] = {1, {{0, 80, 60, 0.30, WHITE, true}}, 2.75}};
 /* clang-format on */
 
 /* The sky's strength that a rig gives to scenes without a sky, divided by the key light's intensity. It is
  * the ratio in scenes of bare volumes. */
-#define SKY_OVER_KEY 0.43
+#define SKY_OVER_KEY 0.345
 
 const char *hl_light_rig_name(size_t index) { return index < RIGS ? hl_light_rig_choices[index].name : NULL; }
 

@@ -537,6 +537,23 @@ static void metal_is_seen_within_matter(void **state) {
   hl_context_destroy(context);
 }
 
+/* A bare volume is lit by a warm lamp, and by a cool sky. */
+static void light_is_warm_and_shade_is_cool(void **state) {
+  (void)state;
+  hl_context *context = make_context();
+  hl_scene *scene = NULL;
+  fill(head_in_mr);
+  hl_volume *volume = make_volume(context, N, values);
+  assert_int_equal(hl_scene_for_volume(context, volume, NULL, &scene, NULL), HL_OK);
+  const hl_scene_description *d = hl_scene_describe(scene);
+  assert_true(d->lights[0].color[0] > d->lights[0].color[2]);
+  assert_true(d->sky.zenith[0] < d->sky.zenith[2] && d->sky.horizon[0] < d->sky.horizon[2]);
+  hl_scene_release(scene);
+  hl_volume_release(volume);
+  assert_int_equal(hl_context_memory_held(context), 0);
+  hl_context_destroy(context);
+}
+
 static void boundaries_are_no_materials(void **state) {
   (void)state;
   hl_context *context = make_context();
@@ -617,6 +634,7 @@ int main(void) {
       cmocka_unit_test(materials_have_colors_of_their_own),
       cmocka_unit_test(levels_are_no_materials),
       cmocka_unit_test(metal_is_seen_within_matter),
+      cmocka_unit_test(light_is_warm_and_shade_is_cool),
       cmocka_unit_test(boundaries_are_no_materials),
       cmocka_unit_test(looks_by_name),
   };
