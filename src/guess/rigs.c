@@ -26,6 +26,7 @@ typedef struct rig {
   size_t count;
   rig_light lights[HL_LIGHT_RIG_MOST];
   double sky; /* the sky's strength as a fraction of the scene's sky */
+  bool grey;  /* whether a gradient sky loses its colours, as below clouds */
 } rig;
 
 #define WHITE \
@@ -50,7 +51,7 @@ static const rig rigs[RIGS] = {
                    { 118, 18, 8, 1.50, HL_WARM_LIGHT, true},
                    { -25, 35, 24, 0.16, WHITE, true}}, 0.275},
     /* only light from a cloudy sky: folds and hollows are darker, and no shadow has an edge */
-    [OVERCAST] = {1, {{0, 80, 60, 0.30, WHITE, true}}, 2.75}};
+    [OVERCAST] = {1, {{0, 80, 60, 0.30, WHITE, true}}, 2.75, true}};
 /* clang-format on */
 
 /* The sky's strength that a rig gives to scenes without a sky, divided by the key light's intensity. It is
@@ -88,6 +89,19 @@ static double share_factor(const rig *rig, const hl_scene_description *descripti
   return media && sum > 1 ? 1 / sum : 1;
 }
 
+static void make_grey(double color[3]) {
+  const double luminance = 0.2126 * color[0] + 0.7152 * color[1] + 0.0722 * color[2];
+  for (int c = 0; c < 3; c++) color[c] = luminance;
+}
+
+/* Takes the colours of a gradient sky away. */
+static void cloud_over(hl_sky *sky) {
+  if (sky->type != HL_SKY_GRADIENT) return;
+  make_grey(sky->zenith);
+  make_grey(sky->horizon);
+  make_grey(sky->ground);
+}
+
 hl_status hl_scene_light_rig(const char *rig, hl_scene_description *description,
                              hl_light lights[HL_LIGHT_RIG_MOST], hl_error *error) {
   HL_DOOR;
@@ -117,9 +131,10 @@ hl_status hl_scene_light_rig(const char *rig, hl_scene_description *description,
   description->light_count = of->count;
   if (description->sky.type == HL_SKY_NONE) {
     hl_scene_choose_sky(of->sky * SKY_OVER_KEY * key, description);
-    return HL_OK;
+  } else {
+    description->sky.strength = of->sky * before;
+    for (int c = 0; c < 3; c++) description->ambient[c] = BESIDE_SKY * of->sky * before;
   }
-  description->sky.strength = of->sky * before;
-  for (int c = 0; c < 3; c++) description->ambient[c] = BESIDE_SKY * of->sky * before;
+  if (of->grey) cloud_over(&description->sky);
   return HL_OK;
 }

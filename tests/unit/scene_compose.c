@@ -242,6 +242,8 @@ static void light_rigs_expose_bare_volumes(void **state) {
     for (size_t l = 0; l < d->light_count; l++) assert_int_equal(d->lights[l].frame, HL_LIGHT_FRAME_CAMERA);
     assert_int_equal(d->sky.type, HL_SKY_GRADIENT);
     float most = brightest(made, &alpha);
+    const hl_sky *sky = &hl_scene_describe(made)->sky;
+    assert_int_equal(strcmp(hl_light_rig_name(n), "overcast") == 0, sky->horizon[0] == sky->horizon[2]);
     if (!(most > 0.5f && most < 1.5f)) fail_msg("%s: %g", options[0].value, (double)most);
     hl_scene_release(made);
   }
