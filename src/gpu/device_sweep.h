@@ -253,16 +253,24 @@ typedef struct plan_variant {
   int colored; /* whether the voxels have colours of their own */
   int soft;    /* some lights are soft */
   int sky;     /* whether the sky's light is added in this sweep */
+  int maximum; /* whether the picture is a maximum projection */
   int back_to_front;
   int channels; /* number of channels of light attenuation: 1 or 3 */
 } plan_variant;
 
 /* PLAN_ENTRIES: number of entries of each table. The tables follow each other. First come sums, color and
- * shown, with four numbers for each entry; then outside, bent and steepness, with one number for each
- * entry. */
+ * shown, with four numbers for each entry; then outside, bent and steepness, with one number for each entry;
+ * then, for maximum projections, the table of shown values, with four numbers for each entry. */
 #define PLAN_ENTRIES      4096
 #define PLAN_TABLE_ROWS   (PLAN_ENTRIES + 2)
-#define PLAN_TABLE_FLOATS (PLAN_TABLE_ROWS * 15)
+#define PLAN_SHOWN_VALUES (PLAN_TABLE_ROWS * 15)
+#define PLAN_TABLE_FLOATS (PLAN_TABLE_ROWS * 19)
+
+/* The numbers of a row of the table of shown values; these constants equal SHOWN_FROM and so on in
+ * plan/shown_values.h. */
+#define PLAN_SHOWN_FROM  0
+#define PLAN_SHOWN_TO    1
+#define PLAN_SHOWN_BELOW 2
 
 /* The two tables of a function of value and gradient, sums and color (plane_table in grid/plane_table.h),
  * follow the tables above. Each has PLAN_PLANE_FLOATS numbers: four for each point of the plane. */

@@ -99,8 +99,10 @@ struct gpu_sweep {
   const int32_t *shown_from; /* [tiles][16 blocks]; the first visible slab of each block, if slabs are
                               * composited from back to front; null stands for slab 1 for all blocks */
   gpu_sky sky;
-  size_t plane_floats; /* number of floats of the planes of all lights together */
-  int slabs;           /* the greatest number of slabs of a run */
+  const float *shown_values; /* [PLAN_TABLE_ROWS][4]; the table of shown values of a maximum projection; null
+                              * for other pictures */
+  size_t plane_floats;       /* number of floats of the planes of all lights together */
+  int slabs;                 /* the greatest number of slabs of a run */
   /* The next members are for soft lights; they are zeros if there are no soft lights: */
   const unsigned char *ends;       /* [sheets]; not 0 for sheets at which a chunk of some light ends */
   size_t field_pixels, row_floats; /* number of pixels of the fields of all soft lights; number of pixels of
@@ -133,7 +135,8 @@ typedef struct gpu_times {
 } gpu_times;
 
 bool hl_gpu_run(hl_gpu *gpu, const gpu_sweep *sweep);
-/* Waits for the sweep's pixels, and copies them to `pixels`, [tiles][16 blocks][R G B A][16] floats. times:
+/* Waits for the sweep's pixels, and copies them to `pixels`, [tiles][16 blocks][R G B A][16] floats. In a
+ * maximum projection the first of the four numbers is the greatest value, as in render/slab.h. times:
  * receives the times of the sweep in addition to the times before. */
 bool hl_gpu_read(hl_gpu *gpu, const gpu_sweep *sweep, float *pixels, gpu_times *times);
 

@@ -27,7 +27,7 @@ static const char *const kernel_names[KERNELS] = {"fill_floats",       "try_arit
                                                   "composite_samples", "pass_rows",      "pass_fields",
                                                   "pass_absorbed",     "pass_refill"};
 
-enum { VARIANT_DEFINES = 18, SAMPLE_COUNTERS = 256, TILE_SIDE = 16 };
+enum { VARIANT_DEFINES = 19, SAMPLE_COUNTERS = 256, TILE_SIDE = 16 };
 
 /* ---- memory ---- */
 
@@ -176,7 +176,8 @@ static void define_variant(const plan_variant *v, char defines[VARIANT_DEFINES][
       {"OUTSIDE", v->outside},   {"BOXED", v->boxed},     {"BACK_TO_FRONT", v->back_to_front},
       {"CHANNELS", v->channels}, {"CUTS", v->cuts},       {"BRICKS", v->bricks},
       {"STEEP", v->steep},       {"MASKED", v->masked},   {"PLANE", v->plane},
-      {"COLORED", v->colored},   {"SOFT", v->soft},       {"SKY", v->sky}};
+      {"COLORED", v->colored},   {"SOFT", v->soft},       {"SKY", v->sky},
+      {"MAXIMUM", v->maximum}};
   for (int i = 0; i < VARIANT_DEFINES; i++)
     snprintf(defines[i], sizeof defines[i], "%s=%d", all[i].name, all[i].value);
 }
@@ -315,7 +316,7 @@ static bool prepare_sky(hl_gpu *gpu, const gpu_sky *sky) {
 static bool make_room(hl_gpu *gpu, const gpu_sweep *sweep) {
   const device_sweep *plan = sweep->plan;
   const size_t views = 2 + 2 * (size_t)plan->light_count, tiles = (size_t)plan->tiles,
-               slots = 2 * tiles * 256 * (size_t)sweep->slabs;
+               slots = sweep->variant.maximum ? 0 : 2 * tiles * 256 * (size_t)sweep->slabs;
   bool done = reserve_and_upload(gpu, BUFFER_PLAN, plan, sizeof *plan) &&
               reserve_and_upload(gpu, BUFFER_RAYS, sweep->rays,
                                  views * (size_t)plan->sheets * sizeof *sweep->rays) &&
@@ -334,13 +335,18 @@ static bool make_room(hl_gpu *gpu, const gpu_sweep *sweep) {
     done = upload(gpu, BUFFER_SHOWN_FROM, 0, sweep->shown_from, tiles * 16 * sizeof(int32_t));
   if (done && sweep->cut_count > 0)
     done = upload(gpu, BUFFER_CUTS, 0, sweep->cuts, sweep->cut_count * sizeof *sweep->cuts);
+  if (done && sweep->variant.maximum)
+    done = upload(gpu, BUFFER_TABLES, PLAN_SHOWN_VALUES * sizeof(float), sweep->shown_values,
+                  (PLAN_TABLE_FLOATS - PLAN_SHOWN_VALUES) * sizeof(float));
   return done;
 }
 
-/* Starts a sweep: sets the lights' buffers to full light, the picture to empty, and the counters to 0. */
+/* Starts a sweep: sets the lights' buffers to full light, the picture to empty, and the counters to 0. The
+ * numbers of an empty maximum projection are -1. */
 static bool reset(hl_gpu *gpu, const gpu_sweep *sweep, const gpu_program *program) {
   const device_sweep *plan = sweep->plan;
-  bool done = fill(gpu, program, BUFFER_PIXELS, (size_t)plan->tiles * 1024, 0) &&
+  bool done = fill(gpu, program, BUFFER_PIXELS, (size_t)plan->tiles * 1024,
+                   sweep->variant.maximum ? -1 : 0) &&
               fill(gpu, program, BUFFER_COUNTS, counters_of(sweep), 0) &&
               fill(gpu, program, BUFFER_PLANES, sweep->plane_floats, 1) &&
               fill(gpu, program, BUFFER_LIGHT, light_floats(sweep), 1) &&
@@ -396,6 +402,14 @@ static bool launch_kernel(hl_gpu *gpu, const gpu_program *program, int kernel, s
                 groups_of(members), arguments, (int)(sizeof arguments / sizeof *arguments));
 }
 
+/* Lights the samples of a run and composites them. */
+static bool launch_shading(hl_gpu *gpu, const gpu_sweep *sweep, const gpu_program *program, device_run run) {
+  const size_t pixels = (size_t)sweep->plan->tiles * 256;
+  return launch_kernel(gpu, program, KERNEL_SHADE, pixels < SHADING_MEMBERS ? pixels : SHADING_MEMBERS,
+                       run) &&
+         launch_kernel(gpu, program, KERNEL_COMPOSITE, pixels, run);
+}
+
 /* Launches a run. While the samples of one run are lit, LINE_AHEAD works on the next run. Its work on run r
  * begins when run r - 2 has been lit. It writes planes of the ring and lists that are not read while run r -
  * 1 is lit. LINE_AHEAD may find samples of a pixel that run r - 1 makes opaque; these samples are then lit in
@@ -408,9 +422,7 @@ static bool launch_run(hl_gpu *gpu, const gpu_sweep *sweep, const gpu_program *p
          launch_kernel(gpu, program, KERNEL_FIND, pixels, run) &&
          driver->follow(&gpu->device, LINE_PICTURE, LINE_AHEAD) &&
          driver->follow(&gpu->device, LINE_AHEAD, LINE_PICTURE) &&
-         launch_kernel(gpu, program, KERNEL_SHADE, pixels < SHADING_MEMBERS ? pixels : SHADING_MEMBERS,
-                       run) &&
-         launch_kernel(gpu, program, KERNEL_COMPOSITE, pixels, run);
+         (sweep->variant.maximum || launch_shading(gpu, sweep, program, run));
 }
 
 /* The end of a run that begins with a slab. A run ends at the latest where a soft light's chunk ends. */

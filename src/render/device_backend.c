@@ -10,7 +10,7 @@
 #include "render/device_plan.h"
 #include "render/device_reasons.h"
 #include "render/device_trial.h"
-#include "render/sweep.h"
+#include "render/maximum.h"
 
 void hl_device_forget(hl_renderer *renderer) {
   if (renderer->device.gpu != NULL) hl_gpu_forget(renderer->device.gpu);
@@ -107,6 +107,8 @@ static hl_status run(hl_renderer *renderer, const frame_plan *plan, int index, f
   statistics->samples_shaded = samples;
   if (status == HL_OK) status = hl_plan_sweep(&means, plan, of, shown_from, &planned, error);
   if (status == HL_OK) status = make_sweep(renderer, &planned, pixels, statistics, error);
+  if (status == HL_OK && target->maximum.values != NULL)
+    hl_maximum_take(&target->maximum, renderer->pool, pixels);
   hl_plan_release(context, &planned);
   hl_release(context, shown_from);
   if (status != HL_OK) give_up(renderer, error->message);

@@ -8,6 +8,7 @@
 
 #include "core/sheet_constants.h"
 #include "grid/relevant.h"
+#include "plan/shown_values.h"
 #include "render/view_sheets.h"
 #include "volume/colors.h"
 
@@ -20,6 +21,9 @@ _Static_assert(MASK_BRICK_SHIFT == HL_MASK_BRICK_SHIFT && MASK_EVEN == HL_MASK_E
                "masks of plans are masks of labels");
 _Static_assert(PLAN_PLANE_COLUMNS == PLANE_COLUMNS && PLAN_PLANE_ROWS == PLANE_ROWS,
                "planes of plans are planes of grids");
+_Static_assert(PLAN_SHOWN_FROM == SHOWN_FROM && PLAN_SHOWN_TO == SHOWN_TO &&
+                   PLAN_SHOWN_BELOW == SHOWN_BELOW && PLAN_TABLE_ROWS == (int)SHOWN_ENTRIES,
+               "tables of shown values of plans are those of frames");
 _Static_assert(PLAN_HARMONICS == FIELD_HARMONICS, "skies of plans are skies of fields");
 _Static_assert(sizeof(plan_brick) == sizeof(hl_brick_entry) &&
                    offsetof(plan_brick, level) == offsetof(hl_brick_entry, level) &&
@@ -487,6 +491,7 @@ static plan_variant variant_of(const sweep_task *task, const device_sweep *plan)
                         .cuts = shade->cut_count > 0,
                         .soft = has_soft_lights(task),
                         .sky = task->constants->shade.sky != NULL,
+                        .maximum = shade->shown != NULL,
                         .colored = shade->colors.voxels != NULL,
                         .steep = shade->classifier->steepness != NULL,
                         .plane = shade->classifier->plane.sums != NULL,
@@ -550,6 +555,7 @@ hl_status hl_plan_sweep(const sweep_means *means, const frame_plan *frame_plan, 
                                .variant = variant_of(task, plan),
                                .shown_from = shown_from,
                                .sky = cells_of_sky(job->sky),
+                               .shown_values = shade->shown == NULL ? NULL : &shade->shown[0][0],
                                .plane_floats = floats,
                                .slabs = slabs};
   status = plan_all_rays(context, task, planned, error);

@@ -11,7 +11,6 @@ static bool has_no_volume(const frame_plan *plan) {
 }
 static bool has_volumes(const frame_plan *plan) { return plan->volumes.count > 1; }
 static bool is_hidden(const frame_plan *plan) { return !volume_of(plan)->visible; }
-static bool is_maximum(const frame_plan *plan) { return hl_is_maximum(&plan->settings); }
 static bool has_layers(const frame_plan *plan) { return plan->picture.layers != NULL; }
 static bool is_shared(const frame_plan *plan) { return plan->picture.share.parts > 1; }
 static bool has_surfaces(const frame_plan *plan) { return plan->frame.surfaces != NULL; }
@@ -82,7 +81,6 @@ static const struct {
   const char *reason;
 } reasons[] = {
     {has_no_volume, "it shows no volume"},
-    {is_maximum, "a maximum projection"},
     {has_layers, "layers"},
     {is_shared, "a part of a shared picture"},
     {has_surfaces, "meshes or isosurfaces"},

@@ -2,6 +2,8 @@
  * (maximum.h). */
 #include "render/maximum.h"
 
+#include <string.h>
+
 #include "core/memory.h"
 
 static size_t visible_count(const plan_volumes *volumes) {
@@ -47,6 +49,28 @@ hl_status hl_maximum_create(hl_context *context, hl_pool *pool, const frame_plan
 
 void hl_maximum_release(hl_context *context, maximum_values *maximum) {
   hl_release(context, maximum->values);
+}
+
+/* ---- values of a device ---- */
+
+typedef struct take_job {
+  const maximum_values *maximum;
+  float *pixels;
+} take_job;
+
+static void take_tile(void *data, size_t tile, int worker) {
+  (void)worker;
+  const take_job *job = data;
+  float *values = job->maximum->values + tile * floats_of_tile(job->maximum),
+        *pixels = job->pixels + tile * 4 * TILE_PIXELS;
+  for (int block = 0; block < TILE_BLOCKS; block++)
+    memcpy(values + block * BLOCK_PIXELS, pixels + 4 * block * BLOCK_PIXELS, BLOCK_PIXELS * sizeof *pixels);
+  memset(pixels, 0, (size_t)4 * TILE_PIXELS * sizeof *pixels);
+}
+
+void hl_maximum_take(const maximum_values *maximum, hl_pool *pool, float *pixels) {
+  take_job job = {maximum, pixels};
+  hl_pool_run(pool, maximum->tiles, take_tile, &job);
 }
 
 /* ---- colours ---- */

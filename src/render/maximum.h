@@ -26,6 +26,10 @@ void hl_maximum_count(const frame_plan *plan, hl_layout *layout);
 /* A sweep's tile action for a maximum projection, which replaces steps 12 to 16. */
 uint32_t hl_maximum_tile(const sweep *sweep, const tile_slab *slab);
 
+/* Takes the values of one visible volume from pixels in which a device has kept them, as the first of a
+ * pixel's four numbers. Sets the pixels to 0. pixels: [tiles][16][R G B A][16]. */
+void hl_maximum_take(const maximum_values *maximum, hl_pool *pool, float *pixels);
+
 /* Makes the picture's pixels, [tiles][16][R G B A][16]. Each channel is the greatest among the colours of the
  * volumes. Alpha is 1 where any volume shows something. */
 void hl_maximum_color(const maximum_values *maximum, const frame_plan *plan, hl_pool *pool, float *pixels);

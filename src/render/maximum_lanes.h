@@ -42,8 +42,11 @@ static __attribute__((noinline)) covered_span within_walls(const shade_job *job,
   return (covered_span){begin, lanes_select(without, lanes_set(0), lanes_max(end - begin, lanes_set(0)))};
 }
 
+/* Takes a volume's values in a slab into account, in the pixels of a block in which the volume may be visible
+ * (`visible`). In other pixels no value counts, so that no pixel depends on the pixels beside it.
+ * Returns the pixels in which the slab shows a value, one bit each. */
 LANES_INLINE uint32_t maximum_block(const shade_job *job, const shade_patch *patch, int block, lanes u,
-                                    lanes v, lanes path, float *values) {
+                                    lanes v, lanes path, lanes_int visible, float *values) {
   const shade_volume *volume = patch->volume;
   const mask_lattice *walls = &volume->classifier->mask;
   block_way way = way_of_block(job, patch, block);
@@ -53,7 +56,8 @@ LANES_INLINE uint32_t maximum_block(const shade_job *job, const shade_patch *pat
   if (patch->enter != NULL || walls->factors != NULL) cut_way(way.part, &a, &b);
   float *greatest = values + block * BLOCK_PIXELS, *before = greatest + MAXIMUM_BEFORE * TILE_PIXELS;
   float *sheet = greatest + MAXIMUM_SHEET * TILE_PIXELS;
-  lanes_int there = (way.part.length > 0.0f) & (path > 0.0f), whole = there & (way.part.length > 0.999f);
+  lanes_int there = visible & (way.part.length > 0.0f) & (path > 0.0f),
+            whole = there & (way.part.length > 0.999f);
   lanes_int follows = whole & (lanes_load(sheet) == (float)(job->sheet - 1));
   lanes high = lanes_max(a.x, b.x), low = lanes_min(a.x, b.x);
   high = lanes_max(high, lanes_select(follows, peak_of_three(lanes_load(before), a.x, b.x), high));
@@ -72,11 +76,12 @@ static uint32_t maximum_tile(const shade_job *job, const tile_slab *tile, float 
     lanes path = geometry_of_block(job, u, v).path;
     for (int i = 0; i < tile->patch_count; i++) {
       const shade_patch *patch = &tile->patches[i];
-      if ((patch->blocks >> block & 1) == 0 || !patch->volume->visible ||
-          lanes_bits(visible_in_patch(patch, block)) == 0)
-        continue;
+      if ((patch->blocks >> block & 1) == 0 || !patch->volume->visible) continue;
+      lanes_int visible = visible_in_patch(patch, block);
+      if (lanes_bits(visible) == 0) continue;
       float *of_volume = values + (size_t)patch->volume->rank * MAXIMUM_ROWS * TILE_PIXELS;
-      *samples += (uint64_t)__builtin_popcount(maximum_block(job, patch, block, u, v, path, of_volume));
+      *samples += (uint64_t)__builtin_popcount(
+          maximum_block(job, patch, block, u, v, path, visible, of_volume));
     }
   }
   return tile->blocks;

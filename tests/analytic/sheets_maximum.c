@@ -280,6 +280,45 @@ static void test_noise_against_the_reference(void **state) {
 
 /* ---- what must not matter ---- */
 
+static double ridge_height, beside_ridge;
+
+/* Left of x = 4, a ridge across the rays along z, whose middle is at another depth in each row; on the right,
+ * one value, and a strip of ones, so that all fields have the same range of values. */
+static double ridge(double x, double y, double z) {
+  const double off = z - 0.17 * y;
+  return x < 4 ? ridge_height * exp(-off * off / 4) : y > 10 ? 1 : beside_ridge;
+}
+
+/* The ridge is about as high as the least shown value. Between two sheets a ray may meet a greater value than
+ * on any sheet. Whether this value is shown must not depend on whether other pixels of the same block see
+ * anything. */
+static void test_pixels_beside_do_not_matter(void **state) {
+  (void)state;
+  static float pixels[2][PIXELS * 4];
+  static const hl_opacity_point above[] = {{0.4, 0}, {0.4, 1}, {1, 1}};
+  int shown = 0, hidden = 0;
+  for (int k = 0; k < 24; k++) {
+    ridge_height = 0.42 + 0.002 * k;
+    for (int bright = 0; bright < 2; bright++) {
+      stage set;
+      open_maximum(&set);
+      stage_look(&set, (vec3){0, 0, 50}, (vec3){0, 0, 0}, (vec3){0, 1, 0});
+      beside_ridge = bright;
+      set_function(add_field(&set, ridge), above, 3, GREY, 2);
+      stage_render_sheets(&set, pixels[bright]);
+      stage_close(&set);
+    }
+    for (int i = 0; i < PIXELS; i++) {
+      if (i % SIDE != 12 && i % SIDE != 13)
+        continue; /* pixels 14 and 15 of these blocks see the right side */
+      assert_memory_equal(&pixels[0][4 * i], &pixels[1][4 * i], 4 * sizeof(float));
+      shown += pixels[0][4 * i + 3] > 0;
+      hidden += pixels[0][4 * i + 3] == 0;
+    }
+  }
+  assert_true(shown > 100 && hidden > 100);
+}
+
 static void test_same_bytes(void **state) {
   (void)state;
   static float first[PIXELS * 4], other[PIXELS * 4];
@@ -335,6 +374,7 @@ int main(void) {
       cmocka_unit_test(test_the_background_is_not_shown),
       cmocka_unit_test(test_several_volumes),
       cmocka_unit_test(test_noise_against_the_reference),
+      cmocka_unit_test(test_pixels_beside_do_not_matter),
       cmocka_unit_test(test_same_bytes),
       cmocka_unit_test(test_layers_are_refused),
   };

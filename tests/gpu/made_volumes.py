@@ -1,5 +1,6 @@
-"""Files of volumes that the tests of devices make: particles, voxels with colours, labels."""
+"""Files of volumes that the tests of devices make: particles, voxels with colours, labels, a mesh of cells."""
 import itertools
+import math
 import random
 
 
@@ -51,3 +52,27 @@ def write_organs(path, scale=1):
               % (*size, *("(%g,%g,%g)" % tuple(scale * x for x in vector)
                           for vector in ((-13, -17, -15), (1.5, 0.1, 0), (-0.1, 1.4, 0.2), (0, 0.1, 1.6)))))
     path.write_bytes(header.encode() + voxels)
+
+
+def write_cells(path):
+    """A ring of hexahedra, 24 around, 5 outwards and 5 high, with values at its points."""
+    around, out, high = 24, 5, 5
+    numbers = list(itertools.product(range(high + 1), range(out + 1), range(around)))
+    places, values = [], []
+    for k, j, i in numbers:
+        angle, radius = 2 * math.pi * i / around, 6 + 9 * j / out
+        places.append("%.5f %.5f %.5f" % (radius * math.cos(angle), 14 * k / high - 7, radius * math.sin(angle)))
+        values.append("%.4f" % (0.5 + 0.3 * math.sin(3 * angle) + 0.2 * math.cos(1.3 * k + j)))
+    corner = {number: at for at, number in enumerate(numbers)}
+    steps = ((0, 0), (0, 1), (1, 1), (1, 0))
+    cells = [" ".join(str(corner[k + up, j + outwards, (i + on) % around]) for up in (0, 1) for on, outwards in steps)
+             for k, j, i in itertools.product(range(high), range(out), range(around))]
+    array = '<DataArray type="%s" Name="%s" NumberOfComponents="%d" format="ascii">%s</DataArray>'
+    path.write_text('<VTKFile type="UnstructuredGrid" version="0.1" byte_order="LittleEndian"><UnstructuredGrid>'
+                    f'<Piece NumberOfPoints="{len(places)}" NumberOfCells="{len(cells)}"><PointData Scalars="f">'
+                    + array % ("Float32", "f", 1, " ".join(values)) + "</PointData><Points>"
+                    + array % ("Float32", "places", 3, " ".join(places)) + "</Points><Cells>"
+                    + array % ("Int32", "connectivity", 1, " ".join(cells))
+                    + array % ("Int32", "offsets", 1, " ".join(str(8 * (n + 1)) for n in range(len(cells))))
+                    + array % ("UInt8", "types", 1, " ".join("12" for _ in cells))
+                    + "</Cells></Piece></UnstructuredGrid></VTKFile>\n")

@@ -13,18 +13,22 @@
 static lanes mask_factor_of_lanes(const mask_lattice *lattice, lanes3 points) {
   return mask_factor(lattice, points, 0xffff);
 }
+static lanes depth_of_lanes(const mask_lattice *lattice, lanes3 points) {
+  return depth_behind_walls(lattice, points);
+}
 static lanes3 mask_slope_of_lanes(const mask_lattice *lattice, lanes3 points) {
   return mask_slope(lattice, points, 0xffff);
 }
 
 /* The kernels' names are those of the processors' functions in places. */
-#define mask_factor    device_mask_factor
-#define mask_slope     device_mask_slope
-#define dot3           device_dot3
-#define cross3         device_cross3
-#define row_of_vector  device_row_of_vector
-#define row_of_point   device_row_of_point
-#define linear_in_view device_linear_in_view
+#define mask_factor        device_mask_factor
+#define mask_slope         device_mask_slope
+#define depth_behind_walls device_depth_behind_walls
+#define dot3               device_dot3
+#define cross3             device_cross3
+#define row_of_vector      device_row_of_vector
+#define row_of_point       device_row_of_point
+#define linear_in_view     device_linear_in_view
 #include "gpu/kernels/mask.h"
 
 enum { X = 9, Y = 6, Z = 7, POINTS = X * Y * Z, BRICKS = 3 * 2 * 2, ROUNDS = 4000 };
@@ -121,18 +125,18 @@ static void test_masks(void **state) {
       points.z[lane] = number_between(&seed, -5, 5);
     }
     lanes color[3] = {lanes_set(0.4f), lanes_set(0.25f), lanes_set(0.9f)};
-    const lanes factor = mask_factor_of_lanes(&lattice, points);
+    const lanes factor = mask_factor_of_lanes(&lattice, points), depth = depth_of_lanes(&lattice, points);
     const lanes3 slope = mask_slope_of_lanes(&lattice, points);
     tint_matter(&tints, &lattice, points, 0xffff, color);
     for (int lane = 0; lane < 16; lane++) {
       const vector point = vector_of(points.x[lane], points.y[lane], points.z[lane]);
       const vector own_slope = device_mask_slope(&mask, point),
                    own_color = tinted_by_mask(&mask, point, vector_of(0.4f, 0.25f, 0.9f));
-      const float own = device_mask_factor(&mask, point);
-      const float found[7] = {own,         own_slope.x, own_slope.y, own_slope.z,
-                              own_color.x, own_color.y, own_color.z},
-                  wanted[7] = {factor[lane],   slope.x[lane],  slope.y[lane], slope.z[lane],
-                               color[0][lane], color[1][lane], color[2][lane]};
+      const float own = device_mask_factor(&mask, point), own_depth = device_depth_behind_walls(&mask, point);
+      const float found[8] = {own,         own_slope.x, own_slope.y, own_slope.z,
+                              own_color.x, own_color.y, own_color.z, own_depth},
+                  wanted[8] = {factor[lane],   slope.x[lane],  slope.y[lane],  slope.z[lane],
+                               color[0][lane], color[1][lane], color[2][lane], depth[lane]};
       assert_memory_equal(found, wanted, sizeof found);
       outside += own == lattice.rest;
       even += own == 40000 * (1.0f / 65535);

@@ -61,12 +61,20 @@ SKY = {"type": "gradient", "zenith": [0.36, 0.4, 0.5], "horizon": [0.32, 0.33, 0
 ORGANS = {"file": "organs.nrrd", "labels": [{"value": 1, "color": [0.9, 0.2, 0.1], "opacity": 0.8}, {"value": 2}, {"value": 3, "color": [0.1, 0.3, 0.9], "tint": 0.6},
                                             {"value": 4, "visible": False}]}
 GRAINS = {"file": "grains.csv", "array": "density"}
+CELLS = {"file": "cells.vtu"}
+SHELL = [[0.2, 0], [0.4, 0.1], [1, 0.5]]
+BAND = [[0.2, 0], [0.2, 0.5], [0.45, 0.5], [0.45, 0]]
 THIN = [[0.001, 0], [0.05, 0.2], [1, 0.6]]
 FAR = {"type": "perspective", "position": [70, 50, -120], "target": [0, 0, 0], "up": [0, 1, 0], "fovy_deg": 30}
 FLAT = {"type": "orthographic", "position": [50, 32, -88], "target": [0, 0, 0], "up": [0, 1, 0], "height": 50}
 PLANE = {"unit_distance": 1, "second": "gradient", "boxes": [
     {"value": [0.12, 0.5], "second": [0.01, 0.05], "edge": [0.05, 0.01], "color": [0.2, 0.4, 0.7], "opacity": 0.3},
     {"value": [0.3, 1], "second": [0.03, 0.2], "edge": [0.1, 0.02], "color": [0.8, 0.5, 0.2], "opacity": 0.9}]}
+
+
+def projected(render=None, **more):
+    """A maximum projection."""
+    return scene(render={"compositing": "maximum", "sheet_spacing": 0.5, **(render or {})}, **more)
 
 
 def with_plane(made):
@@ -160,6 +168,21 @@ MADE = {
     "a sky, a field at levels": scene(sky=SKY, opacity=[[0.02, 0], [0.06, 0.6]], shading="phong", camera=FAR, volume=GRAINS),
     "a sky, a medium that absorbs": scene(sky=SKY, shadows="soft", light=SUN, volume={"scattering": {"albedo": [0.9, 0.7, 0.5]}}),
     "coloured voxels": scene(opacity=[[20, 0], [200, 0.3]], volume={"file": "colors.nrrd"}),
+    "a mesh of cells": scene(opacity=SHELL, volume=CELLS),
+    "a mesh of cells, surfaces": scene(opacity=SHELL, shading="phong", volume=CELLS),
+    "a maximum projection": projected(),
+    "a projection of a band of values, flat view": projected(opacity=BAND, camera=FLAT, render={"kernel": "gaussian"}),
+    "a projection from within": projected(camera={"type": "perspective", "position": [3, -2, -6], "target": [0, 0, 0], "up": [0, 1, 0],
+                                                  "fovy_deg": 80}),
+    "a projection of a clip box, wide sheets, runs of 3": projected(opacity=AROUND, volume={"clip": CLIP},
+                                                                    render={"sheet_spacing": 0.4, "slabs_at_once": 3}),
+    "a projection of cuts": projected(opacity=AROUND, volume={"cuts": [plane(1, 0.3, 0.2), BALL, {**BLOCK, "keep": "inside"}]}),
+    "a projection of cuts, linear": projected(opacity=BAND, volume={"cuts": [BLOCK, BALL]}, render={"kernel": "linear"}),
+    "a projection of a field at levels": projected(opacity=THIN, camera=FAR, volume=GRAINS),
+    "a projection of a mesh of cells": projected(opacity=SHELL, volume=CELLS),
+    "a projection of a mesh of cells, cuts, flat view": projected(opacity=SHELL, camera=FLAT, volume={**CELLS, "cuts": [BALL]}),
+    "a projection of a mask": projected(opacity=AROUND, volume={"mask": ORGANS}),
+    "a projection of coloured voxels": projected(opacity=[[20, 0], [200, 0.3]], volume={"file": "colors.nrrd"}),
     "near light, colours, flat view": scene(light={"type": "point", "position": [40, 50, -50]}, camera=FLAT,
                                             volume={"attenuation_color": [1, 0.5, 0.2]}),
 }
@@ -171,7 +194,7 @@ LARGE = scene(volume={"file": "large.nrrd"}, render={"sheet_spacing": 4},
               camera={"type": "perspective", "position": [380, 250, -680], "target": [0, 0, 0], "up": [0, 1, 0], "fovy_deg": 30})
 # One scene of each feature.
 FEW = ("medium", "several surfaces, colours, near light", "cuts, surfaces", "a field at levels, surfaces", "gradient opacity, surfaces",
-       "coloured voxels", "labels", "a mask, surfaces in layers, near light", "a sky, soft shadows of surfaces, colours")
+       "coloured voxels", "labels", "a projection of cuts", "a mask, surfaces in layers, near light", "a sky, soft shadows of surfaces, colours")
 LEFT = {
     "soft shadows by another method than the cascade": scene(shadows="soft", light=SUN, render={"soft_method": "paper"}),
     "meshes or isosurfaces": {**scene(), "meshes": [{"spheres": [[0, -12, 0, 3]]}]},
@@ -183,7 +206,7 @@ LEFT = {
 }
 
 
-def drawn(seed):
+def drawn(seed, compositing):
     """A scene with cuts of all kinds, drawn by a seed."""
     draw = random.Random(seed)
     cuts = []
@@ -202,7 +225,7 @@ def drawn(seed):
                  function=STEEP if weighed and draw.random() < 0.4 else None,
                  volume={**({"mask": {**ORGANS, "rest": draw.choice((0, 0.3, 1))}} if weighed else {}), "cuts": cuts,
                          "cut_casts_shadow": draw.random() < 0.3, "cut_shading": draw.choice(("face", "none"))},
-                 render={"slabs_at_once": draw.choice((0, 4, 9))})
+                 render={"slabs_at_once": draw.choice((0, 4, 9)), "compositing": compositing})
 
 
 def picture(folder, name, device, *options):
@@ -226,7 +249,9 @@ def hold_whole(folder):
     report = hold(folder, "larger than memory", LARGE, "--max-memory", "85M", "--threads", 2)
     assert report["device"] != "cpu", report
     for seed in range(4):
-        hold(folder, f"drawn-{seed}", drawn(seed))
+        hold(folder, f"drawn-{seed}", drawn(seed, "light"))
+        report = hold(folder, f"drawn-{seed}-projected", drawn(seed, "maximum"))
+        assert report["device"] != "cpu", report
 
 
 def main():
@@ -241,6 +266,7 @@ def main():
         made_volumes.write_grains(folder / "grains.csv")
         made_volumes.write_colors(folder / "colors.nrrd")
         made_volumes.write_labels(folder / "labels.nrrd")
+        made_volumes.write_cells(folder / "cells.vtu")
         made_volumes.write_organs(folder / "organs.nrrd")
         nowhere = folder / "nowhere.json"
         nowhere.write_text(json.dumps(scene()))

@@ -58,26 +58,38 @@ DEVICE GLOBAL const unsigned *brick_of_mask(const mask_data *mask, const mask_pl
   return (GLOBAL const unsigned *)part_of_mask(mask, MASK_BRICKS) + number * 2;
 }
 
-/* The factor of extinction at a point of frame space. */
-DEVICE float mask_factor(const mask_data *mask, vector point) {
-  const mask_place place = place_in_mask(mask, point);
-  const unsigned word = brick_of_mask(mask, &place)[0];
+/* The factor of extinction in a place of the lattice, before it is held between 0 and 1. */
+DEVICE float factor_in_place(const mask_data *mask, const mask_place *place) {
+  const unsigned word = brick_of_mask(mask, place)[0];
   GLOBAL const word16 *factors = (GLOBAL const word16 *)part_of_mask(mask, MASK_FACTORS);
   float steps = (float)(int)(word & 0xffffu), plane[2];
-  if (place.outside) return mask->plan->rest;
   if ((word & MASK_EVEN) == 0) {
     for (int k = 0; k < 2; k++) {
       float line[2];
       for (int j = 0; j < 2; j++) {
-        const int corner = 2 * j + 4 * k, a = factors[corner_of_mask(mask, &place, corner)],
-                  b = factors[corner_of_mask(mask, &place, corner + 1)];
-        line[j] = fused((float)(b - a), place.part[0], (float)a);
+        const int corner = 2 * j + 4 * k, a = factors[corner_of_mask(mask, place, corner)],
+                  b = factors[corner_of_mask(mask, place, corner + 1)];
+        line[j] = fused((float)(b - a), place->part[0], (float)a);
       }
-      plane[k] = fused(line[1] - line[0], place.part[1], line[0]);
+      plane[k] = fused(line[1] - line[0], place->part[1], line[0]);
     }
-    steps = fused(plane[1] - plane[0], place.part[2], plane[0]);
+    steps = fused(plane[1] - plane[0], place->part[2], plane[0]);
   }
-  return limited(fused(steps, mask->plan->scale, mask->plan->offset), 0.0f, 1.0f);
+  return fused(steps, mask->plan->scale, mask->plan->offset);
+}
+
+/* The factor of extinction at a point of frame space. */
+DEVICE float mask_factor(const mask_data *mask, vector point) {
+  const mask_place place = place_in_mask(mask, point);
+  if (place.outside) return mask->plan->rest;
+  return limited(factor_in_place(mask, &place), 0.0f, 1.0f);
+}
+
+/* How far a point of frame space lies behind the walls of a mesh of cells, as depth_behind_walls() in
+ * fill/mask_lanes.h. */
+DEVICE float depth_behind_walls(const mask_data *mask, vector point) {
+  const mask_place place = place_in_mask(mask, point);
+  return place.outside ? -0.5f : factor_in_place(mask, &place) - 0.5f;
 }
 
 /* The factor's slope at a point of frame space, per frame unit. */

@@ -47,6 +47,9 @@ DEVICE GLOBAL const float *bent_table(GLOBAL const float *tables) { return table
 DEVICE GLOBAL const float *steepness_table(GLOBAL const float *tables) {
   return tables + PLAN_TABLE_ROWS * 14;
 }
+DEVICE GLOBAL const float *shown_values_table(GLOBAL const float *tables) {
+  return tables + PLAN_SHOWN_VALUES;
+}
 
 /* A table's first columns at a coordinate. */
 DEVICE void table_values(GLOBAL const float *table, table_coordinate at, int columns, float values[4]) {

@@ -97,7 +97,8 @@ DEVICE sweep_data sweep_of(SWEEP_ARGUMENTS) {
            shown_from, counts, slots, list, masks, cuts, directory, colors, soft, touched, sky, mask, first, \
            end, run)
 
-/* Lists the samples that the picture's pixels may see in slabs first to end - 1. */
+/* Lists the samples that the picture's pixels may see in slabs first to end - 1. In a maximum projection,
+ * finds the greatest values in these slabs instead; there the next two kernels have nothing to do. */
 KERNEL(16) find_samples(SWEEP_ARGUMENTS) {
   const sweep_data sweep = SWEEP_OF_ARGUMENTS;
   sweep.masks[work_number()] = find_slabs(&sweep, work_number(), first, end, counts + 256 + run);
@@ -105,15 +106,19 @@ KERNEL(16) find_samples(SWEEP_ARGUMENTS) {
 
 /* Lights the listed samples. */
 KERNEL(10) shade_samples(SWEEP_ARGUMENTS) {
+#if !MAXIMUM
   const sweep_data sweep = SWEEP_OF_ARGUMENTS;
   const unsigned count = counts[256 + run];
   for (unsigned i = (unsigned)work_number(); i < count; i += work_count())
     shade_slot(&sweep, sweep.list[i], first);
+#endif
 }
 
 KERNEL(16) composite_samples(SWEEP_ARGUMENTS) {
+#if !MAXIMUM
   const sweep_data sweep = SWEEP_OF_ARGUMENTS;
   composite_slabs(&sweep, work_number());
+#endif
 }
 
 /* Composites slabs first to end - 1 into the tiles of all lights' buffers. */

@@ -9,6 +9,7 @@
 #define HL_GPU_SWEEP_H
 
 #include "core/sheet_constants.h"
+#include "gpu/kernels/maximum.h"
 #include "gpu/kernels/shade.h"
 
 /* The state of a pixel's ray on its way from sheet to sheet: the densities on the last two sheets, as far as
@@ -101,7 +102,8 @@ typedef struct sweep_data {
    * each sheet. */
   GLOBAL const plan_rays *rays;
   volume_data volume;
-  GLOBAL float *pixels; /* [tiles][16 blocks][R G B A][16] */
+  GLOBAL float *pixels; /* [tiles][16 blocks][R G B A][16]; in a maximum projection the four numbers are
+                         * those of ray_maximum, and one more that is not used */
   GLOBAL float *planes; /* planes of all lights */
   GLOBAL float *light;  /* [light tiles][planes of a sheet][256 pixels]; the light at the last sheet of the
                          * run before */
@@ -190,8 +192,42 @@ DEVICE GLOBAL float *values_of(GLOBAL float *pixels, const tile_pixel *pixel) {
   return pixels + (wide)pixel->tile * 1024 + (pixel->member >> 4) * 64 + (pixel->member & 15);
 }
 
-/* Lists the slabs of a run that a pixel may see. Returns a bit for each of these slabs. count: the counter of
- * the list's entries. */
+/* Takes the values of a slab into account in a maximum projection. before, after: the densities on the slab's
+ * two sheets. Returns whether the slab shows any value. */
+DEVICE int take_values(const sweep_data *sweep, const tile_pixel *pixel, int sheet, float before,
+                       float after) {
+  GLOBAL const device_sweep *plan = sweep->plan;
+  const volume_data *volume = &sweep->volume;
+  GLOBAL const plan_rays *rays = sweep->rays + plan->sheets + sheet;
+  table_coordinate a = coordinate_of_density(volume->plan, before),
+                   b = coordinate_of_density(volume->plan, after);
+  const ray_left left = left_of_ray(&plan->box, volume->cuts, volume->plan->cut_count, pixel->u, pixel->v);
+  covered_span part = part_of_slab(&left, rays->height, plan->spacing);
+  slab_sample s;
+  find_geometry(plan, rays, pixel->u, pixel->v, &s);
+#if MASKED
+  const mask_data walls = mask_of_volume(volume);
+  part = part_within_walls(depth_behind_walls(&walls, add_scaled(s.position, s.step_sheet, -0.5f)),
+                           depth_behind_walls(&walls, add_scaled(s.position, s.step_sheet, 0.5f)), part);
+#endif
+#if BOXED || MASKED
+  cut_way(part, &a, &b);
+#endif
+  GLOBAL float *values = values_of(sweep->pixels, pixel);
+  ray_maximum ray;
+  ray.greatest = values[0];
+  ray.before = values[16];
+  ray.sheet = values[32];
+  const int shows = take_slab(shown_values_table(volume->tables), sheet, a.x, b.x,
+                              s.path > 0.0f ? part.length : 0.0f, &ray);
+  values[0] = ray.greatest;
+  values[16] = ray.before;
+  values[32] = ray.sheet;
+  return shows;
+}
+
+/* Lists the slabs of a run that a pixel may see, or finds the greatest value in them. Returns a bit for each
+ * of these slabs that is listed. count: the counter of the list's entries. */
 DEVICE unsigned find_slabs(const sweep_data *sweep, int number, int run_first, int end,
                            GLOBAL unsigned *count) {
   GLOBAL const device_sweep *plan = sweep->plan;
@@ -211,22 +247,32 @@ DEVICE unsigned find_slabs(const sweep_data *sweep, int number, int run_first, i
                                              * member leaves out the slabs before its own `first` */
   const float speed = speed_of_ray(sweep->rays + slabs.first - 1, EYE_PERSPECTIVE, pixel.u, pixel.v);
   sheet_way way = no_sheets();
-  unsigned mask = 0;
+  unsigned mask = 0, samples = 0;
   for (int sheet = slabs.first - 1, step; sheet < slabs.end; sheet += step) {
     step = fill_way(&sweep->volume, sweep->rays + sheet, EYE_PERSPECTIVE, pixel.u, pixel.v, speed,
                     sheet == slabs.first - 1, &way);
     if ((way.before_shows || way.after_shows) && sheet >= first &&
         may_be_visible(volume, coordinate_of_density(volume, way.before),
                        coordinate_of_density(volume, way.after))) {
+#if MAXIMUM
+      samples += (unsigned)take_values(sweep, &pixel, sheet, way.before, way.after);
+#else
       unsigned slot = (unsigned)(sheet - run_first) * (unsigned)(plan->tiles * 256) + (unsigned)number;
       sweep->slots[(wide)slot * 4] = way.before;
       sweep->slots[(wide)slot * 4 + 1] = way.after;
       sweep->list[add_to(count, 1u)] = slot;
       mask |= 1u << (sheet - run_first);
+#endif
     }
     step = least_of_pack(step);
     if (step > 1) way.after_known = way.after_shows = 0;
   }
+#if MAXIMUM
+  add_to(sweep->counts + (pixel.tile & 255), samples);
+  (void)count;
+#else
+  (void)samples;
+#endif
   return mask;
 }
 
