@@ -38,23 +38,6 @@ static bool is_soft_otherwise(const frame_plan *plan) {
 
 static bool is_masked(const frame_plan *plan) { return volume_of(plan)->classifier->mask.factors != NULL; }
 
-/* Returns whether the frame has soft shadows on surfaces. If a factor multiplies extinction, matter that the
- * factor hides ends surfaces for all pixels of a block (shadow/attenuate_lanes.h). If everything in a block
- * lies behind a cut or is hidden by a mask, the processors skip the block, and a pixel of a device does not
- * know which blocks are skipped. Hard shadows do not depend on the skipped blocks, because surfaces have
- * ended before them. Soft shadows do: blurs move absorbed light of surfaces into these blocks. */
-static bool has_soft_surfaces(const frame_plan *plan) {
-  bool soft = false;
-  for (int i = 0; i < plan->frame.light_count; i++)
-    soft = soft || plan->frame.lights[i].shadows == HL_SHADOWS_SOFT;
-  return soft && volume_of(plan)->look.shading == HL_SHADING_PHONG;
-}
-static bool steepens_soft_surfaces(const frame_plan *plan) {
-  return hl_classifier_needs_gradient(volume_of(plan)->classifier) && plan->volumes.grids[0].cut &&
-         has_soft_surfaces(plan);
-}
-static bool masks_soft_surfaces(const frame_plan *plan) { return is_masked(plan) && has_soft_surfaces(plan); }
-
 /* Returns whether slabs are so thick that they may lead from visible matter into a brick that a mask hides. A
  * device skips slabs whose ends lie in such bricks. Around these bricks the mask is 0 for three voxels
  * (grid/relevant.c), and no ray's way through a slab is longer than twice its thickness. */
@@ -91,8 +74,6 @@ static const struct {
     {is_over_ranks, "voxels of several processes"},
     {is_thin, "a volume less than four voxels thick"},
     {has_second_volume, "a function of two volumes' values"},
-    {steepens_soft_surfaces, "gradient opacity of cut surfaces with soft shadows"},
-    {masks_soft_surfaces, "a mask of surfaces with soft shadows"},
     {masks_thick_slabs, "a mask with sheets more than 1.5 voxels apart"},
     {is_soft_otherwise, "soft shadows by another method than the cascade"},
     {has_images, "lights with images"},

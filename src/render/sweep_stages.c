@@ -168,9 +168,10 @@ static void composite_light_tile(sweep *sweep, light_shadow *shadow, attenuate_j
   attenuated_blocks blocks = sweep->content.hot->shadow->attenuate(&job, tile_x, tile_y);
   if (method->find_lit == NULL) buffer->tile_lit[tile] = (uint16_t)((need & ~worked) | blocks.lit);
   bool taken = hl_sweep_surfaces_attenuate(sweep, &job, surfaces);
+  if (blocks.changed == 0 && !taken) return;
+  buffer->changed[tile] = job.sheet;
   if (blocks.taken == 0 && !taken) return;
   buffer->tile_touched[tile] = 1;
-  buffer->changed[tile] = job.sheet;
   if (method->after_tile != NULL) method->after_tile(shadow, tile);
 }
 

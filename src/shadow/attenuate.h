@@ -94,11 +94,13 @@ typedef struct attenuate_job {
 #define DARK_MARK  0x1p-64f
 #define LEAST_MARK 0x1p-88f
 
-/* Two sets of blocks of a tile. Each block has one bit in each set. */
+/* Three sets of blocks of a tile. Each block has one bit in each set. */
 typedef struct attenuated_blocks {
-  uint32_t lit;   /* the blocks with density that some light still reaches, or in which the outside of a
-                   * surface is lit */
-  uint32_t taken; /* the blocks in which the slab absorbed some light */
+  uint32_t lit;     /* the blocks with density that some light still reaches, or in which the outside of a
+                     * surface is lit */
+  uint32_t taken;   /* the blocks in which the slab absorbed some light */
+  uint32_t changed; /* the blocks in `taken`, and the blocks in which the slab absorbed nothing, but hidden
+                     * matter ended surfaces */
 } attenuated_blocks;
 
 /* The type of the function that attenuates a tile. It multiplies the tile's transmittance by the

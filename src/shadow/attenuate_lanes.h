@@ -190,7 +190,7 @@ LANES_INLINE void add_kept(kept_light *sum, kept_light kept, lanes weight) {
 }
 
 typedef struct attenuated_block {
-  int taken, lit;
+  int taken, changed, lit;
 } attenuated_block;
 
 /* Attenuates one channel of the light at the outside of surfaces by a slab. before, after: the transmittance
@@ -203,16 +203,17 @@ LANES_INLINE lanes pass_outside(float *at, size_t stride, lanes before, lanes af
   return outside;
 }
 
-/* Attenuates one block by the slab. Returns whether the slab absorbed any light in the block (taken), and
- * whether enough light is left after the slab, or at the outside of surfaces (lit). */
+/* Attenuates one block by the slab. Returns whether the slab absorbed any light in the block (taken), whether
+ * the block's pixels may have changed (changed), and whether enough light is left after the slab, or at the
+ * outside of surfaces (lit). */
 LANES_INLINE attenuated_block attenuate_block(const attenuate_job *job, int volume_count, int channels,
                                               int tile_x, int tile_y, int block) {
   const int x = block % 4 * BLOCK, y = block / 4 * BLOCK, corner[2] = {tile_x * TILE + x, tile_y * TILE + y};
   lanes depth[HL_CHANNELS] = {lanes_set(0), lanes_set(0), lanes_set(0)}, total = lanes_set(0);
   kept_light kept = {lanes_set(0), lanes_set(0)};
   lanes path = path_through_sheet(&job->rays, job->path, block_u(corner[0]), block_v(corner[1]));
-  /* not 0 if a factor may hide the surface's matter, so that the surface has ended, although the values are
-   * not low */
+  /* not 0 if a factor multiplies the extinction of some matter. Where the factor hides this matter, surfaces
+   * have ended, although the values are not low */
   int hidden = 0;
   for (int i = 0; i < volume_count; i++) {
     const attenuate_volume *volume = &job->volumes[i];
@@ -229,8 +230,8 @@ LANES_INLINE attenuated_block attenuate_block(const attenuate_job *job, int volu
     way_sums sums = sums_and_ends_of_way(volume->classifier, a, b, &to);
     lanes extinction = sums.extinction * span.length;
     if (hl_classifier_is_weighed(volume->classifier)) {
+      hidden |= job->outside[0] != NULL && lanes_bits(extinction > 0.0f) != 0;
       extinction = extinction * factor_in_block(job, volume, corner, &sums, a.x, b.x, span);
-      hidden = job->outside[0] != NULL;
     }
     for (int c = 0; c < channels; c++) depth[c] = lanes_add_scaled(depth[c], extinction, volume->weight[c]);
     if (job->outside[0] == NULL) continue;
@@ -245,7 +246,8 @@ LANES_INLINE attenuated_block attenuate_block(const attenuate_job *job, int volu
     else add_kept(&kept, own, extinction), total = total + extinction;
   }
   lanes any = channels == 1 ? depth[0] : depth[0] + depth[1] + depth[2];
-  if (lanes_bits(any > 0.0f) == 0 && !hidden) return (attenuated_block){0, 1};
+  const int taken = lanes_bits(any > 0.0f) != 0;
+  if (!taken && !hidden) return (attenuated_block){0, 0, 1};
   if (volume_count > 1 && job->outside[0] != NULL) {
     lanes inverse = 1.0f / lanes_max(total, lanes_set(1e-30f));
     kept = (kept_light){kept.before * inverse, kept.within * inverse};
@@ -272,18 +274,19 @@ LANES_INLINE attenuated_block attenuate_block(const attenuate_job *job, int volu
         moment, job->moment_stride,
         lanes_add_scaled(lanes_load_block(moment, job->moment_stride), before - after, job->position));
   }
-  return (attenuated_block){1, lanes_bits(greatest >= DARK) != 0};
+  return (attenuated_block){taken, 1, lanes_bits(greatest >= DARK) != 0};
 }
 
 LANES_INLINE attenuated_blocks attenuate_volumes(const attenuate_job *job, int volume_count, int channels,
                                                  int tile_x, int tile_y) {
   uint32_t left = 0;
-  attenuated_blocks blocks = {0, 0};
+  attenuated_blocks blocks = {0, 0, 0};
   for (int i = 0; i < volume_count; i++) left |= job->volumes[i].blocks;
   for (; left != 0; left &= left - 1) {
     int at = __builtin_ctz(left);
     attenuated_block block = attenuate_block(job, volume_count, channels, tile_x, tile_y, at);
     blocks.taken |= (uint32_t)block.taken << at;
+    blocks.changed |= (uint32_t)block.changed << at;
     blocks.lit |= (uint32_t)block.lit << at;
   }
   return blocks;

@@ -241,6 +241,64 @@ static void test_moves_with_the_volume(void **state) {
   for (int i = 0; i < 4 * PIXELS; i++) assert_near((double)pixels[1][i], (double)pixels[0][i], 2e-3);
 }
 
+/* A label map like make_map()'s, with label 1 everywhere but between two heights. */
+static hl_volume *make_layer(stage *set) {
+  static unsigned char voxels[HALF * HALF * HALF];
+  hl_volume *map = make_map(set);
+  hl_volume_description d = stage_describe_volume(map);
+  for (int n = 0; n < HALF * HALF * HALF; n++)
+    voxels[n] = n / (HALF * HALF) < 4 || n / (HALF * HALF) > 11 ? 1 : 0;
+  d.voxels = voxels;
+  hl_volume_release(map);
+  assert_int_equal(hl_volume_create(set->context, &d, &map, NULL), HL_OK);
+  return map;
+}
+
+/* A ball above a floor. Between them, if more is set, a sheet of matter in the layer that the mask hides. The
+ * sheet lies where the mask's factor is 0, but not in a brick that is left out because the mask hides it with
+ * its surroundings. */
+static void fill_ball_and_floor(float *voxels, bool more) {
+  for (int n = 0; n < N * N * N; n++) {
+    const int i = n % N - 16, j = n / N % N - 16, k = n / (N * N) - 16;
+    const int floor = k < -11, ball = i * i + j * j + (k - 10) * (k - 10) < 20,
+              sheet = more && abs(i) < 9 && abs(j) < 9 && k == -3;
+    voxels[n] = floor || ball || sheet ? 1 : 0;
+  }
+}
+
+/* Matter that a mask hides changes nothing, to the last bit, in the soft shadows of surfaces: it absorbs no
+ * light. */
+static void test_hidden_matter_leaves_no_trace(void **state) {
+  (void)state;
+  static float pixels[2][PIXELS * 4], voxels[N * N * N];
+  static const hl_opacity_point rising[] = {{0.2, 0}, {0.6, 0.9}};
+  const hl_label shown = {.value = 1, .opacity = 1, .visible = 1};
+  for (int turn = 0; turn < 6; turn++) {
+    for (int more = 0; more < 2; more++) {
+      stage set;
+      stage_open(&set);
+      set.scene.width = set.scene.height = SIDE;
+      set.scene.camera.height = N;
+      fill_ball_and_floor(voxels, more);
+      hl_scene_volume *cube = stage_add_grid(&set, (size_t[3]){N, N, N}, (double[3]){1, 1, 1},
+                                             (vec3){-N / 2, -N / 2, -N / 2}, voxels);
+      cube->mask = (hl_mask){.volume = make_layer(&set), .labels = &shown, .label_count = 1};
+      cube->transfer_function.opacity = rising;
+      cube->transfer_function.opacity_count = 2;
+      cube->shading = HL_SHADING_PHONG;
+      stage_look(&set, (vec3){-60, -50, 70}, (vec3){0, 0, 0}, (vec3){0, 0, 1});
+      stage_add_directional(&set, (vec3){0.1 * turn, 0.2, -1})->angular_diameter_deg = 12;
+      set.scene.render.shadows = HL_SHADOWS_SOFT;
+      stage_render_sheets(&set, pixels[more]);
+      close_masked(&set, cube);
+    }
+    assert_memory_equal(pixels[0], pixels[1], sizeof pixels[0]);
+    int seen = 0;
+    for (int i = 0; i < PIXELS; i++) seen += pixels[0][4 * i + 3] > 0.5f;
+    assert_true(seen > PIXELS / 10);
+  }
+}
+
 enum { COARSE = 12 };
 
 /* The masked cube as a lit medium of 12 x 12 pixels. method: -1: hard shadows. */
@@ -451,6 +509,7 @@ int main(void) {
       cmocka_unit_test(test_factors_and_colors),
       cmocka_unit_test(test_border_is_smooth_and_in_place),
       cmocka_unit_test(test_hidden),
+      cmocka_unit_test(test_hidden_matter_leaves_no_trace),
       cmocka_unit_test(test_moves_with_the_volume),
       cmocka_unit_test(test_shadows_against_the_reference),
       cmocka_unit_test(test_faces_of_a_knife),

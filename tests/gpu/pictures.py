@@ -155,6 +155,14 @@ MADE = {
     "soft shadows of cuts that cast, gradient opacity": scene(shadows="soft", opacity=DENSE, light=SUN, function=STEEP,
                                                               volume={"cuts": [BALL], "cut_casts_shadow": True}),
     "soft shadows, a clip box": scene(shadows="soft", shading="phong", opacity=AROUND, light=SUN, volume={"clip": CLIP}),
+    "soft shadows of cut surfaces, gradient opacity": scene(opacity=DENSE, shading="phong", function=STEEP, shadows="soft",
+                                                            light=SUN, volume={"cuts": [BALL]}),
+    "soft shadows of surfaces, a mask": scene(opacity=DENSE, shading="phong", shadows="soft", light=SUN, volume={"mask": ORGANS}),
+    "soft shadows of surfaces in layers, a mask, cuts, light from behind": scene(
+        opacity=LAYERS, shading="phong", shadows="soft", light=BEHIND, volume={"mask": {**ORGANS, "rest": 0.3}, "cuts": [BALL, plane(1, 0.4, -0.2)]}),
+    "soft shadows of surfaces in a clip box, gradient opacity": scene(opacity=AROUND, shading="phong", function=STEEP, shadows="soft",
+                                                                      light=SUN, volume={"clip": CLIP}),
+    "soft shadows of a mesh of cells": scene(opacity=SHELL, shading="phong", shadows="soft", light=SUN, volume=CELLS),
     "soft shadows of a near light": scene(shadows="soft", shading="phong", opacity=DENSE, light=LAMP),
     "soft shadows beside hard ones": scene(shadows="soft", shading="phong", opacity=DENSE, light=SUN),
     "an even sky": scene(sky=EVEN_SKY),
@@ -194,13 +202,11 @@ LARGE = scene(volume={"file": "large.nrrd"}, render={"sheet_spacing": 4},
               camera={"type": "perspective", "position": [380, 250, -680], "target": [0, 0, 0], "up": [0, 1, 0], "fovy_deg": 30})
 # One scene of each feature.
 FEW = ("medium", "several surfaces, colours, near light", "cuts, surfaces", "a field at levels, surfaces", "gradient opacity, surfaces",
-       "coloured voxels", "labels", "a projection of cuts", "a mask, surfaces in layers, near light", "a sky, soft shadows of surfaces, colours")
+       "coloured voxels", "labels", "a projection of cuts",
+       "soft shadows of surfaces, a mask", "a mask, surfaces in layers, near light", "a sky, soft shadows of surfaces, colours")
 LEFT = {
     "soft shadows by another method than the cascade": scene(shadows="soft", light=SUN, render={"soft_method": "paper"}),
     "meshes or isosurfaces": {**scene(), "meshes": [{"spheres": [[0, -12, 0, 3]]}]},
-    "gradient opacity of cut surfaces with soft shadows": scene(opacity=DENSE, shading="phong", function=STEEP, shadows="soft",
-                                                                light=SUN, volume={"cuts": [BALL]}),
-    "a mask of surfaces with soft shadows": scene(opacity=DENSE, shading="phong", shadows="soft", light=SUN, volume={"mask": ORGANS}),
     "a mask with sheets more than 1.5 voxels apart": scene(volume={"mask": ORGANS}, render={"sheet_spacing": 1.6}),
     "splatting in place of gathering": scene(render={"reconstruction": "splat"}),
 }
@@ -220,7 +226,6 @@ def drawn(seed, compositing):
     light = {**SUN, "direction": [draw.uniform(-1, 1), draw.uniform(-1, 1), draw.uniform(0.1, 1)],
              "angular_diameter_deg": draw.choice((1, 7, 30))}
     opacity, shadows, weighed = draw.choice((AROUND, LAYERS, DENSE)), draw.choice(("hard", "soft")), draw.random() < 0.7
-    weighed = weighed and shadows == "hard"
     return scene(opacity=opacity, shading="phong", light=light, shadows=shadows, sky=draw.choice((None, EVEN_SKY, SKY)),
                  function=STEEP if weighed and draw.random() < 0.4 else None,
                  volume={**({"mask": {**ORGANS, "rest": draw.choice((0, 0.3, 1))}} if weighed else {}), "cuts": cuts,

@@ -164,14 +164,14 @@ KERNEL(12) run_light(SWEEP_ARGUMENTS) {
       way.after_known = way.after_shows = 0;
     }
     if (does == SLAB_TAKES) changed_at = sheet;
+#if SOFT
+    if (does == SLAB_TAKES) touched[tile] = in_frame[sheet].chunk;
+#endif
 #if OUTSIDE
     if (block_any(votes, does != 0) && does != SLAB_TAKES) {
       leave_surface(&own);
       changed_at = sheet;
     }
-#endif
-#if SOFT
-    if (changed_at == sheet && sheet >= first) touched[tile] = in_frame[sheet].chunk;
 #endif
     step = least_of_group(step);
     if (step > end - sheet) step = end - sheet;

@@ -366,10 +366,9 @@ DEVICE float factor_in_slab(const sweep_data *sweep, GLOBAL const plan_light *li
 }
 
 /* The effect of a slab on the light of a pixel. SLAB_TAKES: the slab absorbs light. SLAB_HIDES: the slab
- * absorbs no light, but it ends surfaces in the pixel's block, because a factor may hide matter
- * there. */
+ * absorbs no light, but it ends surfaces in the pixel's block, because a factor hides its matter. */
 #define SLAB_TAKES 1
-#define SLAB_HIDES (2 * WEIGHED)
+#define SLAB_HIDES 2
 
 /* Multiplies the light by the transmittance of a slab. Returns 0, SLAB_TAKES or SLAB_HIDES. */
 DEVICE int attenuate_slab(const sweep_data *sweep, GLOBAL const plan_light *light,
@@ -385,7 +384,7 @@ DEVICE int attenuate_slab(const sweep_data *sweep, GLOBAL const plan_light *ligh
 #endif
   const way_sums sums = sums_of_way(sweep->volume.tables, a, b);
   float extinction = sums.extinction * part.length, all = 0.0f;
-  if (!(extinction > 0.0f)) return SLAB_HIDES;
+  if (!(extinction > 0.0f)) return 0;
 #if WEIGHED
   extinction = extinction * factor_in_slab(sweep, light, in_frame, ray, part, a.x, b.x, &sums);
   if (!(extinction > 0.0f)) return SLAB_HIDES;
