@@ -209,6 +209,31 @@ static void numbers_of_labels_are_whole(void **state) {
   hl_context_destroy(context);
 }
 
+/* The settings of a look have their ranges in a volume that is drawn by its labels, too. */
+static void looks_of_labels_have_their_ranges(void **state) {
+  (void)state;
+  hl_context *context = make_context();
+  write_segmentation(1);
+  static const char *const settings[] = {
+      "\"material\": {\"diffuse\": -0.7}", "\"material\": {\"emission\": -1}",
+      "\"material\": {\"shininess\": 1e6}", "\"attenuation_color\": [-1, 1, 1]",
+      "\"scattering\": {\"anisotropy\": 1}"};
+  static const char *const places[] = {"material/diffuse", "material/emission", "material/shininess",
+                                       "attenuation_color", "scattering/anisotropy"};
+  for (int n = 0; n < 5; n++) {
+    hl_scene *scene = NULL;
+    hl_error error = {0};
+    char text[300];
+    snprintf(text, sizeof text, "{\"halflight\": 1, \"volumes\": [{\"file\": \"%s\", \"labels\": true, %s}]}",
+             path, settings[n]);
+    assert_int_equal(hl_scene_from_json(context, text, strlen(text), NULL, "s", &scene, &error),
+                     HL_ERROR_INPUT);
+    assert_non_null(strstr(error.message, places[n]));
+  }
+  assert_int_equal(hl_context_memory_held(context), 0);
+  hl_context_destroy(context);
+}
+
 /* A scene makes the fields of its labels for its first frame, once: to be described costs no field. */
 static void fields_are_made_for_the_first_frame(void **state) {
   (void)state;
@@ -264,6 +289,7 @@ int main(void) {
       cmocka_unit_test(wrong_tables_are_refused),
       cmocka_unit_test(scenes_keep_their_labels),
       cmocka_unit_test(numbers_of_labels_are_whole),
+      cmocka_unit_test(looks_of_labels_have_their_ranges),
       cmocka_unit_test(fields_are_made_for_the_first_frame),
       cmocka_unit_test(labels_without_voxels_are_told),
   };

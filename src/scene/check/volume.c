@@ -201,10 +201,13 @@ static hl_status check_values(const hl_checker *check, const hl_volume *volume) 
                  check->place, fmax(greatest, stored));
 }
 
+/* A volume that is drawn by its labels has no transfer function. */
 static hl_status check_look(const hl_checker *check, const hl_scene_volume *volume) {
   char place[120];
   snprintf(place, sizeof place, "%s/transfer_function", check->place);
-  hl_status status = hl_transfer_function_check(&volume->transfer_function, place, check->error);
+  hl_status status = HL_OK;
+  if (volume->label_count == 0)
+    status = hl_transfer_function_check(&volume->transfer_function, place, check->error);
   if (status == HL_OK) status = hl_check_key(check, HL_SETTINGS_VOLUME, "shading", volume);
   snprintf(place, sizeof place, "%s/material", check->place);
   if (status == HL_OK)
@@ -276,7 +279,7 @@ hl_status hl_scene_volume_check(const hl_scene_volume *volume, size_t index, hl_
   if (status == HL_OK) status = check_placement(&check, volume);
   if (status == HL_OK) status = check_labels(&check, "labels", volume->labels, volume->label_count);
   if (status == HL_OK) status = check_mask(&check, volume);
-  if (status == HL_OK && volume->label_count == 0) status = check_look(&check, volume);
+  if (status == HL_OK) status = check_look(&check, volume);
   if (status == HL_OK) status = check_iso(&check, volume);
   if (status == HL_OK && volume->label_count > 0 && volume->iso_count > 0)
     status = hl_check_refuse(&check, "iso", "and labels exclude each other: remove one");
