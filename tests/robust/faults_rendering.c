@@ -127,7 +127,7 @@ static hl_status render_after_another(faulty *f, void *data, hl_error *error) {
 
 static void test_the_renderer_goes_on(void **state) {
   (void)state;
-  static const size_t scenes[] = {2, 0, 3, 6, 10};
+  static const size_t scenes[] = {2, 0, 3, 6, 7, 8, 10, 12, 13, 14};
   faulty f;
   faulty_open(&f);
   for (size_t n = 0; n < sizeof scenes / sizeof scenes[0]; n++) {

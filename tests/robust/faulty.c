@@ -13,16 +13,63 @@
 /* The byte that fills new memory. Whoever reads it as an index reads far beyond every array. */
 enum { UNWRITTEN = 0x76 };
 
-/* The linker calls this function in place of hl_pool_run(). The renderer asks every few milliseconds whether
- * to stop, which is seldom in a frame of a few pixels. So here it asks before each run. */
-void __wrap_hl_pool_run(hl_pool *pool, size_t count, void (*function)(void *data, size_t index, int worker),
-                        void *data);
-void __real_hl_pool_run(hl_pool *pool, size_t count, void (*function)(void *data, size_t index, int worker),
-                        void *data);
-void __wrap_hl_pool_run(hl_pool *pool, size_t count, void (*function)(void *data, size_t index, int worker),
-                        void *data) {
+/* The linker calls these functions in place of the pool's. The renderer asks every few milliseconds whether
+ * to stop, which is seldom in a frame of a few pixels. So here it asks before each run of the pool and in the
+ * middle of it, after which a part of the results is written and a part is not. */
+typedef void pool_function(void *data, size_t index, int worker);
+
+void __wrap_hl_pool_run(hl_pool *pool, size_t count, pool_function *function, void *data);
+void __real_hl_pool_run(hl_pool *pool, size_t count, pool_function *function, void *data);
+void __wrap_hl_pool_offer(hl_pool *pool, size_t count, pool_function *function, void *data);
+void __real_hl_pool_offer(hl_pool *pool, size_t count, pool_function *function, void *data);
+void __wrap_hl_pool_fill(hl_pool *pool, float *floats, size_t count, float value);
+void __real_hl_pool_fill(hl_pool *pool, float *floats, size_t count, float value);
+void __wrap_hl_pool_set(hl_pool *pool, void *memory, size_t bytes, int value);
+void __real_hl_pool_set(hl_pool *pool, void *memory, size_t bytes, int value);
+void __wrap_hl_pool_clear(hl_pool *pool, void *memory, size_t bytes);
+void __real_hl_pool_clear(hl_pool *pool, void *memory, size_t bytes);
+
+typedef struct asking_run {
+  hl_pool *pool;
+  pool_function *function;
+  void *data;
+  size_t middle; /* the index before which the caller of the run asks */
+  bool asked;
+} asking_run;
+
+static void run_index(void *data, size_t index, int worker) {
+  asking_run *run = data;
+  if (worker == 0 && index >= run->middle && !run->asked) {
+    run->asked = true;
+    if (hl_pool_cancelled(run->pool)) return;
+  }
+  run->function(run->data, index, worker);
+}
+
+void __wrap_hl_pool_run(hl_pool *pool, size_t count, pool_function *function, void *data) {
+  asking_run run = {pool, function, data, (count + 1) / 2, false};
   hl_pool_cancelled(pool);
-  __real_hl_pool_run(pool, count, function, data);
+  __real_hl_pool_run(pool, count, run_index, &run);
+}
+
+void __wrap_hl_pool_offer(hl_pool *pool, size_t count, pool_function *function, void *data) {
+  hl_pool_cancelled(pool);
+  __real_hl_pool_offer(pool, count, function, data);
+}
+
+void __wrap_hl_pool_fill(hl_pool *pool, float *floats, size_t count, float value) {
+  hl_pool_cancelled(pool);
+  __real_hl_pool_fill(pool, floats, count, value);
+}
+
+void __wrap_hl_pool_set(hl_pool *pool, void *memory, size_t bytes, int value) {
+  hl_pool_cancelled(pool);
+  __real_hl_pool_set(pool, memory, bytes, value);
+}
+
+void __wrap_hl_pool_clear(hl_pool *pool, void *memory, size_t bytes) {
+  hl_pool_cancelled(pool);
+  __real_hl_pool_clear(pool, memory, bytes);
 }
 
 static bool strikes(faulty *f, atomic_long *left, bool for_good) {
@@ -123,6 +170,11 @@ static bool run(faulty *f, faulty_work *work, faulty_work *after, void *data, hl
 
 /* Beyond EACH allocations every STEPth: they come from loops over the like. A sanitizer takes fifteen times
  * as long and looks for other faults, in the same code: sooner, fewer are enough for it. */
+#if defined(__has_feature) && !defined(__SANITIZE_ADDRESS__) /* clang's way to tell */
+#if __has_feature(address_sanitizer)
+#define __SANITIZE_ADDRESS__
+#endif
+#endif
 #ifdef __SANITIZE_ADDRESS__
 enum { EACH = 50, STEP = 17 };
 #else

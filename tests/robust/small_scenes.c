@@ -84,6 +84,13 @@ const small_scene small_scenes[] = {
               ", \"mask\": {\"file\": \"labels.nrrd\", \"rest\": 0.3, \"labels\": [{\"value\": 1, "
               "\"visible\": false}, {\"value\": 2, \"color\": [0, 1, 0]}]}}], \"render\": {\"threads\": 1, "
               "\"shadow_resolution\": 32, \"sheet_spacing\": 1}}"},
+    {"plane", HEAD SUN
+     ", \"volumes\": [{\"name\": \"a\", \"voxel_size\": 1, " BLOB_SHAPES
+     ", \"transfer_function\": {\"second\": \"gradient\", \"boxes\": [{\"value\": [0.2, 1], "
+     "\"second\": [0, 1], \"edge\": [0.1, 0.1], \"color\": [0.2, 0.4, 0.7]}]}}, {\"voxel_size\": 2, "
+     "\"shapes\": [{\"type\": \"sphere\", \"radius\": 7}], \"transfer_function\": {\"second\": "
+     "{\"volume\": \"a\"}, \"polygons\": [{\"vertices\": [[0, 0], [1, 0], [0.5, 1]]}]}}], \"render\": "
+     "{\"threads\": 1, \"shadow_resolution\": 16, \"sheet_spacing\": 2}}"},
     {NULL, NULL}};
 
 const size_t small_scene_count = sizeof small_scenes / sizeof small_scenes[0] - 1;
