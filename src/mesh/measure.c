@@ -23,6 +23,7 @@ static int compare_edges(const void *a, const void *b) {
 /* Returns whether each edge is run through equally often in both directions. edges: [count]; become sorted.
  */
 static bool is_closed(edge *edges, size_t count) {
+  if (count == 0) return false;
   qsort(edges, count, sizeof *edges, compare_edges);
   int balance = 0;
   for (size_t n = 0; n < count; n++) {
@@ -30,7 +31,7 @@ static bool is_closed(edge *edges, size_t count) {
     const bool last = n + 1 == count || edges[n + 1].vertices != edges[n].vertices;
     if (last && balance != 0) return false;
   }
-  return count > 0;
+  return true;
 }
 
 static vec3 corner(const hl_mesh_description *mesh, size_t triangle, int c) {

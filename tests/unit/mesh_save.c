@@ -50,6 +50,24 @@ static void surfaces_lie_in_the_world(void **state) {
   hl_context_destroy(context);
 }
 
+/* Spheres have no triangles: no area, and nothing that is enclosed. */
+static void spheres_alone_measure_nothing(void **state) {
+  (void)state;
+  static const float spheres[1][4] = {{0, 0, 0, 1}};
+  hl_context *context = make_context();
+  hl_mesh_description description;
+  hl_mesh *mesh = NULL;
+  double area = 1, volume = 1;
+  hl_mesh_description_defaults(&description);
+  description.spheres = spheres;
+  description.sphere_count = 1;
+  assert_int_equal(hl_mesh_create(context, &description, &mesh, NULL), HL_OK);
+  assert_int_equal(hl_mesh_measure(context, mesh, &area, &volume, NULL), HL_OK);
+  assert_true(area == 0 && isnan(volume));
+  hl_mesh_release(mesh);
+  hl_context_destroy(context);
+}
+
 static void meshes_come_back(void **state) {
   (void)state;
   static const float positions[4][3] = {{0, 0, 0}, {1, 0, 0.1f}, {0, 1, -3e-7f}, {0, 0, 2e9f}},
@@ -115,8 +133,8 @@ static void wrong_calls_are_refused(void **state) {
 }
 
 int main(void) {
-  const struct CMUnitTest tests[] = {cmocka_unit_test(surfaces_lie_in_the_world),
-                                     cmocka_unit_test(meshes_come_back),
-                                     cmocka_unit_test(wrong_calls_are_refused)};
+  const struct CMUnitTest tests[] = {
+      cmocka_unit_test(surfaces_lie_in_the_world), cmocka_unit_test(spheres_alone_measure_nothing),
+      cmocka_unit_test(meshes_come_back), cmocka_unit_test(wrong_calls_are_refused)};
   return cmocka_run_group_tests(tests, NULL, NULL);
 }
