@@ -87,11 +87,9 @@ typedef struct hl_label {
   double opacity;   /* 1: the label is solid; below 1: the label's surface is a skin that takes this fraction
                      * of the light that crosses it */
   int visible;
-  double tint;  /* only for the labels of a mask: the fraction of the label's colour that the matter takes. 0:
-                 * the matter keeps its own colour; 1: the matter has `color`; between: a mixture of both
-                 * colours */
-  int unlisted; /* non-zero: legends have no row for the label, which is only there to show where others lie.
-                 * hl_scene_compose() sets it for a translucent "rest" in "show" */
+  double tint;  /* only for the labels of a mask: the fraction of the label's colour that the matter takes; at
+                 * 0 the matter keeps its own colour, at 1 it has `color` */
+  int unlisted; /* non-zero: legends have no row for the label (a translucent "rest" of the option "show") */
 } hl_label;
 
 /* A label map that hides, reveals or colours the matter of a volume. The mask's effect is smooth at the
@@ -343,8 +341,8 @@ HL_API HL_WARN_UNUSED hl_status hl_scene_from_json_like(hl_context *context, con
 HL_API HL_WARN_UNUSED hl_status hl_scene_to_json(hl_context *context, const hl_scene *scene, char **text,
                                                  hl_error *error);
 /* Writes the scene as JSON text that will be stored in `folder`, or in a picture in this folder. Files in the
- * folder or below it are named relative to it. All other files are named as by hl_scene_to_json(). folder: ""
- * is the current folder; if null, all files are named as by hl_scene_to_json(). */
+ * folder or below it are named relative to it. folder: "" is the current folder; null: all files are named as
+ * by hl_scene_to_json(). */
 HL_API HL_WARN_UNUSED hl_status hl_scene_to_json_beside(hl_context *context, const hl_scene *scene,
                                                         const char *folder, char **text, hl_error *error);
 HL_API void hl_text_release(hl_context *context, char *text);
@@ -414,26 +412,24 @@ HL_API void hl_scene_level_sky(hl_scene_description *description);
 
 /* Finds a factor by which the strengths of all lights, `ambient` and the sky's strength should be multiplied.
  * It is meant for a scene of hl_scene_for_volume() whose volume was then cut, got isosurfaces, or was made to
- * scatter light more than once. The scene's strengths were chosen for the whole volume. With these strengths,
- * a cut face that is turned to the light, a white surface, or a cloud that glows inside, would be brighter
- * than white. look: the look that the scene was made with. *factor is 1
- * for looks that keep their light, and for orthographic cameras. */
+ * scatter light more than once: a cut face that is turned to the light, a white surface, or a cloud that
+ * glows inside, would be brighter than white. look: the look that the scene was made with. *factor is 1 for
+ * looks that keep their light, and for orthographic cameras. */
 HL_API HL_WARN_UNUSED hl_status hl_scene_light_factor(const hl_scene_description *description,
                                                       const char *look, double *factor, hl_error *error);
 
-/* Returns the name of light rig number `index`: "studio", "raking", "rim" or "overcast"; null past the
- * last. */
+/* Returns the name of light rig number `index`: studio, raking, rim or overcast; null past the last. */
 HL_API const char *hl_light_rig_name(size_t index);
 
 /* The greatest number of lights that a light rig has. */
 #define HL_LIGHT_RIG_MOST 4
 
 /* Gives a description the lights of a named rig, which move with the camera, and a sky of the rig's strength.
- * A description without a sky gets a sky that is brighter above than below. The lights and the sky together
- * are about as strong as the light that the description had. In a scene of hl_scene_for_volume(), multiply
- * all strengths by the factor of hl_scene_light_factor() afterwards. lights: the caller's,
- * [HL_LIGHT_RIG_MOST]; description->lights points to this array afterwards. Errors: HL_ERROR_ARGUMENT for an
- * unknown name. */
+ * A description without a sky gets a sky that is brighter above than below, and "overcast" makes the sky
+ * grey. The lights and the sky together are about as strong as the light was before. In a scene of
+ * hl_scene_for_volume(), multiply all strengths by the factor of hl_scene_light_factor() afterwards. lights:
+ * the caller's, [HL_LIGHT_RIG_MOST]; description->lights points to this array afterwards. Errors:
+ * HL_ERROR_ARGUMENT for an unknown name. */
 HL_API HL_WARN_UNUSED hl_status hl_scene_light_rig(const char *rig, hl_scene_description *description,
                                                    hl_light lights[HL_LIGHT_RIG_MOST], hl_error *error);
 

@@ -114,8 +114,8 @@ static void test_labels_keep_their_kernel(void **state) {
 
 static void test_wrong_labels_are_refused(void **state) {
   (void)state;
-  const hl_label bright = {1, NULL, {2, 1, 1}, 1, 1, 0};
-  const hl_label twice[] = {{1, NULL, {1, 1, 1}, 1, 1, 0}, {1, NULL, {1, 1, 1}, 1, 1, 0}};
+  const hl_label bright = {1, NULL, {2, 1, 1}, 1, 1, 0, 0};
+  const hl_label twice[] = {{1, NULL, {1, 1, 1}, 1, 1, 0, 0}, {1, NULL, {1, 1, 1}, 1, 1, 0, 0}};
   stage set;
   open_balls(&set, &bright, 1);
   stage_refused(&set, "/volumes/0/labels/0/color/0: 2 is out of range: give linear RGB, each from 0 to 1");
