@@ -330,8 +330,7 @@ HL_API HL_WARN_UNUSED hl_status hl_scene_from_json(hl_context *context, const ch
 /* Reads a scene like hl_scene_from_json(), for editors and viewers whose scene changes many times a second.
  * No file is opened: volumes and the lights' images are taken from the scene `like`. A volume of `like` is
  * taken if it has the same file and the same options for reading it, or the same shapes. A text with a volume
- * or an image that `like` lacks is refused with HL_ERROR_INPUT. If like is null, files are opened as
- * usual. */
+ * or an image that `like` lacks is refused with HL_ERROR_INPUT. If like is null, files are opened. */
 HL_API HL_WARN_UNUSED hl_status hl_scene_from_json_like(hl_context *context, const char *text, size_t length,
                                                         const char *base_folder, const char *name,
                                                         const hl_scene *like, hl_scene **scene,
@@ -357,8 +356,8 @@ HL_API void hl_text_release(hl_context *context, char *text);
 HL_API HL_WARN_UNUSED hl_status hl_scene_for_volume(hl_context *context, hl_volume *volume, const char *file,
                                                     hl_scene **scene, hl_error *error);
 
-/* Makes a scene as hl_scene_for_volume() does, but with the look of the given name (hl_look_name()), whatever
- * kind of data the volume holds. file may be null. */
+/* Makes a scene as hl_scene_for_volume() does, but with the look of this name (hl_look_name()), whatever the
+ * data are. file may be null. */
 HL_API HL_WARN_UNUSED hl_status hl_scene_for_volume_look(hl_context *context, hl_volume *volume,
                                                          const char *file, const char *look, hl_scene **scene,
                                                          hl_error *error);
@@ -548,8 +547,7 @@ HL_API HL_WARN_UNUSED hl_status hl_camera_reframe(const hl_scene_description *de
 /* The default size of a floor (hl_scene_make_floor()). */
 #define HL_FLOOR_SIZE 3.0
 
-/* Fills a mesh of a scene with the defaults of a floor: it is matt and grey, and the scene's cuts do not cut
- * it. */
+/* Fills a mesh of a scene with the defaults of a floor: matt and grey, and left whole by the scene's cuts. */
 HL_API void hl_scene_floor_defaults(hl_scene_mesh *floor);
 
 /* Makes the triangles of a floor: a square, perpendicular to `up`, that touches everything visible from
@@ -561,8 +559,7 @@ HL_API HL_WARN_UNUSED hl_status hl_scene_make_floor(hl_context *context,
                                                     const double up[3], double size, hl_mesh **mesh,
                                                     hl_error *error);
 
-/* Moves the camera around its target until it has the given view. The distance to the target stays the
- * same. */
+/* Moves the camera around its target, at the same distance, until it has the given view. */
 HL_API HL_WARN_UNUSED hl_status hl_camera_turn(const hl_view *view, hl_camera *camera);
 
 /* Places the camera so that the visible voxels of all volumes fill the picture, without room for turning the

@@ -28,7 +28,7 @@ static int fill_voxels(depth_function *depth, const void *shape) {
 
 /* The picture of label 1, solid, seen orthographically along a direction; `height` voxels high. */
 static void draw(vec3 along, double height) {
-  static const hl_label label[] = {{1, NULL, {1, 1, 1}, 1, 1, 0}};
+  static const hl_label label[] = {{1, NULL, {1, 1, 1}, 1, 1, 0, 0}};
   stage set;
   stage_open(&set);
   set.scene.width = set.scene.height = SIDE;
@@ -229,7 +229,7 @@ static void draw_lit(vec3 along, int label_count, const hl_cut *cut) {
   hl_label labels[CELLS];
   stage set;
   for (int n = 0; n < label_count; n++)
-    labels[n] = (hl_label){n + 1, NULL, {n % 2 == 0, 0, n % 2 == 1}, 1, 1, 0};
+    labels[n] = (hl_label){n + 1, NULL, {n % 2 == 0, 0, n % 2 == 1}, 1, 1, 0, 0};
   for (int n = 0; n < N * N * N; n++) values[n] = voxels[n];
   stage_open(&set);
   set.scene.width = set.scene.height = SIDE;

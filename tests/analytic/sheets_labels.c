@@ -43,7 +43,8 @@ static void test_skin_takes_its_opacity(void **state) {
   static const double opacities[] = {0.2, 0.5, 0.9};
   for (int k = 0; k < 6; k++) {
     double o = opacities[k % 3];
-    const hl_label labels[] = {{1, "left", {0.9, 0.2, 0.1}, o, 1, 0}, {2, "right", {0.1, 0.3, 0.9}, 1, 1, 0}};
+    const hl_label labels[] = {{1, "left", {0.9, 0.2, 0.1}, o, 1, 0, 0},
+                               {2, "right", {0.1, 0.3, 0.9}, 1, 1, 0, 0}};
     stage set;
     open_balls(&set, labels, 2);
     stage_render_by(&set, k >= 3, pixels);
@@ -63,7 +64,7 @@ static void test_hidden_labels_are_not_there(void **state) {
   (void)state;
   static float pixels[PIXELS * 4];
   for (int k = 0; k < 2; k++) {
-    const hl_label labels[] = {{1, NULL, {1, 1, 1}, 1, k, 0}, {2, NULL, {1, 1, 1}, 1, 1 - k, 0}};
+    const hl_label labels[] = {{1, NULL, {1, 1, 1}, 1, k, 0, 0}, {2, NULL, {1, 1, 1}, 1, 1 - k, 0, 0}};
     stage set;
     open_balls(&set, labels, 2);
     stage_render_by(&set, false, pixels);
@@ -77,7 +78,8 @@ static void test_hidden_labels_are_not_there(void **state) {
 static void test_labels_against_the_reference(void **state) {
   (void)state;
   static float pixels[2][PIXELS * 4];
-  const hl_label labels[] = {{1, NULL, {0.9, 0.2, 0.1}, 0.6, 1, 0}, {2, NULL, {0.1, 0.3, 0.9}, 1, 1, 0}};
+  const hl_label labels[] = {{1, NULL, {0.9, 0.2, 0.1}, 0.6, 1, 0, 0},
+                             {2, NULL, {0.1, 0.3, 0.9}, 1, 1, 0, 0}};
   for (int reference = 0; reference < 2; reference++) {
     stage set;
     open_balls(&set, labels, 2)->shading = HL_SHADING_PHONG;
@@ -98,7 +100,8 @@ static void test_labels_against_the_reference(void **state) {
 static void test_labels_keep_their_kernel(void **state) {
   (void)state;
   static float pixels[2][PIXELS * 4];
-  const hl_label labels[] = {{1, NULL, {0.9, 0.2, 0.1}, 0.6, 1, 0}, {2, NULL, {0.1, 0.3, 0.9}, 1, 1, 0}};
+  const hl_label labels[] = {{1, NULL, {0.9, 0.2, 0.1}, 0.6, 1, 0, 0},
+                             {2, NULL, {0.1, 0.3, 0.9}, 1, 1, 0, 0}};
   for (int reference = 0; reference < 2; reference++) {
     for (int k = 0; k < 2; k++) {
       stage set;
