@@ -178,6 +178,20 @@ static double greatest(const float *pixels) {
   return most;
 }
 
+/* Asserts that two maximum projections are the same. A value counts where its opacity is above 0, which the
+ * tables of the two volumes tell to a step of their ranges. So one of a pixel's four samples may show such a
+ * value in one of the pictures alone. */
+static void assert_same_projections(const float *levels, const float *dense) {
+  int apart = 0;
+  for (int i = 0; i < FLOATS; i += 4) {
+    float most = 0;
+    for (int c = 0; c < 4; c++) most = fmaxf(most, fabsf(levels[i + c] - dense[i + c]));
+    apart += most > 1e-6f;
+    assert_true(most < 1e-6f || fabsf(levels[i + 3] - dense[i + 3]) == 0.25f);
+  }
+  assert_true(apart <= 1);
+}
+
 /* The whole field is one B-spline of level 0: its coefficients there give the picture by every way. */
 static void test_ways_against_dense(void **state) {
   (void)state;
@@ -193,7 +207,8 @@ static void test_ways_against_dense(void **state) {
     make_dense(&set);
     stage_render_sheets(&set, dense);
     /* Sheets lie by what may be visible, which bricks of coarse levels tell less closely than voxels. */
-    if (!(difference(levels, dense) < (ways[n].draw == draw_maximum ? 1e-6 : 2e-3)))
+    if (ways[n].draw == draw_maximum) assert_same_projections(levels, dense);
+    else if (!(difference(levels, dense) < 2e-3))
       fail_msg("%s: the picture at levels differs from the dense one by %.4g", ways[n].name,
                difference(levels, dense));
     assert_true(greatest(dense) > 0.05);
