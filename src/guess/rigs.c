@@ -43,13 +43,13 @@ static const rig rigs[RIGS] = {
      * edges */
     [STUDIO] = {3, {{-42, 38, 24, 0.95, HL_WARM_LIGHT, true},
                    {  55, 5,  0, 0.16, HL_COOL_LIGHT, false},
-                   { 150, 45, 8, 0.55, HL_COOL_LIGHT, true}}, 0.94},
+                   { 150, 45, 8, 0.55, HL_COOL_LIGHT, true}}, 0.94, false},
     /* a small lamp at the left, whose light grazes the object: surface relief shows, and shadows are long */
-    [RAKING] = {1, {{-82, 14,  4, 1.70, HL_WARM_LIGHT, true}}, 0.50},
+    [RAKING] = {1, {{-82, 14,  4, 1.70, HL_WARM_LIGHT, true}}, 0.50, false},
     /* two lamps behind the object light its outline; a weak lamp lights the front */
     [RIM] = {3, {{-112, 30, 8, 1.70, HL_COOL_LIGHT, true},
                    { 118, 18, 8, 1.50, HL_WARM_LIGHT, true},
-                   { -25, 35, 24, 0.16, WHITE, true}}, 0.275},
+                   { -25, 35, 24, 0.16, WHITE, true}}, 0.275, false},
     /* only light from a cloudy sky: folds and hollows are darker, and no shadow has an edge */
     [OVERCAST] = {1, {{0, 80, 60, 0.30, WHITE, true}}, 2.75, true}};
 /* clang-format on */
