@@ -176,7 +176,7 @@ static bool run(faulty *f, faulty_work *work, faulty_work *after, void *data, hl
 #endif
 #endif
 #ifdef __SANITIZE_ADDRESS__
-enum { EACH = 50, STEP = 17 };
+enum { EACH = 24, STEP = 31 };
 #else
 enum { EACH = 150, STEP = 7 };
 #endif
