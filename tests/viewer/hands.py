@@ -10,7 +10,10 @@ import tempfile
 
 from PIL import Image
 
+import checks
 from checks import check
+from firefox import browser_named
+from viewer import Viewer, need_viewer
 
 PROGRAM = os.path.abspath(sys.argv[1])
 STAGE = "globalThis.halflight?.frames.statistics.stage"
@@ -142,3 +145,18 @@ def copied_command(browser, title="picture"):
         with open(f"{folder}/{title.removesuffix('.json')}.png", "rb") as file:
             check(file.read() == shown, "the copied command makes the picture")
     return program
+
+
+def on_rings(*tests):
+    """Runs tests, each a function of a browser, one after the other on the page of a small volume. The browser is the one that the command line names."""
+    with tempfile.TemporaryDirectory() as place:
+        os.chdir(place)
+        need_viewer(PROGRAM)
+        subprocess.run([PROGRAM, "make", "rings", "--size", "32", "--quiet", "-o", "rings.nrrd"], check=True)
+        with Viewer(PROGRAM, "rings.nrrd", "--sheet-spacing", "2", "--shadows", "hard") as viewer, browser_named(sys.argv[2])(size=(900, 620)) as page:
+            page.open(viewer.url)
+            rest(page)
+            for test in tests:
+                test(page)
+            check(page.problems == [], f"the console has errors: {page.problems}")
+    print(f"{checks.count} checks passed")

@@ -5,17 +5,10 @@ back, also after a reload. What the page says of its picture is true.
 usage: history.py PROGRAM chromium|firefox-esr
 """
 import json
-import os
-import subprocess
-import sys
-import tempfile
 import time
 
-import checks
 from checks import check
-from firefox import browser_named
-from hands import PROGRAM, STAGE, center, open_section, press, press_named, reload, rest, scene_of, set_control, undo
-from viewer import Viewer, need_viewer
+from hands import STAGE, center, on_rings, open_section, press, press_named, reload, rest, scene_of, set_control, undo
 
 
 def slider_at(browser, label):
@@ -296,26 +289,12 @@ def functions_come_back(browser):
     rest(browser)
 
 
+def all_choices_are_undone(browser):
+    choices_are_undone(browser, "Lights", "light", "halflight.store.scene.lights")
+    choices_are_undone(browser, "Isosurfaces", "isosurface", "halflight.store.scene.volumes[0].iso ?? []")
+    choices_are_undone(browser, "Cuts", "cut", "halflight.store.scene.volumes[0].cuts ?? []")
+
+
 if __name__ == "__main__":
-    with tempfile.TemporaryDirectory() as place:
-        os.chdir(place)
-        need_viewer(PROGRAM)
-        subprocess.run([PROGRAM, "make", "rings", "--size", "32", "--quiet", "-o", "rings.nrrd"], check=True)
-        with Viewer(PROGRAM, "rings.nrrd", "--sheet-spacing", "2", "--shadows", "hard") as viewer, browser_named(sys.argv[2])(size=(900, 620)) as page:
-            page.open(viewer.url)
-            rest(page)
-            one_step_a_gesture(page)
-            cameras_are_undone(page)
-            menus_follow(page)
-            steps_change_something(page)
-            fields_undo_themselves(page)
-            zoom_goes_on(page)
-            true_status(page)
-            choices_are_undone(page, "Lights", "light", "halflight.store.scene.lights")
-            choices_are_undone(page, "Isosurfaces", "isosurface", "halflight.store.scene.volumes[0].iso ?? []")
-            choices_are_undone(page, "Cuts", "cut", "halflight.store.scene.volumes[0].cuts ?? []")
-            handles_follow_choices(page)
-            cuts_that_are_off(page)
-            functions_come_back(page)
-            check(page.problems == [], f"the console has errors: {page.problems}")
-    print(f"{checks.count} checks passed")
+    on_rings(one_step_a_gesture, cameras_are_undone, menus_follow, steps_change_something, fields_undo_themselves, zoom_goes_on, true_status,
+             all_choices_are_undone, handles_follow_choices, cuts_that_are_off, functions_come_back)

@@ -140,14 +140,12 @@ static int try_motion(series_job *job) {
 static int frame_file(series_job *job, int number, hl_camera *camera, bool *found) {
   hl_scene *scene = NULL;
   hl_error error = {0};
-  hl_view view;
   *found = false;
   int exit_code = series_scene(job, number, &scene);
   if (exit_code != EXIT_CODE_OK) return job->files.bad[number] ? EXIT_CODE_OK : exit_code;
   const hl_scene_description *description = hl_scene_describe(scene);
   *camera = description->camera;
-  hl_status status = hl_view_of_camera(description, &view);
-  if (status == HL_OK) status = hl_camera_frame_view(description, &view, 1, camera, &error);
+  hl_status status = hl_camera_reframe(description, camera, &error);
   *found = status == HL_OK;
   hl_scene_release(scene);
   return status == HL_ERROR_MEMORY ? host_fail(&job->host, PHASE_CHANGE, status, &error) : EXIT_CODE_OK;
