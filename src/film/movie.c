@@ -57,12 +57,13 @@ static hl_status fail_io(hl_error *error, const char *path, const char *what) {
   return HL_ERROR_IO;
 }
 
-/* Sets the words of ffmpeg's command line. words: [MOST_WORDS]; receives the words. */
+/* Sets the words of ffmpeg's command line. "-xerror": without it, ffmpeg 5 ends with status 0 after it could
+ * not write the end of a film. words: [MOST_WORDS]; receives the words. */
 static void command_line(const struct kind *kind, const char *rate, const char *file, const char **words) {
   const char *const first[] = {
-      "ffmpeg",     "-hide_banner", "-nostdin",   "-loglevel", "error", "-y",     "-f",  "image2pipe",
-      "-c:v",       "png",          "-framerate", rate,        "-i",    "pipe:0", "-an", "-filter_complex",
-      kind->filter, "-r",           rate};
+      "ffmpeg",          "-hide_banner", "-nostdin", "-xerror",    "-loglevel", "error", "-y",     "-f",
+      "image2pipe",      "-c:v",         "png",      "-framerate", rate,        "-i",    "pipe:0", "-an",
+      "-filter_complex", kind->filter,   "-r",       rate};
   const char *const last[] = {"-fflags", "+bitexact", "-flags:v", "+bitexact", "-f", kind->muxer, file};
   size_t count = 0;
   for (size_t w = 0; w < sizeof first / sizeof *first; w++) words[count++] = first[w];

@@ -19,41 +19,57 @@ typedef struct film_output {
   bool zipped;
   movie *movie; /* null if the film has ended */
   picture_zip zip;
+  bool is_broken; /* whether the film cannot be stored */
 } film_output;
 
-static hl_status output_begin(film_output *out, const film_request *request, const char *path, int frames,
-                              hl_error *error) {
-  *out = (film_output){.zipped = strcmp(request->format, "zip") == 0};
-  if (!out->zipped) return movie_begin(path, request->frames_per_second, &out->movie, error);
-  if (picture_zip_begin(&out->zip, path, frames)) return HL_OK;
-  snprintf(error->message, sizeof error->message, "no archive of %d pictures: at most %d fit", frames,
-           (int)PICTURE_ZIP_MOST);
+static hl_status fail_to_store(film_output *out, const char *line, hl_error *error) {
+  out->is_broken = true;
+  snprintf(error->message, sizeof error->message, "%s", line);
   return HL_ERROR_IO;
 }
 
-static hl_status output_add(film_output *out, const unsigned char *png, size_t length, hl_error *error) {
+static const char not_stored[] = "the pictures cannot be stored: is the disk full?";
+
+static hl_status output_begin(film_output *out, const film_request *request, const char *path, int frames,
+                              hl_error *error) {
   hl_status status = HL_OK;
+  *out = (film_output){.zipped = strcmp(request->format, "zip") == 0};
+  if (!out->zipped) {
+    status = movie_begin(path, request->frames_per_second, &out->movie, error);
+    out->is_broken = status != HL_OK;
+  } else if (frames > PICTURE_ZIP_MOST) {
+    snprintf(error->message, sizeof error->message, "no archive of %d pictures: at most %d fit", frames,
+             (int)PICTURE_ZIP_MOST);
+    status = HL_ERROR_INPUT;
+  } else if (!picture_zip_begin(&out->zip, path, frames)) status = fail_to_store(out, not_stored, error);
+  return status;
+}
+
+static hl_status output_add(film_output *out, const unsigned char *png, size_t length, hl_error *error) {
   if (out->zipped) {
     if (picture_zip_add(&out->zip, png, length)) return HL_OK;
+    if (out->zip.failed) return fail_to_store(out, not_stored, error);
     snprintf(error->message, sizeof error->message,
-             "the pictures take more than 1 GiB, or the disk is full: make them smaller or fewer");
-    return HL_ERROR_IO;
+             "the pictures take more than 1 GiB: make them smaller or fewer");
+    return HL_ERROR_INPUT;
   }
-  status = movie_add(out->movie, png, length, error);
+  hl_status status = movie_add(out->movie, png, length, error);
   if (status != HL_OK) out->movie = NULL;
+  out->is_broken = status != HL_OK;
   return status;
 }
 
 /* Completes the output, or abandons it after a failure. */
 static hl_status output_end(film_output *out, hl_status status, hl_error *error) {
   bool good = !out->zipped || picture_zip_end(&out->zip);
-  if (!good && status == HL_OK) {
-    snprintf(error->message, sizeof error->message, "the pictures cannot be stored: is the disk full?");
-    status = HL_ERROR_IO;
-  }
+  if (!good && status == HL_OK) return fail_to_store(out, not_stored, error);
   if (out->zipped) return status;
-  if (status == HL_OK) return movie_end(out->movie, error);
-  movie_abandon(out->movie);
+  if (status != HL_OK) {
+    movie_abandon(out->movie);
+    return status;
+  }
+  status = movie_end(out->movie, error);
+  out->is_broken = status != HL_OK;
   return status;
 }
 
@@ -151,13 +167,12 @@ static hl_status make(server *s, server_page *page, const hl_scene *scene, const
   hl_status status = begin_film(s, scene, request, &f, error);
   if (status != HL_OK) return status;
   snprintf(name, sizeof name, "film.%s", request->format);
-  if (!upload_folder(name, &place)) {
-    snprintf(error->message, sizeof error->message, "no temporary folder for the film");
-    status = HL_ERROR_IO;
-  }
+  if (!upload_folder(name, &place))
+    status = fail_to_store(&out, "no temporary folder for the film: is the disk full?", error);
   if (status == HL_OK) status = output_begin(&out, request, place.path, film_frames(f), error);
   if (status == HL_OK) status = add_frames(s, page, f, &out, error);
   status = output_end(&out, status, error);
+  answer->is_own_fault = out.is_broken;
   if (status == HL_OK) status = take_file(place.path, answer, error);
   upload_end(&place);
   film_destroy(f);

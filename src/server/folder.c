@@ -150,11 +150,12 @@ bool upload_folder(const char *name, server_upload *upload) {
   return true;
 }
 
+bool upload_is_named(const char *name) {
+  return folder_can_open(name) && strchr(name, '/') == NULL && name[0] != '.' && strlen(name) <= NAME_MAX;
+}
+
 bool upload_begin(const char *name, server_upload *upload) {
-  *upload = (server_upload){0};
-  if (!folder_can_open(name) || strchr(name, '/') != NULL || name[0] == '.' || strlen(name) > NAME_MAX ||
-      !upload_folder(name, upload))
-    return false;
+  if (!upload_folder(name, upload)) return false;
   upload->file = fopen(upload->path, "wbxe");
   if (upload->file == NULL) upload_end(upload);
   return upload->file != NULL;
@@ -163,11 +164,12 @@ bool upload_begin(const char *name, server_upload *upload) {
 bool upload_add(server_upload *upload, const char *bytes, size_t count) {
   if (upload->file == NULL || count > upload->room) return false;
   upload->room -= count;
-  return fwrite(bytes, 1, count, upload->file) == count;
+  if (!upload->is_broken) upload->is_broken = fwrite(bytes, 1, count, upload->file) != count;
+  return true;
 }
 
 bool upload_finish(server_upload *upload) {
-  bool good = upload->file != NULL && fclose(upload->file) == 0;
+  bool good = upload->file != NULL && fclose(upload->file) == 0 && !upload->is_broken;
   upload->file = NULL;
   return good;
 }

@@ -247,9 +247,9 @@ static bool refuse_closed(server *s, long long number, server_answer *answer) {
 
 /* Answers with the error. The status is 204 if nobody waits for this frame any more. */
 static void fail_frame(server_answer *answer, hl_status status, const hl_error *error) {
+  bool is_own = answer->is_own_fault || status == HL_ERROR_MEMORY || status == HL_ERROR_INTERNAL;
   if (status == HL_ERROR_CANCELLED) answer->status = 204;
-  else if (status == HL_ERROR_MEMORY || status == HL_ERROR_INTERNAL) refuse_line(answer, 500, error->message);
-  else refuse_line(answer, 400, error->message);
+  else refuse_line(answer, is_own ? 500 : 400, error->message);
 }
 
 /* Makes the scene that is rendered while something moves. The result may be the given scene itself. The

@@ -156,6 +156,8 @@ typedef struct server_answer {
   char *text;                 /* owned, hl_text_release(); or null */
   unsigned char *from_malloc; /* owned, free(); or null */
   char problem[1000];         /* an error line, if the answer has neither bytes nor a text */
+  bool
+      is_own_fault; /* whether an error has its cause in the server, as a full disk, and not in the request */
   char notes[1000]; /* the library's warnings about the answer, with "; " between them; "" if there are
                      * none */
   double seconds_read, seconds_render, seconds_encode; /* the times, in seconds, for reading, rendering and
@@ -212,7 +214,8 @@ typedef struct slice_request {
 typedef struct server_upload {
   char folder[PATH_BYTES / 2], path[PATH_BYTES];
   FILE *file;
-  uint64_t room; /* number of bytes that may still arrive */
+  uint64_t room;  /* number of bytes that may still arrive */
+  bool is_broken; /* whether bytes could not be stored */
 } server_upload;
 
 /* frames.c */
@@ -351,8 +354,12 @@ char *session_read(const char *path);
  * is no such folder. */
 char *describe_folder(const server *s, const char *at);
 bool upload_folder(const char *name, server_upload *upload); /* makes the folder alone, and not the file */
+/* Returns whether a file of this name may be sent. */
+bool upload_is_named(const char *name);
 bool upload_begin(const char *name, server_upload *upload);
+/* Stores bytes. Returns false if more bytes arrive than the request's head has stated. */
 bool upload_add(server_upload *upload, const char *bytes, size_t count);
+/* Completes the file. Returns false if some of its bytes could not be stored. */
 bool upload_finish(server_upload *upload);
 void upload_end(server_upload *upload); /* removes the file and its folder */
 

@@ -129,7 +129,9 @@ static unsigned check_upload(const server *s, struct MHD_Connection *connection,
   *line = "this viewer opens no files\n";
   if (s->below == NULL) return 403;
   *line = "this is no file of volumes or scenes that Halflight reads\n";
-  if (name == NULL || !upload_begin(name, &r->upload)) return 400;
+  if (name == NULL || !upload_is_named(name)) return 400;
+  *line = "the file cannot be stored: is the disk full?\n";
+  if (!upload_begin(name, &r->upload)) return 500;
   const char *length = header(connection, "Content-Length");
   uint64_t most = s->options.most_upload_bytes;
   r->upload.room = most > 0 ? most : UINT64_MAX;

@@ -108,6 +108,22 @@ def test_files_that_may_not_grow():
             path.unlink()
 
 
+def test_films_that_may_not_grow():
+    """A film that ffmpeg cannot write whole is no film. Its frames are smaller than the limits here, so that they are written."""
+    for ending in (".gif", ".mp4", ".mov", ".mkv", ".webm") if shutil.which("ffmpeg") else ():
+        film, arguments = f"film{ending}", f"animate ball_16x16x16_uint8.raw --size 24x24 --sheet-spacing 4 --turntable 40 -o film{ending}"
+        check(run(arguments).returncode == 0, f"{film} cannot be made at all")
+        size = os.path.getsize(film)
+        for limit in (size - 1, (size + 4096) // 2):
+            put_old([film])
+            done = run(arguments, preexec_fn=limit_of(limit))
+            check_failed(done, 1, "File too large")
+            check(film in done.stderr.decode() and pathlib.Path(film).read_bytes() == OLD, f"{film} of at most {limit} of {size} bytes")
+            check([name for name in os.listdir() if "unfinished" in name] == [], "nothing unfinished is left")
+        os.remove(film)
+        shutil.rmtree("film-frames", ignore_errors=True)
+
+
 def test_a_disk_that_is_full():
     os.mkdir("disk")
     if os.getuid() != 0 or subprocess.run(["mount", "-t", "tmpfs", "-o", "size=8k", "none", "disk"], stderr=subprocess.DEVNULL).returncode != 0:

@@ -7,6 +7,8 @@ import http.client
 import io
 import json
 import os
+import resource
+import shutil
 import socket
 import subprocess
 import sys
@@ -247,6 +249,43 @@ def film_scenes(viewer, scene):
     check(at("frame=20&frames=21&key0=" + key) == (200, 30), "it still answers")
 
 
+def viewer_without(limit, folder):
+    """A viewer that may write files of so many bytes, into a folder."""
+    limits, before = resource.getrlimit(resource.RLIMIT_FSIZE), os.environ.get("TMPDIR")
+    resource.setrlimit(resource.RLIMIT_FSIZE, (limit, limits[1]))
+    os.environ["TMPDIR"] = folder
+    try:
+        return Viewer(PROGRAM, "torus.nrrd")
+    finally:
+        resource.setrlimit(resource.RLIMIT_FSIZE, limits)
+        if before is None:
+            del os.environ["TMPDIR"]
+        else:
+            os.environ["TMPDIR"] = before
+
+
+def nothing_can_be_stored(scene):
+    """A full disk and a missing folder are the viewer's faults, and not the faults of who asks. Nothing is left."""
+    text, content = json.dumps(small(scene, 64)), os.urandom(200000)
+    temporary, formats = os.path.abspath("temporary"), ["zip", *(["gif", "mp4"] if shutil.which("ffmpeg") else [])]
+    os.mkdir(temporary)
+    for limit, folder in ((1000, temporary), (-1, os.path.abspath("none"))):
+        with viewer_without(limit, folder) as viewer:
+            for kind in formats:
+                status, _, line = request(viewer, "POST", f"film?page=a&number={next(numbers)}&format={kind}&turntable=3", text)
+                check(status == 500 and len(line) > 10, f"a film ({kind}) that cannot be stored: {status} {line}")
+            status, _, line = request(viewer, "POST", "upload?name=a.nrrd", content)
+            check(status == 500 and b"is the disk full?" in line, f"a file that cannot be stored: {status} {line}")
+            for path, body, reason in (("upload?name=a.exe", content, b"no file of volumes"), ("film?page=a&number=1e9&format=zip&turntable=3", text, b"a film needs"),
+                                       (f"film?page=a&number={next(numbers)}&format=zip&turntable=70000", text, b"no archive of 70000 pictures"),
+                                       (f"film?page=a&number={next(numbers)}&format=zip&frames=2&key0=nothing=0:1", text, b"nothing")):
+                if folder == temporary or not path.endswith("70000"):
+                    status, _, line = request(viewer, "POST", path, body)
+                    check(status == 400 and reason in line, f"{path[:60]} is a mistake: {status} {line}")
+            check(frame(viewer, small(scene))[0] == 200, "it still answers")
+    check(os.listdir(temporary) == [], "nothing is left")
+
+
 def begins_as_told():
     """The options of render say what the page begins with: the scene is that of render, but for its absolute paths."""
     subprocess.run([PROGRAM, "make", "cloud", "--size", "24", "--quiet"], check=True)
@@ -459,6 +498,7 @@ with tempfile.TemporaryDirectory() as folder:
         many_pages(viewer, scene)
         bad_clients(viewer, scene)
         ends_cleanly(viewer, scene)
+    nothing_can_be_stored(scene)
     begins_as_told()
     quick_frames()
     busy_port()
