@@ -335,20 +335,33 @@ hl_status hl_view_automatic(const hl_scene_description *description, hl_outline 
 
 /* The azimuth of a view from the left: from the body's left where the file tells the anatomy, otherwise from
  * the viewer's left. */
-
 static double azimuth_of_left(const hl_scene_description *description, const hl_view *view) {
   hl_space space = hl_scene_space(description);
   if (space == HL_SPACE_UNKNOWN) return -90;
   return vec3_dot(vec3_cross(vec3_of(view->up), vec3_of(view->front)), left_of(space)) > 0 ? 90 : -90;
 }
 
-static void look_from(const hl_scene_description *description, hl_side side, hl_view *view) {
+/* Finds the azimuth of the front. It is 0, but 180 for a body whose file does not tell its directions and
+ * whose automatic view shows the other side, because this side has more relief: the body's face is there. */
+static hl_status find_front(const hl_scene_description *description, const hl_view *automatic,
+                            double *azimuth_deg, hl_error *error) {
+  *azimuth_deg = 0;
+  if (description->volume_count == 0 || fabs(automatic->azimuth_deg) < 90) return HL_OK;
+  const hl_scene_volume *first = &description->volumes[0];
+  hl_data_analysis analysis;
+  hl_status status = hl_data_analyse(first->volume, &analysis, error);
+  if (status == HL_OK && hl_is_body(first->volume, first->file, &analysis)) *azimuth_deg = 180;
+  return status;
+}
+
+/* Turns a view to a side. front: the azimuth of the front, 0 or 180 degrees. */
+static void look_from(const hl_scene_description *description, hl_side side, double front, hl_view *view) {
   const double left = azimuth_of_left(description, view), isometric = atan(sqrt(0.5)) * 180 / HL_PI;
   const double azimuth[] = {
       [HL_SIDE_BACK] = 180, [HL_SIDE_LEFT] = left, [HL_SIDE_RIGHT] = -left, [HL_SIDE_ISO] = 45};
   const double elevation[] = {[HL_SIDE_TOP] = 90, [HL_SIDE_BOTTOM] = -90, [HL_SIDE_ISO] = isometric};
   if (side == HL_SIDE_AUTOMATIC) return;
-  view->azimuth_deg = azimuth[side];
+  view->azimuth_deg = azimuth[side] - (azimuth[side] > 0 ? front : -front);
   view->elevation_deg = elevation[side];
 }
 
@@ -370,8 +383,10 @@ hl_status hl_view_choose(const hl_scene_description *description, hl_side side, 
   hl_status status = hl_view_automatic(description, &outline, view, error);
   hl_outline_release(&outline);
   if (status != HL_OK) return status;
+  double front = 0;
   bool differs = up != NULL && vec3_dot(vec3_of(up), vec3_of(view->up)) < length * (1 - 1e-12);
   if (differs) hl_view_about(description, vec3_of(up), view);
-  look_from(description, side, view);
-  return HL_OK;
+  else status = find_front(description, view, &front, error);
+  look_from(description, side, front, view);
+  return status;
 }

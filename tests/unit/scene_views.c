@@ -82,10 +82,9 @@ static void fields_are_seen_from_their_wide_side(void **state) {
   hl_context_destroy(context);
 }
 
-/* The z of the way up in which a head is shown: a smooth vault, a ragged jaw under the face, and nothing
- * under its back. over: it lies upside down in the grid. */
-static double up_of_head(hl_context *context, bool over) {
-  static float values[N * N * N];
+/* Writes a head: a smooth vault, a ragged jaw, and nothing under its back. over: it lies upside down in the
+ * grid. */
+static void write_head(float values[N * N * N], bool over) {
   for (int k = 0, v = 0; k < N; k++)
     for (int j = 0; j < N; j++)
       for (int i = 0; i < N; i++, v++) {
@@ -94,6 +93,12 @@ static double up_of_head(hl_context *context, bool over) {
              groove = z < -6 && (x / 2 + j / 2) % 2 == 0;
         values[v] = inside && !behind && !groove ? 1.0f : 0.0f;
       }
+}
+
+/* The z of the way up in which a head is shown. over: it lies upside down in the grid. */
+static double up_of_head(hl_context *context, bool over) {
+  static float values[N * N * N];
+  write_head(values, over);
   hl_volume *volume = make_volume(context, N, values);
   vec3 up;
   camera_of(context, volume, &up);
@@ -144,6 +149,56 @@ static void heads_do_not_hang(void **state) {
   hl_context_destroy(context);
 }
 
+/* Cuts grooves into a head at one side of y, where its face is then. */
+static void cut_face(float values[N * N * N], bool at_upper_y) {
+  for (int v = 0; v < N * N * N; v++) {
+    const int x = abs(v % N - 20), j = v / N % N, depth = at_upper_y ? 33 - j : j - 7;
+    if (depth < 4 && (x / 3 + v / (N * N) / 3) % 2 == 0) values[v] = 0;
+  }
+}
+
+/* Turns a head's values to Hounsfield units, as in the scan of a body: noisy tissue with some bone, in air.
+ */
+static void make_tissue(float values[N * N * N]) {
+  unsigned state = 5;
+  for (int v = 0; v < N * N * N; v++)
+    values[v] = (values[v] > 0 && v % 9 == 0 ? 500 : 1040 * values[v] - 1000) + 20 * noise(&state);
+}
+
+/* The y of the direction from a head to the eye of a view. tissue: whether it is the scan of a body.
+ * at_upper_y: where its face is. */
+static double eye_of_head(hl_context *context, bool tissue, bool at_upper_y, hl_side side) {
+  static float values[N * N * N];
+  hl_view view;
+  write_head(values, false);
+  cut_face(values, at_upper_y);
+  if (tissue) make_tissue(values);
+  hl_volume *volume = make_volume(context, N, values);
+  hl_scene *scene = NULL;
+  assert_int_equal(hl_scene_for_volume(context, volume, NULL, &scene, NULL), HL_OK);
+  assert_int_equal(hl_view_choose(hl_scene_describe(scene), side, NULL, &view, NULL), HL_OK);
+  const vec3 front = vec3_of(view.front), right = vec3_cross(vec3_of(view.up), front);
+  const double azimuth = view.azimuth_deg * HL_PI / 180;
+  hl_scene_release(scene);
+  hl_volume_release(volume);
+  return front.y * cos(azimuth) + right.y * sin(azimuth);
+}
+
+/* In the scan of a body, the side with the face is the front, wherever it lies. */
+static void the_front_of_a_body_is_its_face(void **state) {
+  (void)state;
+  hl_context *context = make_context();
+  for (int at_upper_y = 0; at_upper_y < 2; at_upper_y++) {
+    const double face = at_upper_y ? 1 : -1;
+    assert_true(face * eye_of_head(context, true, at_upper_y, HL_SIDE_AUTOMATIC) > 0.5);
+    assert_true(face * eye_of_head(context, true, at_upper_y, HL_SIDE_FRONT) > 0.999);
+    assert_true(face * eye_of_head(context, true, at_upper_y, HL_SIDE_BACK) < -0.999);
+    assert_true(eye_of_head(context, false, at_upper_y, HL_SIDE_FRONT) < -0.999);
+  }
+  assert_int_equal(hl_context_memory_held(context), 0);
+  hl_context_destroy(context);
+}
+
 /* A field that the grid cuts off at an end of x is seen from the other end. */
 static void fields_are_seen_from_the_side_that_is_whole(void **state) {
   (void)state;
@@ -169,6 +224,7 @@ int main(void) {
   const struct CMUnitTest tests[] = {
       cmocka_unit_test(things_stand_upright),
       cmocka_unit_test(heads_do_not_hang),
+      cmocka_unit_test(the_front_of_a_body_is_its_face),
       cmocka_unit_test(bodies_that_are_cut_off_are_seen_from_lower),
       cmocka_unit_test(fields_are_seen_from_their_wide_side),
       cmocka_unit_test(fields_are_seen_from_the_side_that_is_whole),
