@@ -333,6 +333,12 @@ static cascade_level *pass_all(soft_cascade *cascade, double receiver, const cas
   return sum;
 }
 
+/* The values of buffer->tile_touched in a cascade's buffer, from which follows whether a tile must be
+ * refilled. TILE_FULL: all planes of the tile hold full light. TILE_FADING: only the planes SHADOW_SECOND may
+ * hold less, since samples still fade from the older light. TILE_SHADED: any plane may hold less. Slabs that
+ * absorb light set the value 1, and mark the tile as touched, too. */
+enum { TILE_FULL, TILE_FADING, TILE_SHADED };
+
 typedef struct refill_task {
   soft_cascade *cascade;
   shadow_buffer *buffer;
@@ -355,7 +361,8 @@ static void refill_piece(void *data, size_t index, int worker) {
     for (int c = 0; c < buffer->channels && task->any; c++)
       shaded = shaded || !task->cascade->absorbed[c].zeros[tile];
     bool kept = task->cascade->touched[tile], again = task->cascade->refilled[tile] & REFILLED_BEFORE;
-    for (int c = 0; c < buffer->channels && (shaded || buffer->tile_touched[tile]); c++) {
+    const unsigned char held = buffer->tile_touched[tile];
+    for (int c = 0; c < buffer->channels && (shaded || held != TILE_FULL); c++) {
       refill_job job = {.absorbed = task->cascade->absorbed[c].pixels,
                         .stride = level->stride,
                         .absorbed_at_start = task->cascade->absorbed_at_start[c],
@@ -367,8 +374,8 @@ static void refill_piece(void *data, size_t index, int worker) {
                         .again = again};
       task->functions->refill(&job, tile_x, piece.y);
     }
-    if (shaded || buffer->tile_touched[tile]) buffer->changed[tile] = buffer->sheet;
-    buffer->tile_touched[tile] = shaded || kept;
+    if (shaded || held != TILE_FULL) buffer->changed[tile] = buffer->sheet;
+    buffer->tile_touched[tile] = shaded || kept ? TILE_SHADED : held == TILE_SHADED ? TILE_FADING : TILE_FULL;
     task->cascade->refilled[tile] |= REFILLED_NOW;
     hl_shadow_buffer_find_lit(buffer, tile_x, piece.y, true, task->functions->lit_blocks);
   }
