@@ -83,6 +83,8 @@ typedef struct plan_light {
    * 3][channels][plane]. The first planes of a sheet are the transmittance. The next ones are the light at
    * the outside of surfaces, if the variant has it, and the light from which samples of soft lights fade. */
   unsigned planes;
+  unsigned rows;   /* the beginning of the planes, one for each channel, that hold the light between the two
+                    * directions of the paper's convolutions; in units of 16 floats */
   float map[3][4]; /* maps frame space to (w, w u, w v), where (u, v) is the position in the buffer */
   float slab_path; /* the member `path` of attenuate_job (shadow/attenuate.h) */
   plan_box box, content;
@@ -196,6 +198,11 @@ typedef struct device_sweep {
 #define PASS_SPLIT  4
 #define PASS_ABSORB 5
 #define PASS_REFILL 6
+/* Passes of the paper's convolutions (gpu/kernels/paper.h). */
+#define PASS_BELOW   7
+#define PASS_WANTED  8
+#define PASS_ROWS    9
+#define PASS_COLUMNS 10
 
 /* Stands for a field of zeros. */
 #define PASS_NOTHING 0xffffffffu
@@ -216,13 +223,19 @@ typedef struct plan_pass {
                                  * fields. PASS_ABSORB adds the matter at the chunk's beginning to these
                                  * fields */
   unsigned second, second_thin; /* outputs of PASS_SPLIT and PASS_ABSORB for the second part */
-  unsigned boxes;            /* PASS_BLUR: the number of the first box of the columns of tiles; the boxes of
-                              * the rows of tiles follow */
-  float late;                /* PASS_SPLIT: the fraction of the matter that the second output gets */
-  float length;              /* PASS_ABSORB: of the chunk */
-  int light, channel, chunk; /* PASS_ABSORB, PASS_REFILL: chunk: number of the chunk that ends */
-  int sheet;                 /* PASS_REFILL: the sheet at which the chunk ends */
-  unsigned marks;            /* PASS_REFILL: the number of the first mark of the tiles */
+  unsigned boxes; /* PASS_BLUR: the number of the first box of the columns of tiles; the boxes of
+                   * the rows of tiles follow. PASS_ROWS, PASS_COLUMNS: the number of the box */
+  float late;     /* PASS_SPLIT: the fraction of the matter that the second output gets */
+  float length;   /* PASS_ABSORB: of the chunk */
+  int light;      /* of PASS_ABSORB, and of the kinds that follow it */
+  int channel;    /* PASS_ABSORB, PASS_REFILL. PASS_ROWS, PASS_COLUMNS: the first of the planes of
+                   * a sheet that are convolved */
+  int chunk;      /* PASS_ABSORB, PASS_REFILL: number of the chunk that ends */
+  int sheet;      /* PASS_REFILL, and the kinds that follow it: the sheet at which the buffer
+                   * changes as a whole */
+  int reach;      /* PASS_BELOW, PASS_WANTED: the number of pixels beyond a tile that a convolution
+                   * reads */
+  unsigned marks; /* PASS_REFILL: the number of the first mark of the tiles */
 } plan_pass;
 
 /* As blur_box (shadow/blur.h). */
@@ -252,6 +265,7 @@ typedef struct plan_variant {
   int plane;   /* whether the transfer function depends on value and gradient */
   int colored; /* whether the voxels have colours of their own */
   int soft;    /* some lights are soft */
+  int paper;   /* some lights are convolved by the paper's method */
   int sky;     /* whether the sky's light is added in this sweep */
   int maximum; /* whether the picture is a maximum projection */
   int back_to_front;

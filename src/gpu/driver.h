@@ -11,6 +11,8 @@
 
 enum { GPU_GROUP = 64 }; /* the number GROUP in gpu/kernels/dialect.h */
 
+enum { GPU_KERNELS = 12 }; /* the greatest number of kernels of a program */
+
 enum { GPU_NAME_BYTES = 128, GPU_PROBLEM_BYTES = 400 };
 
 /* A device that a driver offers. */
@@ -40,7 +42,7 @@ typedef struct gpu_buffer {
 /* A program that the driver has loaded. */
 typedef struct gpu_program {
   void *module;
-  void *kernels[12]; /* the kernels, in the order of the names given to load_program() */
+  void *kernels[GPU_KERNELS]; /* the kernels, in the order of the names given to load_program() */
 } gpu_program;
 
 /* The bytes of a compiled program, which the driver can load without compiling the text again; released with

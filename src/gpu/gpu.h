@@ -88,6 +88,16 @@ typedef struct gpu_sky {
   size_t bytes;
 } gpu_sky;
 
+/* Passes over the buffers of lights, one after the other. */
+typedef struct gpu_passes {
+  const plan_pass *list; /* [count] */
+  size_t count;
+  const plan_blur *boxes; /* [box_count] */
+  size_t box_count;
+  const unsigned char *marks; /* [mark_count] */
+  size_t mark_count;
+} gpu_passes;
+
 /* A sweep as plain data; borrowed until hl_gpu_read(). */
 typedef struct gpu_sweep gpu_sweep;
 struct gpu_sweep {
@@ -103,25 +113,22 @@ struct gpu_sweep {
                               * for other pictures */
   size_t plane_floats;       /* number of floats of the planes of all lights together */
   int slabs;                 /* the greatest number of slabs of a run */
-  /* The next members are for soft lights; they are zeros if there are no soft lights: */
-  const unsigned char *ends;       /* [sheets]; not 0 for sheets at which a chunk of some light ends */
+  /* The next members are for lights whose buffers change as a whole at some sheets: */
+  const unsigned char *ends;       /* [sheets]; not 0 for these sheets; null if there are no such lights */
   size_t field_pixels, row_floats; /* number of pixels of the fields of all soft lights; number of pixels of
-                                    * the rows of a blur */
+                                    * the rows of a blur, or of the planes between the two directions of
+                                    * convolutions */
+  /* If all passes are known before the sweep: the passes, and the first pass of each sheet, [sheets + 1]. The
+   * passes of sheet 0 come before the first run. The passes of such a sheet come as soon as the light has
+   * passed the slabs before the sheet. Null if the next function makes the passes. */
+  const gpu_passes *passes;
+  const int32_t *first_pass;
   /* The function that is called at such a sheet, after the slabs before it. It makes the passes
-   * (hl_gpu_pass()) that bring the lights' buffers to the next chunk. data: of_chunks. */
-  bool (*end_chunks)(void *data, hl_gpu *gpu, const gpu_sweep *sweep, int sheet);
-  void *of_chunks;
+   * (hl_gpu_pass()) that change the lights' buffers. data: of_advance. */
+  bool (*advance)(void *data, hl_gpu *gpu, const gpu_sweep *sweep, int sheet);
+  void *of_advance;
 };
 
-/* Passes over the fields of soft lights, one after the other. */
-typedef struct gpu_passes {
-  const plan_pass *list; /* [count] */
-  size_t count;
-  const plan_blur *boxes; /* [box_count] */
-  size_t box_count;
-  const unsigned char *marks; /* [mark_count] */
-  size_t mark_count;
-} gpu_passes;
 bool hl_gpu_pass(hl_gpu *gpu, const gpu_sweep *sweep, const gpu_passes *passes);
 /* Waits for the slabs that were started so far. Finds, for each tile of a light, the last chunk whose slabs
  * absorbed light in the tile; 0 if there is no chunk. chunks: [light->tiles]. */

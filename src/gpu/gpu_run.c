@@ -16,18 +16,21 @@ enum {
   KERNEL_FIND,
   KERNEL_SHADE,
   KERNEL_COMPOSITE,
-  KERNEL_ROWS, /* this kernel and the next ones exist only in variants with soft lights */
-  KERNEL_FIELDS,
-  KERNEL_ABSORBED,
-  KERNEL_REFILL,
-  KERNELS
+  KERNEL_PASSES, /* the first of the kernels of passes, which exist only in some variants */
+  KERNELS = KERNEL_PASSES + 4
 };
-static const char *const kernel_names[KERNELS] = {"fill_floats",       "try_arithmetic", "spread_distances",
-                                                  "run_light",         "find_samples",   "shade_samples",
-                                                  "composite_samples", "pass_rows",      "pass_fields",
-                                                  "pass_absorbed",     "pass_refill"};
+_Static_assert(KERNELS <= (int)GPU_KERNELS, "a program holds all kernels of a variant");
+static const char *const common_kernels[KERNEL_PASSES] = {
+    "fill_floats",  "try_arithmetic", "spread_distances", "run_light",
+    "find_samples", "shade_samples",  "composite_samples"};
 
-enum { VARIANT_DEFINES = 19, SAMPLE_COUNTERS = 256, TILE_SIDE = 16 };
+/* The kernels of the passes of soft lights, and of lights that are convolved by the paper's method. */
+enum { KERNEL_ROWS = KERNEL_PASSES, KERNEL_FIELDS, KERNEL_ABSORBED, KERNEL_REFILL };
+static const char *const soft_kernels[] = {"pass_rows", "pass_fields", "pass_absorbed", "pass_refill"};
+enum { KERNEL_BELOW = KERNEL_PASSES, KERNEL_WANTED, KERNEL_CONVOLVE_ROWS, KERNEL_CONVOLVE_COLUMNS };
+static const char *const paper_kernels[] = {"pass_below", "pass_wanted", "convolve_rows", "convolve_columns"};
+
+enum { VARIANT_DEFINES = 20, SAMPLE_COUNTERS = 256, TILE_SIDE = 16 };
 
 /* ---- memory ---- */
 
@@ -177,14 +180,23 @@ static void define_variant(const plan_variant *v, char defines[VARIANT_DEFINES][
       {"CHANNELS", v->channels}, {"CUTS", v->cuts},       {"BRICKS", v->bricks},
       {"STEEP", v->steep},       {"MASKED", v->masked},   {"PLANE", v->plane},
       {"COLORED", v->colored},   {"SOFT", v->soft},       {"SKY", v->sky},
-      {"MAXIMUM", v->maximum}};
+      {"MAXIMUM", v->maximum},   {"PAPER", v->paper}};
   for (int i = 0; i < VARIANT_DEFINES; i++)
     snprintf(defines[i], sizeof defines[i], "%s=%d", all[i].name, all[i].value);
 }
 
+/* Finds the names of a variant's kernels. Returns the number of kernels. */
+static int names_of_kernels(const plan_variant *variant, const char *names[KERNELS]) {
+  memcpy(names, common_kernels, sizeof common_kernels);
+  if (!variant->soft && !variant->paper) return KERNEL_PASSES;
+  memcpy(names + KERNEL_PASSES, variant->soft ? soft_kernels : paper_kernels, sizeof soft_kernels);
+  return KERNELS;
+}
+
 static bool compile(hl_gpu *gpu, const plan_variant *variant, gpu_program *program) {
   const gpu_driver *driver = gpu->device.driver;
-  const int kernels = variant->soft ? KERNELS : KERNEL_ROWS;
+  const char *names[KERNELS];
+  const int kernels = names_of_kernels(variant, names);
   char words[VARIANT_DEFINES][40], key[PROGRAM_KEY_BYTES];
   const char *defines[VARIANT_DEFINES];
   gpu_binary binary = {0};
@@ -196,13 +208,13 @@ static bool compile(hl_gpu *gpu, const plan_variant *variant, gpu_program *progr
     length += snprintf(key + length, sizeof key - (size_t)length, " %s", words[i]);
   }
   bool loaded = hl_program_stored(gpu->cache_folder, key, &binary) &&
-                driver->load_program(&gpu->device, &binary, kernel_names, kernels, program);
+                driver->load_program(&gpu->device, &binary, names, kernels, program);
   if (!loaded) {
     free(binary.bytes);
     binary = (gpu_binary){0};
     if (!driver->compile(&gpu->device, hl_kernel_text, defines, VARIANT_DEFINES, &binary)) return false;
     hl_program_store(gpu->cache_folder, key, &binary);
-    loaded = driver->load_program(&gpu->device, &binary, kernel_names, kernels, program);
+    loaded = driver->load_program(&gpu->device, &binary, names, kernels, program);
   }
   free(binary.bytes);
   return loaded;
@@ -286,8 +298,10 @@ static size_t counters_of(const gpu_sweep *sweep) {
 static size_t soft_floats(const gpu_sweep *sweep) {
   return sweep->variant.soft ? (size_t)sweep->plan->light_tiles * 512 * (size_t)sweep->variant.channels : 0;
 }
+/* Lights that are convolved have three numbers for each tile (gpu/kernels/paper.h). */
 static size_t touched_floats(const gpu_sweep *sweep) {
-  return sweep->variant.soft ? ((size_t)sweep->plan->light_tiles + 3) / 4 * 4 : 0;
+  const size_t numbers = sweep->variant.soft ? 1 : sweep->variant.paper ? 3 : 0;
+  return (numbers * (size_t)sweep->plan->light_tiles + 3) / 4 * 4;
 }
 static size_t field_floats(const gpu_sweep *sweep) { return (sweep->field_pixels + 7) / 8 * 4; }
 
@@ -301,7 +315,8 @@ static bool make_soft_room(hl_gpu *gpu, const gpu_sweep *sweep) {
 static bool reset_soft(hl_gpu *gpu, const gpu_sweep *sweep, const gpu_program *program) {
   return fill(gpu, program, BUFFER_SOFT, soft_floats(sweep), 0) &&
          fill(gpu, program, BUFFER_TOUCHED, touched_floats(sweep), 0) &&
-         fill(gpu, program, BUFFER_FIELDS, field_floats(sweep), 0);
+         fill(gpu, program, BUFFER_FIELDS, field_floats(sweep), 0) &&
+         fill(gpu, program, BUFFER_ROWS, sweep->variant.paper ? sweep->row_floats : 0, 1);
 }
 
 /* Brings the cells of the sky's field to the device, unless the device has them already. */
@@ -311,6 +326,12 @@ static bool prepare_sky(hl_gpu *gpu, const gpu_sky *sky) {
   if (!reserve_and_upload(gpu, BUFFER_SKY, sky->cells, sky->bytes)) return false;
   gpu->sky_version = sky->version;
   return true;
+}
+
+static bool upload_passes(hl_gpu *gpu, const gpu_passes *passes) {
+  return reserve_and_upload(gpu, BUFFER_PASSES, passes->list, passes->count * sizeof *passes->list) &&
+         reserve_and_upload(gpu, BUFFER_BOXES, passes->boxes, passes->box_count * sizeof *passes->boxes) &&
+         reserve_and_upload(gpu, BUFFER_MARKS, passes->marks, passes->mark_count);
 }
 
 static bool make_room(hl_gpu *gpu, const gpu_sweep *sweep) {
@@ -330,7 +351,8 @@ static bool make_room(hl_gpu *gpu, const gpu_sweep *sweep) {
               reserve(gpu, BUFFER_LIST, slots * sizeof(uint32_t)) &&
               reserve(gpu, BUFFER_MASKS, 2 * tiles * 256 * sizeof(uint32_t)) &&
               reserve(gpu, BUFFER_CUTS, sweep->cut_count * sizeof *sweep->cuts) &&
-              make_soft_room(gpu, sweep) && prepare_sky(gpu, &sweep->sky);
+              make_soft_room(gpu, sweep) && prepare_sky(gpu, &sweep->sky) &&
+              (sweep->passes == NULL || upload_passes(gpu, sweep->passes));
   if (done && sweep->shown_from != NULL)
     done = upload(gpu, BUFFER_SHOWN_FROM, 0, sweep->shown_from, tiles * 16 * sizeof(int32_t));
   if (done && sweep->cut_count > 0)
@@ -364,6 +386,66 @@ enum { LINE_PICTURE, LINE_AHEAD };
 /* The greatest number of members that light the samples of a run. This number is enough to fill any
  * device. */
 enum { SHADING_MEMBERS = 1 << 18 };
+
+/* ---- passes over the buffers of lights ---- */
+
+/* The kernel of each kind of pass. */
+static const int kernels_of_passes[] = {[PASS_ADD] = KERNEL_FIELDS,
+                                        [PASS_HALF] = KERNEL_FIELDS,
+                                        [PASS_DOUBLE] = KERNEL_FIELDS,
+                                        [PASS_BLUR] = KERNEL_FIELDS,
+                                        [PASS_SPLIT] = KERNEL_FIELDS,
+                                        [PASS_ABSORB] = KERNEL_ABSORBED,
+                                        [PASS_REFILL] = KERNEL_REFILL,
+                                        [PASS_BELOW] = KERNEL_BELOW,
+                                        [PASS_WANTED] = KERNEL_WANTED,
+                                        [PASS_ROWS] = KERNEL_CONVOLVE_ROWS,
+                                        [PASS_COLUMNS] = KERNEL_CONVOLVE_COLUMNS};
+
+/* The number of members that make a pass: one for each pixel of the output, or for each tile. */
+static size_t members_of_pass(const plan_pass *pass) {
+  const size_t tiles = (size_t)pass->tiles_x * (size_t)pass->tiles_y;
+  return pass->kind == PASS_WANTED ? tiles : tiles * 256;
+}
+
+static bool launch_pass(hl_gpu *gpu, const gpu_program *program, int kernel, size_t members, int index) {
+  const gpu_argument arguments[] = {
+      memory(gpu, BUFFER_PLAN),    memory(gpu, BUFFER_PASSES),  memory(gpu, BUFFER_BOXES),
+      memory(gpu, BUFFER_MARKS),   memory(gpu, BUFFER_FIELDS),  memory(gpu, BUFFER_ROWS),
+      memory(gpu, BUFFER_PLANES),  memory(gpu, BUFFER_LIGHT),   memory(gpu, BUFFER_SOFT),
+      memory(gpu, BUFFER_TOUCHED), memory(gpu, BUFFER_CHANGED), number(index)};
+  return launch(gpu, program, kernel, LINE_AHEAD, groups_of(members), arguments,
+                (int)(sizeof arguments / sizeof *arguments));
+}
+
+/* Launches the passes from number `first` to number end - 1. */
+static bool launch_passes(hl_gpu *gpu, const gpu_program *program, const gpu_passes *passes, size_t first,
+                          size_t end) {
+  bool done = true;
+  for (size_t i = first; i < end && done; i++) {
+    const plan_pass *pass = &passes->list[i];
+    if (pass->kind == PASS_BLUR)
+      done = launch_pass(gpu, program, KERNEL_ROWS,
+                         members_of_pass(pass) + (size_t)pass->tiles_x * TILE_SIDE * 2 * PASS_MARGIN, (int)i);
+    done = done && launch_pass(gpu, program, kernels_of_passes[pass->kind], members_of_pass(pass), (int)i);
+  }
+  return done;
+}
+
+bool hl_gpu_pass(hl_gpu *gpu, const gpu_sweep *sweep, const gpu_passes *passes) {
+  const gpu_program *program = program_of(gpu, &sweep->variant);
+  return program != NULL && upload_passes(gpu, passes) &&
+         gpu->device.driver->follow(&gpu->device, LINE_AHEAD, LINE_PICTURE) &&
+         launch_passes(gpu, program, passes, 0, passes->count);
+}
+
+bool hl_gpu_touched(hl_gpu *gpu, const plan_light *light, int32_t *chunks) {
+  return gpu->device.driver->download(&gpu->device, &gpu->buffers[BUFFER_TOUCHED],
+                                      (size_t)light->first_tile * sizeof *chunks, chunks,
+                                      (size_t)light->tiles * sizeof *chunks);
+}
+
+/* ---- runs of slabs ---- */
 
 /* A run of slabs. */
 typedef struct device_run {
@@ -410,6 +492,12 @@ static bool launch_shading(hl_gpu *gpu, const gpu_sweep *sweep, const gpu_progra
          launch_kernel(gpu, program, KERNEL_COMPOSITE, pixels, run);
 }
 
+/* Launches the passes of a sheet that are known before the sweep. */
+static bool launch_known(hl_gpu *gpu, const gpu_sweep *sweep, const gpu_program *program, int sheet) {
+  return sweep->passes == NULL || launch_passes(gpu, program, sweep->passes, (size_t)sweep->first_pass[sheet],
+                                                (size_t)sweep->first_pass[sheet + 1]);
+}
+
 /* Launches a run. While the samples of one run are lit, LINE_AHEAD works on the next run. Its work on run r
  * begins when run r - 2 has been lit. It writes planes of the ring and lists that are not read while run r -
  * 1 is lit. LINE_AHEAD may find samples of a pixel that run r - 1 makes opaque; these samples are then lit in
@@ -419,6 +507,7 @@ static bool launch_run(hl_gpu *gpu, const gpu_sweep *sweep, const gpu_program *p
   const size_t pixels = (size_t)sweep->plan->tiles * 256,
                light_pixels = (size_t)sweep->plan->light_tiles * 256;
   return (light_pixels == 0 || launch_kernel(gpu, program, KERNEL_LIGHT, light_pixels, run)) &&
+         launch_known(gpu, sweep, program, run.end - 1) &&
          launch_kernel(gpu, program, KERNEL_FIND, pixels, run) &&
          driver->follow(&gpu->device, LINE_PICTURE, LINE_AHEAD) &&
          driver->follow(&gpu->device, LINE_AHEAD, LINE_PICTURE) &&
@@ -436,58 +525,15 @@ static int end_of_run(const gpu_sweep *sweep, int first) {
 
 static bool launch_runs(hl_gpu *gpu, const gpu_sweep *sweep, const gpu_program *program) {
   const int sheets = sweep->plan->sheets;
-  bool done = gpu->device.driver->follow(&gpu->device, LINE_AHEAD, LINE_PICTURE);
+  bool done = gpu->device.driver->follow(&gpu->device, LINE_AHEAD, LINE_PICTURE) &&
+              launch_known(gpu, sweep, program, 0);
   for (int first = 1, number = 0, end; first < sheets && done; first = end, number++) {
     end = end_of_run(sweep, first);
     done = launch_run(gpu, sweep, program, (device_run){first, end, number});
-    if (done && end < sheets && sweep->ends != NULL && sweep->ends[end - 1])
-      done = sweep->end_chunks(sweep->of_chunks, gpu, sweep, end - 1);
+    if (done && end < sheets && sweep->advance != NULL && sweep->ends[end - 1])
+      done = sweep->advance(sweep->of_advance, gpu, sweep, end - 1);
   }
   return done;
-}
-
-/* ---- passes over the fields of soft lights ---- */
-
-/* The number of members that make a pass: one for each pixel of the output. */
-static size_t members_of_pass(const plan_pass *pass) {
-  return (size_t)pass->tiles_x * (size_t)pass->tiles_y * 256;
-}
-
-static bool launch_pass(hl_gpu *gpu, const gpu_program *program, int kernel, size_t members, int index) {
-  const gpu_argument arguments[] = {
-      memory(gpu, BUFFER_PLAN),    memory(gpu, BUFFER_PASSES),  memory(gpu, BUFFER_BOXES),
-      memory(gpu, BUFFER_MARKS),   memory(gpu, BUFFER_FIELDS),  memory(gpu, BUFFER_ROWS),
-      memory(gpu, BUFFER_PLANES),  memory(gpu, BUFFER_LIGHT),   memory(gpu, BUFFER_SOFT),
-      memory(gpu, BUFFER_TOUCHED), memory(gpu, BUFFER_CHANGED), number(index)};
-  return launch(gpu, program, kernel, LINE_AHEAD, groups_of(members), arguments,
-                (int)(sizeof arguments / sizeof *arguments));
-}
-
-bool hl_gpu_pass(hl_gpu *gpu, const gpu_sweep *sweep, const gpu_passes *passes) {
-  const gpu_program *program = program_of(gpu, &sweep->variant);
-  bool done = program != NULL &&
-              reserve_and_upload(gpu, BUFFER_PASSES, passes->list, passes->count * sizeof *passes->list) &&
-              reserve_and_upload(gpu, BUFFER_BOXES, passes->boxes,
-                                 passes->box_count * sizeof *passes->boxes) &&
-              reserve_and_upload(gpu, BUFFER_MARKS, passes->marks, passes->mark_count) &&
-              gpu->device.driver->follow(&gpu->device, LINE_AHEAD, LINE_PICTURE);
-  for (size_t i = 0; i < passes->count && done; i++) {
-    const plan_pass *pass = &passes->list[i];
-    const int kernel = pass->kind == PASS_ABSORB   ? KERNEL_ABSORBED
-                       : pass->kind == PASS_REFILL ? KERNEL_REFILL
-                                                   : KERNEL_FIELDS;
-    if (pass->kind == PASS_BLUR)
-      done = launch_pass(gpu, program, KERNEL_ROWS,
-                         members_of_pass(pass) + (size_t)pass->tiles_x * TILE_SIDE * 2 * PASS_MARGIN, (int)i);
-    done = done && launch_pass(gpu, program, kernel, members_of_pass(pass), (int)i);
-  }
-  return done;
-}
-
-bool hl_gpu_touched(hl_gpu *gpu, const plan_light *light, int32_t *chunks) {
-  return gpu->device.driver->download(&gpu->device, &gpu->buffers[BUFFER_TOUCHED],
-                                      (size_t)light->first_tile * sizeof *chunks, chunks,
-                                      (size_t)light->tiles * sizeof *chunks);
 }
 
 /* ---- the trial ---- */

@@ -119,6 +119,13 @@ static inline bool hl_is_beyond(const sheet_stack *sheets, const light_source *s
   return source->parallel || hl_sheet_height(sheets, sheet - 1) >= vec3_dot(sheets->normal, source->position);
 }
 
+/* The first sheet at which a light's buffer may change as a whole. */
+static inline int hl_first_beyond(const sheet_stack *sheets, const light_source *source) {
+  int sheet = 1;
+  while (sheet < sheets->count && !hl_is_beyond(sheets, source, sheet)) sheet++;
+  return sheet;
+}
+
 /* Returns whether a light's shadows reach a slab. */
 static inline bool hl_is_reached(const sheet_stack *sheets, const light_shadow *shadow, int sheet) {
   return hl_is_beyond(sheets, shadow->setup.source, sheet + 1 - shadow->method->first_slab);

@@ -234,13 +234,6 @@ static hl_status copy_shadow(hl_context *context, const light_shadow *planned, c
   return HL_OK;
 }
 
-/* Finds the first sheet at which the light's buffer may change as a whole. */
-static int first_end(const sheet_stack *sheets, const light_source *source) {
-  int sheet = 1;
-  while (sheet < sheets->count && !hl_is_beyond(sheets, source, sheet)) sheet++;
-  return sheet;
-}
-
 /* Describes the chunks of a light. rays: the light's rays, in frame space. */
 static void note_chunks(const sheet_stack *sheets, const device_soft_light *of, plan_rays *rays,
                         unsigned char *ends) {
@@ -275,7 +268,7 @@ static hl_status begin_light(const sweep_means *means, const frame_plan *frame_p
   of->slabs = hl_allocate_zeroed(means->context, (size_t)sheets->count, sizeof *of->slabs);
   if (of->slabs == NULL)
     return hl_fail_memory(error, (size_t)sheets->count * sizeof *of->slabs, "a light's shadows");
-  hl_cascade_find_chunks(planned, first_end(sheets, planned->setup.source), of->slabs);
+  hl_cascade_find_chunks(planned, hl_first_beyond(sheets, planned->setup.source), of->slabs);
   const occupancy_source source = {frame_plan->volumes.grids, frame_plan->volumes.count, &planned->plan.view,
                                    sheets, planned->plan.spare};
   hl_status status = hl_occupancy_build(means->context, means->pool, means->hot->view->brick_ranges, &source,
@@ -307,8 +300,8 @@ hl_status hl_device_cascades_begin(const sweep_means *means, const frame_plan *f
   if (status == HL_OK && sweep->field_pixels >= PASS_NOTHING)
     return hl_fail(error, HL_ERROR_UNSUPPORTED, "%s", "the soft shadows are too large for a device");
   sweep->ends = cascades->ends;
-  sweep->end_chunks = end_chunks;
-  sweep->of_chunks = cascades;
+  sweep->advance = end_chunks;
+  sweep->of_advance = cascades;
   return status;
 }
 

@@ -356,12 +356,15 @@ static hl_status plan_cuts(hl_context *context, const sweep_task *task, planned_
   return HL_OK;
 }
 
-/* Returns whether the shadows of any light are made in chunks. */
-static bool has_soft_lights(const sweep_task *task) {
+/* Returns whether the shadows of any light are of a kind. */
+static bool any_light(const sweep_task *task, bool (*is_of_kind)(const light_shadow *shadow)) {
   for (int i = 0; i < task->plan->geometry->light_count; i++)
-    if (hl_is_chunked(&task->plan->lights[i].shadow)) return true;
+    if (is_of_kind(&task->plan->lights[i].shadow)) return true;
   return false;
 }
+
+/* Returns whether the shadows of any light are made in chunks. */
+static bool has_soft_lights(const sweep_task *task) { return any_light(task, hl_is_chunked); }
 
 /* The number of planes of one sheet of a light's buffer. The transmittance has one plane for each channel.
  * The light at the outside of surfaces has one plane for each channel, too, if it is kept. So does the older
@@ -490,6 +493,7 @@ static plan_variant variant_of(const sweep_task *task, const device_sweep *plan)
                         .boxed = grid->cut,
                         .cuts = shade->cut_count > 0,
                         .soft = has_soft_lights(task),
+                        .paper = any_light(task, hl_is_convolved),
                         .sky = task->constants->shade.sky != NULL,
                         .maximum = shade->shown != NULL,
                         .colored = shade->colors.voxels != NULL,
@@ -563,6 +567,8 @@ hl_status hl_plan_sweep(const sweep_means *means, const frame_plan *frame_plan, 
   if (status == HL_OK && planned->sweep.variant.soft)
     status = hl_device_cascades_begin(means, frame_plan, of, planned->rays, &planned->cascades,
                                       &planned->sweep, error);
+  if (status == HL_OK && planned->sweep.variant.paper)
+    status = hl_device_paper_begin(context, of, plan, &planned->passes, &planned->sweep, error);
   return status == HL_OK ? plan_cuts(context, task, planned, error) : status;
 }
 
@@ -571,6 +577,7 @@ void hl_plan_release(hl_context *context, planned_sweep *planned) {
   hl_release(context, planned->rays);
   hl_release(context, planned->cuts);
   hl_device_cascades_release(&planned->cascades);
+  hl_known_passes_release(&planned->passes);
   planned->memory = NULL;
   planned->rays = NULL;
   planned->cuts = NULL;

@@ -6,6 +6,7 @@
 #include "gpu/gpu.h"
 #include "plan/frame_plan.h"
 #include "render/device_cascade.h"
+#include "render/device_paper.h"
 #include "render/sweep_constants.h"
 
 /* The volume that the frame shows. */
@@ -20,6 +21,7 @@ typedef struct planned_sweep {
   plan_rays *rays; /* owned */
   plan_cut *cuts;  /* owned; null if the volume has no cuts */
   device_cascades cascades;
+  known_passes passes;
 } planned_sweep;
 
 /* Describes a sweep of a plan by the numbers that a device reads. shown_from: the first visible slab of each

@@ -28,11 +28,9 @@ static bool has_second_volume(const frame_plan *plan) {
   const plane_table *plane = &volume_of(plan)->classifier->plane;
   return plane->sums != NULL && plane->axis != HL_SECOND_GRADIENT;
 }
-static bool is_soft_otherwise(const frame_plan *plan) {
+static bool has_sublights(const frame_plan *plan) {
   for (int i = 0; i < plan->frame.light_count; i++)
-    if (plan->frame.lights[i].shadows == HL_SHADOWS_SOFT &&
-        hl_shadow_method(&plan->frame.lights[i]) != &hl_shadow_cascade)
-      return true;
+    if (hl_shadow_method(&plan->frame.lights[i]) == &hl_shadow_sublights) return true;
   return false;
 }
 
@@ -75,7 +73,7 @@ static const struct {
     {is_thin, "a volume less than four voxels thick"},
     {has_second_volume, "a function of two volumes' values"},
     {masks_thick_slabs, "a mask with sheets more than 1.5 voxels apart"},
-    {is_soft_otherwise, "soft shadows by another method than the cascade"},
+    {has_sublights, "sub-lights"},
     {has_images, "lights with images"},
     {has_phase_tables, "wide lights in media that scatter unevenly"},
 };

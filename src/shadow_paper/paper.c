@@ -8,12 +8,13 @@
  *
  * In a shared picture, each part computes the pixels of the buffer that its own picture reads, and also the
  * pixels from which convolutions make these pixels. */
+#include "shadow_paper/paper.h"
+
 #include <string.h>
 
 #include "core/memory.h"
 #include "light/light_extent.h"
 #include "shadow/blur.h"
-#include "shadow/shadow_method.h"
 
 typedef struct soft_paper {
   const light_emission *emission; /* the light's emission image; if null, convolutions use a box */
@@ -232,12 +233,15 @@ static void find_wanted(void *data, size_t index, int worker) {
   }
 }
 
+int hl_paper_reach(int width) {
+  const blur_box box = hl_blur_box((float)width);
+  return box.reach + (box.edge > 0);
+}
+
 /* The number of pixels to each side of a pixel that a convolution reads. width: the width of the box or of
  * the emission image, in pixels. */
 static int reach_of(const soft_paper *soft, int width) {
-  if (soft->emission != NULL) return (int)(soft->emission->reach * width) + 2;
-  blur_box box = hl_blur_box((float)width);
-  return box.reach + (box.edge > 0);
+  return soft->emission != NULL ? (int)(soft->emission->reach * width) + 2 : hl_paper_reach(width);
 }
 
 /* Convolves the tiles that can change. Each other tile holds 1 in the buffer and in its second planes, or is
@@ -262,6 +266,17 @@ static void convolve(const soft_paper *soft, const light_shadow *shadow, int she
   for (size_t tile = 0; tile < tiles; tile++) buffer->tile_touched[tile] |= task.wanted[tile];
 }
 
+/* The sum of the widths dx, in pixels, that have not been convolved before a sheet. */
+static double owed_width(const soft_paper *soft, const sheet_stack *sheets, int sheet) {
+  return soft->remainder + width_between(soft, soft->last, hl_sheet_height(sheets, sheet + 1));
+}
+
+/* The width of the next convolution, in pixels. owed: the width that has not been convolved. A convolution
+ * with a box reads no pixel beyond the buffer's margin. */
+static int next_width(const soft_paper *soft, double owed) {
+  return (int)fmin(floor(owed), soft->emission == NULL ? 2 * soft->reach : EMISSION_SIDE);
+}
+
 /* Convolves at a sheet, as section 5.2, (2) of the paper says: the widths dx are added up until the sum
  * exceeds two pixels. The buffer is then convolved by the integer part of the sum, and the rest is kept for a
  * later sheet. An emission image has one tap per pixel, and along an axis the number of taps is at most the
@@ -269,22 +284,29 @@ static void convolve(const soft_paper *soft, const light_shadow *shadow, int she
  * and only the reach is found. Returns the sum of the reaches of the convolutions at this sheet, in
  * pixels. */
 static int pass_sheet(soft_paper *soft, const sheet_stack *sheets, int sheet, const light_shadow *shadow) {
-  double next = hl_sheet_height(sheets, sheet + 1);
-  double width = soft->remainder + width_between(soft, soft->last, next);
-  double most = soft->emission == NULL ? 2 * soft->reach
-                                       : EMISSION_SIDE; /* a convolution with a box reads no pixel beyond the
-                                                         * buffer's margin */
+  double width = owed_width(soft, sheets, sheet);
   int reach = 0;
   if (width <= 2) return 0;
   do {
-    int whole = (int)fmin(floor(width), most);
+    int whole = next_width(soft, width);
     if (shadow != NULL) convolve(soft, shadow, sheet, whole);
     reach += reach_of(soft, whole);
     width -= whole;
   } while (width > 2 && soft->emission != NULL);
   soft->remainder = width;
-  soft->last = next;
+  soft->last = hl_sheet_height(sheets, sheet + 1);
   return reach;
+}
+
+void hl_paper_find_widths(const light_shadow *planned, int first, int32_t *widths) {
+  const sheet_stack *sheets = planned->setup.sheets;
+  soft_paper soft = *(const soft_paper *)planned->state;
+  memset(widths, 0, (size_t)sheets->count * sizeof *widths);
+  for (int sheet = first; sheet < sheets->count; sheet++) {
+    const double owed = owed_width(&soft, sheets, sheet);
+    if (owed > 2) widths[sheet] = next_width(&soft, owed);
+    (void)pass_sheet(&soft, sheets, sheet, NULL);
+  }
 }
 
 static void advance_paper(light_shadow *shadow, const occupancy *occupancy, int sheet) {

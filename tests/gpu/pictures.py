@@ -49,6 +49,7 @@ def plane(*normal):
     return {"type": "plane", "point": [1, 1, -1], "normal": list(normal)}
 
 
+PAPER = {"soft_method": "paper"}
 CLIP = {"min": [5, 3, 4], "max": [24, 20, 15]}
 BALL = {"type": "sphere", "center": [4, 2, -6], "radius": 9}
 BLOCK = {"type": "box", "min": [-9, -5, -13], "max": [7, 9, 3]}
@@ -165,6 +166,12 @@ MADE = {
     "soft shadows of a mesh of cells": scene(opacity=SHELL, shading="phong", shadows="soft", light=SUN, volume=CELLS),
     "soft shadows of a near light": scene(shadows="soft", shading="phong", opacity=DENSE, light=LAMP),
     "soft shadows beside hard ones": scene(shadows="soft", shading="phong", opacity=DENSE, light=SUN),
+    "the paper's soft shadows": scene(shadows="soft", light=SUN, render=PAPER),
+    "the paper's soft shadows of surfaces, colours, near light": scene(
+        shadows="soft", shading="phong", opacity=LAYERS, light=LAMP, volume={"attenuation_color": [1, 0.5, 0.2]}, render=PAPER),
+    "the paper's soft shadows of a wide light from behind, cuts": scene(
+        shadows="soft", shading="phong", opacity=DENSE, light={**BEHIND, "angular_diameter_deg": 30},
+        volume={"cuts": [BALL, plane(1, 0.4, -0.2)]}, render={**PAPER, "slabs_at_once": 3}),
     "an even sky": scene(sky=EVEN_SKY),
     "a sky, surfaces": scene(sky=SKY, shading="phong", opacity=DENSE),
     "a sky, soft shadows of surfaces, colours": scene(sky=SKY, shadows="soft", shading="phong", opacity=LAYERS, light=SUN,
@@ -202,10 +209,10 @@ LARGE = scene(volume={"file": "large.nrrd"}, render={"sheet_spacing": 4},
               camera={"type": "perspective", "position": [380, 250, -680], "target": [0, 0, 0], "up": [0, 1, 0], "fovy_deg": 30})
 # One scene of each feature.
 FEW = ("medium", "several surfaces, colours, near light", "cuts, surfaces", "a field at levels, surfaces", "gradient opacity, surfaces",
-       "coloured voxels", "labels", "a projection of cuts",
+       "coloured voxels", "labels", "a projection of cuts", "the paper's soft shadows of surfaces, colours, near light",
        "soft shadows of surfaces, a mask", "a mask, surfaces in layers, near light", "a sky, soft shadows of surfaces, colours")
 LEFT = {
-    "soft shadows by another method than the cascade": scene(shadows="soft", light=SUN, render={"soft_method": "paper"}),
+    "sub-lights": scene(shadows="soft", light=SUN, render={"soft_method": "sublights"}),
     "meshes or isosurfaces": {**scene(), "meshes": [{"spheres": [[0, -12, 0, 3]]}]},
     "a mask with sheets more than 1.5 voxels apart": scene(volume={"mask": ORGANS}, render={"sheet_spacing": 1.6}),
     "splatting in place of gathering": scene(render={"reconstruction": "splat"}),
@@ -226,11 +233,12 @@ def drawn(seed, compositing):
     light = {**SUN, "direction": [draw.uniform(-1, 1), draw.uniform(-1, 1), draw.uniform(0.1, 1)],
              "angular_diameter_deg": draw.choice((1, 7, 30))}
     opacity, shadows, weighed = draw.choice((AROUND, LAYERS, DENSE)), draw.choice(("hard", "soft")), draw.random() < 0.7
+    method = draw.choice(("cascade", "paper"))
     return scene(opacity=opacity, shading="phong", light=light, shadows=shadows, sky=draw.choice((None, EVEN_SKY, SKY)),
                  function=STEEP if weighed and draw.random() < 0.4 else None,
                  volume={**({"mask": {**ORGANS, "rest": draw.choice((0, 0.3, 1))}} if weighed else {}), "cuts": cuts,
                          "cut_casts_shadow": draw.random() < 0.3, "cut_shading": draw.choice(("face", "none"))},
-                 render={"slabs_at_once": draw.choice((0, 4, 9)), "compositing": compositing})
+                 render={"slabs_at_once": draw.choice((0, 4, 9)), "compositing": compositing, "soft_method": method})
 
 
 def picture(folder, name, device, *options):

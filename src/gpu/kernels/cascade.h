@@ -5,18 +5,12 @@
 #define HL_GPU_CASCADE_H
 
 #include "core/sheet_constants.h"
-#include "gpu/device_sweep.h"
-#include "gpu/kernels/numbers.h"
+#include "gpu/kernels/pass_place.h"
 
 #if SOFT
 
 /* lanes_store_short() */
 DEVICE word16 rounded_pixel(float x) { return (word16)(int)(lesser(x, 65535.0f) + 0.5f); }
-
-/* The index of a pixel in a field, counted from the field's pixel (0, 0). */
-DEVICE wide place_in_field(unsigned field, int stride, int x, int y) {
-  return (wide)field + (wide)(unsigned)(y * stride + x);
-}
 
 /* 1 - thin */
 DEVICE float left_by(word16 thin) { return fused((float)thin, -1.0f / PASS_WHOLE, 1.0f); }
@@ -133,28 +127,6 @@ DEVICE void split_pixel(GLOBAL const plan_pass *pass, GLOBAL word16 *fields, int
   store_fraction(fields, pass->second_thin + at, to.thin[1]);
 }
 
-/* A pixel of a light's buffer. The members of a tile take its pixels row by row, so that block_any() votes
- * on the sixteen pixels of a row, as the processors do. */
-typedef struct light_place {
-  int tile, member; /* tile: the tile's number among the tiles of all lights; member: the pixel's number in
-                     * the tile, block by block */
-  int x, y;
-  wide at; /* in a field of level 0 */
-} light_place;
-
-DEVICE light_place place_of_member(GLOBAL const device_sweep *plan, GLOBAL const plan_pass *pass,
-                                   int number) {
-  GLOBAL const plan_light *light = &plan->lights[pass->light];
-  const int own_tile = number / 256, column = number & 15, row = number >> 4 & 15;
-  light_place place;
-  place.tile = light->first_tile + own_tile;
-  place.member = ((row >> 2) * 4 + (column >> 2)) * 16 + (row & 3) * 4 + (column & 3);
-  place.x = own_tile % light->tiles_x * 16 + column;
-  place.y = own_tile / light->tiles_x * 16 + row;
-  place.at = place_in_field(0u, pass->stride, place.x, place.y);
-  return place;
-}
-
 /* Adds the light that a chunk's slabs absorbed in a pixel to the groups at the chunk's two ends (absorbed_job
  * in shadow_cascade/cascade_field.h). before: the light at the chunk's beginning. taken: the part of this
  * light that the slabs absorbed. moment: the function clears it. counts: whether the slabs absorbed light in
@@ -203,9 +175,7 @@ DEVICE void refill_pixel(GLOBAL const device_sweep *plan, GLOBAL const plan_pass
   if ((mark & MARK_READ) == 0) return;
   GLOBAL float *state = light_state + (wide)place.tile * (256 * PLANES_OF_SHEET) + place.member;
   GLOBAL float *at_start = soft + ((wide)place.tile * CHANNELS + pass->channel) * 512 + 256 + place.member;
-  GLOBAL float *pixel = planes + (wide)light->planes * 16 + light->origin +
-                        (wide)place.y * (wide)light->stride + place.x +
-                        (wide)(pass->sheet % plan->ring) * PLANES_OF_SHEET * (wide)light->plane;
+  GLOBAL float *pixel = pixel_in_plane(plan, light, planes, pass->sheet, 0, place.x, place.y);
   const int c = pass->channel;
   const float before = state[c * 256];
   float left = outside_umbra(fields[pass->a + place.at]);

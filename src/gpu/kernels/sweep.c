@@ -1,6 +1,7 @@
 /* gpu/kernels/sweep.c - defines the kernels' entry points. */
 #include "gpu/kernels/sweep.h"
 #include "gpu/kernels/cascade.h"
+#include "gpu/kernels/paper.h"
 #include "gpu/kernels/trial.h"
 
 /* Sets all floats of a buffer to a value. Each member of the kernel sets four floats. */
@@ -164,8 +165,8 @@ KERNEL(12) run_light(SWEEP_ARGUMENTS) {
       way.after_known = way.after_shows = 0;
     }
     if (does == SLAB_TAKES) changed_at = sheet;
-#if SOFT
-    if (does == SLAB_TAKES) touched[tile] = in_frame[sheet].chunk;
+#if SOFT || PAPER
+    if (does == SLAB_TAKES) touched[tile] = SOFT ? in_frame[sheet].chunk : 1;
 #endif
 #if OUTSIDE
     if (block_any(votes, does != 0) && does != SLAB_TAKES) {
@@ -190,17 +191,20 @@ KERNEL(12) run_light(SWEEP_ARGUMENTS) {
 #endif
 }
 
-#if SOFT
+#if SOFT || PAPER
 
-/* ---- passes over the fields of soft lights ---- */
+/* ---- passes over the buffers of lights ---- */
 
-/* The arguments of the kernels that make one pass over fields of soft lights. number: the number of the
- * pass. */
+/* The arguments of the kernels that make one pass. number: the number of the pass. */
 #define PASS_ARGUMENTS                                                                            \
   GLOBAL const device_sweep *APART plan, GLOBAL const plan_pass *APART passes,                    \
       GLOBAL const plan_blur *APART boxes, GLOBAL const byte *APART marks, GLOBAL word16 *fields, \
       GLOBAL float *APART rows, GLOBAL float *APART planes, GLOBAL float *APART light_state,      \
-      GLOBAL float *APART soft, GLOBAL const int *APART touched, GLOBAL int *APART changed, int number
+      GLOBAL float *APART soft, GLOBAL int *APART touched, GLOBAL int *APART changed, int number
+
+#endif
+
+#if SOFT
 
 KERNEL(16) pass_rows(PASS_ARGUMENTS) {
   (void)plan, (void)marks, (void)planes, (void)light_state, (void)soft, (void)touched, (void)changed;
@@ -230,6 +234,31 @@ KERNEL(16) pass_refill(PASS_ARGUMENTS) {
   (void)boxes, (void)rows;
   refill_pixel(plan, passes + number, marks, fields, planes, light_state, soft, touched, changed,
                work_number());
+}
+
+#endif
+
+#if PAPER
+
+KERNEL(16) pass_below(PASS_ARGUMENTS) {
+  (void)boxes, (void)marks, (void)fields, (void)rows, (void)planes, (void)soft, (void)changed;
+  find_below(plan, passes + number, light_state, touched, work_number());
+}
+
+KERNEL(16) pass_wanted(PASS_ARGUMENTS) {
+  (void)boxes, (void)marks, (void)fields, (void)rows, (void)planes, (void)light_state, (void)soft;
+  (void)changed;
+  find_wanted(plan, passes + number, touched, work_number());
+}
+
+KERNEL(16) convolve_rows(PASS_ARGUMENTS) {
+  (void)marks, (void)fields, (void)light_state, (void)soft, (void)changed;
+  convolve_row(plan, passes + number, boxes, rows, planes, touched, work_number());
+}
+
+KERNEL(16) convolve_columns(PASS_ARGUMENTS) {
+  (void)marks, (void)fields, (void)soft;
+  convolve_column(plan, passes + number, boxes, rows, planes, light_state, touched, changed, work_number());
 }
 
 #endif
