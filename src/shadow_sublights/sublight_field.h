@@ -26,6 +26,14 @@ typedef uint64_t slab_rows;
  * is below 1. All other rows hold ones already. */
 typedef slab_rows half_pixel_tile_function(const half_pixel_job *job, int tile_x, int tile_y);
 
+/* The place of a slab in a sub-light's view. scale, shift: map a position in the sub-light's buffer, in
+ * pixels (u, v), to a position in the slab: scale * position + shift. */
+typedef struct sublight_place {
+  int shifted; /* whether the scale is 1, so that the slab is only shifted */
+  float scale[2], shift[2];
+  int half[2]; /* set if `shifted`: `shift` in half pixels, rounded to whole numbers */
+} sublight_place;
+
 typedef struct sublight_job {
   const float *slab[HL_CHANNELS][SLAB_COPIES];
   /* the light at the outside of surfaces behind the slab, in the case that full light comes to the slab */
@@ -34,11 +42,7 @@ typedef struct sublight_job {
   /* [slab_tiles_y][slab_tiles_x]; for each tile of the slab, the rows in which some pixel is below 1 */
   const slab_rows *rows;
   int slab_tiles_x, slab_tiles_y;
-  float slab_width, slab_height; /* size of the slab's image in pixels; around the image are up to 32
-                                  * pixels of ones */
-  float scale[2], shift[2];      /* map a position in the sub-light's buffer, in pixels (u, v), to a position
-                                  * in the slab: scale * position + shift */
-  int half[2];                   /* `shift` in half pixels, rounded to whole numbers */
+  sublight_place place; /* of the slab. Around the slab's tiles there are 32 pixels of ones */
   sublight_pixel *transmittance[HL_CHANNELS]; /* pixel (0,0) of the sub-light's buffer; rows are `stride`
                                                * apart */
   sublight_pixel *outside[HL_CHANNELS];       /* pixel (0,0) of the light at the outside of surfaces, laid out

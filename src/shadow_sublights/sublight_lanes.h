@@ -88,13 +88,15 @@ typedef struct row_taps {
 
 LANES_INLINE row_taps taps_of_row(const sublight_job *job, int tile_x) {
   row_taps taps;
-  float scale = job->scale[0], start = scale * ((float)(tile_x * TILE) + 0.5f) + job->shift[0] - 0.5f;
-  taps.half = nearest_halves(scale, start, job->slab_width);
+  const float width = (float)(job->slab_tiles_x * TILE);
+  float scale = job->place.scale[0],
+        start = scale * ((float)(tile_x * TILE) + 0.5f) + job->place.shift[0] - 0.5f;
+  taps.half = nearest_halves(scale, start, width);
   lanes_int apart = lanes_floor((lanes_load(LANE_INDICES) * (scale - 1.0f) + start) * 2.0f + 0.5f);
   int ends[2] = {apart[0], apart[LANES - 1]};
   taps.first = ends[0] < ends[1] ? ends[0] : ends[1];
   taps.count = (ends[0] < ends[1] ? ends[1] : ends[0]) - taps.first + 1;
-  if (taps.count > SUBLIGHT_TAPS || taps.first < -56 || (float)taps.first > 2.0f * job->slab_width + 16.0f)
+  if (taps.count > SUBLIGHT_TAPS || taps.first < -56 || (float)taps.first > 2.0f * width + 16.0f)
     taps.count = 0;
   for (int i = 0; i < taps.count; i++) taps.weight[i] = lanes_keep(apart == taps.first + i, lanes_set(1.0f));
   return taps;
@@ -217,8 +219,8 @@ static int sublight_tile(const sublight_job *job, int tile_x, int tile_y) {
   int first, last;
   int32_t halves[TILE];
   lanes_int half_of_rows = nearest_halves(
-      job->scale[1], job->scale[1] * ((float)(tile_y * TILE) + 0.5f) + job->shift[1] - 0.5f,
-      job->slab_height);
+      job->place.scale[1], job->place.scale[1] * ((float)(tile_y * TILE) + 0.5f) + job->place.shift[1] - 0.5f,
+      (float)(job->slab_tiles_y * TILE));
   memcpy(halves, &half_of_rows, sizeof halves);
   tiles_of_row(job, &taps, &first, &last);
   for (uint32_t left = present_rows(job, halves, first, last); left != 0; left &= left - 1) {
@@ -254,7 +256,7 @@ enum { SHIFTED_TILES = 16 };
 
 /* The index of the copy of the slab from which a job reads if the slab is only shifted. */
 LANES_INLINE int copy_of_shift(const sublight_job *job) {
-  return (job->half[0] & 1) + 2 * (job->half[1] & 1);
+  return (job->place.half[0] & 1) + 2 * (job->place.half[1] & 1);
 }
 
 /* Finds which of sixteen rows of the slab have a pixel below 1 in the columns of the tile with the number
@@ -277,14 +279,14 @@ LANES_INLINE int is_dark_tile(const sublight_job *job, const uint16_t *lit, int 
  * slab's tile: in the first row of the sub-light's row of tiles tile_y, under the first column of the tile
  * tile_x. */
 LANES_INLINE ptrdiff_t pixels_under(const sublight_job *job, int tile_x, int tile_y) {
-  return (ptrdiff_t)(tile_y * TILE) * (ptrdiff_t)job->stride + tile_x * TILE - (job->half[0] >> 1);
+  return (ptrdiff_t)(tile_y * TILE) * (ptrdiff_t)job->stride + tile_x * TILE - (job->place.half[0] >> 1);
 }
 
 /* Finds the sub-light's rows that a tile of the slab darkens. Marks the sub-light's tiles as touched, and
  * prefetches the pixels of all these rows. */
 LANES_INLINE uint32_t begin_shifted(const sublight_job *job, int tile_x, int tile_y, const uint16_t *lit,
                                     unsigned char *touched) {
-  int top = tile_y * TILE + (job->half[1] >> 1), column = tile_x * TILE - (job->half[0] >> 1);
+  int top = tile_y * TILE + (job->place.half[1] >> 1), column = tile_x * TILE - (job->place.half[0] >> 1);
   uint32_t rows = rows_from(job, tile_x, top, copy_of_shift(job));
   const int ends[2] = {column >> 4, (column + TILE - 1) >> 4};
   if (rows == 0) return 0;
@@ -306,7 +308,7 @@ LANES_INLINE uint32_t begin_shifted(const sublight_job *job, int tile_x, int til
 }
 
 LANES_INLINE void composite_shifted(const sublight_job *job, int tile_x, int tile_y, uint32_t rows) {
-  int top = tile_y * TILE + (job->half[1] >> 1);
+  int top = tile_y * TILE + (job->place.half[1] >> 1);
   for (int c = 0; c < job->channels; c++) {
     const int copy = copy_of_shift(job);
     const ptrdiff_t from = (ptrdiff_t)top * (ptrdiff_t)job->slab_stride + tile_x * TILE,

@@ -13,9 +13,7 @@ static const double GREATEST_BYTES = 4294967296.0;
 
 enum { MOVED_COPIES = SLAB_COPIES - 1 };
 
-/* Makes the view of sub-light i. Raises *tiles_x and *tiles_y to the view's numbers of tiles if they are
- * less. */
-static void view_of_sublight(const light_shadow *shadow, int i, view *view, int *tiles_x, int *tiles_y) {
+void hl_sublight_view(const light_shadow *shadow, int i, view *view) {
   const shadow_setup *setup = &shadow->setup;
   const light_source *source = setup->source;
   int side = setup->settings->light_samples;
@@ -27,8 +25,16 @@ static void view_of_sublight(const light_shadow *shadow, int i, view *view, int 
   if (source->parallel) at_point.direction = vec3_normalise(vec3_add(source->direction, offset));
   else at_point.position = vec3_add(source->position, offset);
   hl_shadow_view(&at_point, setup->sheets->normal, &shadow->plan.extent, view);
-  if (hl_tiles(view->width) > *tiles_x) *tiles_x = hl_tiles(view->width);
-  if (hl_tiles(view->height) > *tiles_y) *tiles_y = hl_tiles(view->height);
+}
+
+/* Finds the numbers of tiles into which the buffer of any sub-light fits. */
+static void find_tiles(const light_shadow *shadow, sublights *all) {
+  view view;
+  for (int i = 0; i < all->count; i++) {
+    hl_sublight_view(shadow, i, &view);
+    if (hl_tiles(view.width) > all->tiles_x) all->tiles_x = hl_tiles(view.width);
+    if (hl_tiles(view.height) > all->tiles_y) all->tiles_y = hl_tiles(view.height);
+  }
 }
 
 /* Buffers have a margin of a tile on the left and on the right, because the slab's tiles reach across their
@@ -99,11 +105,10 @@ static sublight_pixel *sublight_plane(const sublights *all, const sublight *one,
 static void begin_sublight(const light_shadow *shadow, sublights *all, int i) {
   sublight *one = &all->sublight[i];
   size_t tiles = (size_t)all->tiles_x * (size_t)all->tiles_y, first = (size_t)i * tiles;
-  int unused_x = 0, unused_y = 0;
   *one = (sublight){.pixels = all->memory + (size_t)i * planes_of_sublight(all) * all->plane + TILE,
                     .lit = all->flags + first,
                     .touched = all->marks + first};
-  view_of_sublight(shadow, i, &one->view, &unused_x, &unused_y);
+  hl_sublight_view(shadow, i, &one->view);
   all->lookups[i] = (sublight_lookup){.map = hl_map_of_view(&one->view), .weight = {1, 1, 1}};
   all->lookups[i].map.stride = all->stride;
   for (int c = 0; c < all->channels; c++) {
@@ -135,21 +140,17 @@ static float *slab_copy(const sublights *sublights, const shadow_buffer *slab, s
 /* Finds the point, in the slab's pixels, at which a ray of the sub-light reaches a height. The ray goes
  * through the sub-light's pixel (at, at). Returns false if this point lies behind the sub-light or behind the
  * light's centre. */
-static bool slab_position(const sublight *sublight, const view *slab, vec3 normal, double height, double at,
+static bool slab_position(const view *sublight, const view *slab, vec3 normal, double height, double at,
                           double uv[2]) {
   vec3 start, way;
-  hl_view_ray(&sublight->view, at, at, &start, &way);
+  hl_view_ray(sublight, at, at, &start, &way);
   double climb = vec3_dot(way, normal), distance = (height - vec3_dot(start, normal)) / climb;
-  if (sublight->view.perspective && !(distance > 0)) return false;
+  if (sublight->perspective && !(distance > 0)) return false;
   return hl_view_project(slab, vec3_add(start, vec3_scale(way, distance)), uv);
 }
 
-/* Finds the number that is added before values are truncated in the current slab (`carry` of
- * sublight_field.h): the fractional part of a multiple of the golden ratio. So the numbers of any successive
- * slabs are spread evenly between 0 and 1. */
-static float carry_of_slab(const sublights *sublights, const sublight *sublight) {
-  double turn = sublights->slabs * 0.6180339887498949 +
-                (double)(sublight - sublights->sublight) / sublights->count;
+float hl_sublight_carry(int slabs, int i, int count) {
+  double turn = slabs * 0.6180339887498949 + (double)i / count;
   /* The carry keeps a distance from 0 and 1; so a whole number plus the carry is always truncated to the same
    * whole number. */
   return (float)(1.0 / 128 + (turn - floor(turn)) * 63 / 64);
@@ -160,34 +161,40 @@ static float carry_of_slab(const sublights *sublights, const sublight *sublight)
  * positions. */
 static const double FARTHEST_SHIFT = 1 << 20;
 
-/* Prepares a sub-light's job for a slab. Both views are parallel to the sheets and have the same axes, so the
- * slab's pixels are only scaled and shifted. */
-static void map_sublight(const sublights *sublights, sublight *sublight, const shadow_buffer *slab,
-                         vec3 normal, double height) {
+bool hl_sublight_place(const view *sublight, const view *slab, vec3 normal, double height,
+                       sublight_place *place) {
   const double far = 1024;
   double zero[2], other[2];
-  sublight->reaches = slab_position(sublight, &slab->view, normal, height, 0, zero) &&
-                      slab_position(sublight, &slab->view, normal, height, far, other);
-  sublight->job = (sublight_job){.slab_stride = slab->stride,
-                                 .rows = sublights->rows,
-                                 .slab_tiles_x = slab->tiles_x,
-                                 .slab_tiles_y = slab->tiles_y,
-                                 .slab_width = (float)slab->view.width,
-                                 .slab_height = (float)slab->view.height,
-                                 .stride = sublights->stride,
-                                 .tiles_x = sublights->tiles_x,
-                                 .carry = carry_of_slab(sublights, sublight),
-                                 .channels = sublights->channels};
-  for (int axis = 0; axis < 2 && sublight->reaches; axis++) {
+  *place = (sublight_place){0};
+  if (!slab_position(sublight, slab, normal, height, 0, zero) ||
+      !slab_position(sublight, slab, normal, height, far, other))
+    return false;
+  for (int axis = 0; axis < 2; axis++) {
     double scale = (other[axis] - zero[axis]) / far;
     if (fabs(scale - 1) < 1e-6) scale = 1;
-    sublight->job.scale[axis] = (float)scale;
-    sublight->job.shift[axis] = (float)zero[axis];
+    place->scale[axis] = (float)scale;
+    place->shift[axis] = (float)zero[axis];
   }
-  sublight->shifted = sublight->reaches && sublight->job.scale[0] == 1 && sublight->job.scale[1] == 1 &&
-                      fmax(fabs(zero[0]), fabs(zero[1])) < FARTHEST_SHIFT;
-  for (int axis = 0; axis < 2 && sublight->shifted; axis++)
-    sublight->job.half[axis] = (int)floor(2 * zero[axis] + 0.5);
+  place->shifted = place->scale[0] == 1 && place->scale[1] == 1 &&
+                   fmax(fabs(zero[0]), fabs(zero[1])) < FARTHEST_SHIFT;
+  for (int axis = 0; axis < 2 && place->shifted; axis++) place->half[axis] = (int)floor(2 * zero[axis] + 0.5);
+  return true;
+}
+
+/* Prepares a sub-light's job for a slab. */
+static void map_sublight(const sublights *sublights, sublight *sublight, const shadow_buffer *slab,
+                         vec3 normal, double height) {
+  sublight->reaches = hl_sublight_place(&sublight->view, &slab->view, normal, height, &sublight->place);
+  sublight->job = (sublight_job){
+      .slab_stride = slab->stride,
+      .rows = sublights->rows,
+      .slab_tiles_x = slab->tiles_x,
+      .slab_tiles_y = slab->tiles_y,
+      .place = sublight->place,
+      .stride = sublights->stride,
+      .tiles_x = sublights->tiles_x,
+      .carry = hl_sublight_carry(sublights->slabs, (int)(sublight - sublights->sublight), sublights->count),
+      .channels = sublights->channels};
   for (int c = 0; c < sublights->channels; c++) {
     for (int i = 0; i < SLAB_COPIES; i++)
       sublight->job.slab[c][i] = slab_copy(sublights, slab, SHADOW_TRANSMITTANCE, c, i);
@@ -257,7 +264,8 @@ static void bound_present(sublight_task *task) {
  * the slab. */
 static void sublight_tiles(const sublight *sublight, int axis, int low, int high, int tiles, int *first,
                            int *last) {
-  double scale = 1 / (double)sublight->job.scale[axis], shift = -(double)sublight->job.shift[axis] * scale;
+  double scale = 1 / (double)sublight->place.scale[axis],
+         shift = -(double)sublight->place.shift[axis] * scale;
   int unused;
   tiles_under((double)low * TILE, scale, shift, tiles, first, &unused);
   tiles_under((double)high * TILE, scale, shift, tiles, &unused, last);
@@ -271,7 +279,7 @@ static void lit_range(const sublight_task *task, const sublight *sublight, int y
   int first = 0, last = tiles - 1, low, high, unused;
   while (first <= last && lit[first] == 0) first++;
   while (last > first && lit[last] == 0) last--;
-  const double scale = (double)sublight->job.scale[0], shift = (double)sublight->job.shift[0];
+  const double scale = (double)sublight->place.scale[0], shift = (double)sublight->place.shift[0];
   tiles_under((double)first * TILE, scale, shift, task->slab->tiles_x, &low, &unused);
   tiles_under((double)last * TILE, scale, shift, task->slab->tiles_x, &unused, &high);
   if (*x0 < low) *x0 = low;
@@ -286,7 +294,7 @@ static void composite_row(const sublight_task *task, sublight *sublight, int y) 
   int y0, y1, first, last;
   sublight_tiles(sublight, 1, task->y0, task->y1, all->tiles_y, &first, &last);
   if (y < first || y > last) return;
-  if (sublight->shifted) {
+  if (sublight->place.shifted) {
     size_t row = (size_t)y * (size_t)all->tiles_x;
     first = task->x0, last = task->x1;
     lit_range(task, sublight, y, &first, &last);
@@ -295,13 +303,13 @@ static void composite_row(const sublight_task *task, sublight *sublight, int y) 
     return;
   }
   sublight_tiles(sublight, 0, task->x0, task->x1, all->tiles_x, &first, &last);
-  tiles_under((double)y * TILE, (double)sublight->job.scale[1], (double)sublight->job.shift[1], slab->tiles_y,
-              &y0, &y1);
+  tiles_under((double)y * TILE, (double)sublight->place.scale[1], (double)sublight->place.shift[1],
+              slab->tiles_y, &y0, &y1);
   for (int x = first; x <= last; x++) {
     size_t tile = (size_t)y * (size_t)all->tiles_x + (size_t)x;
     int x0, x1;
     if (sublight->lit[tile] == 0) continue;
-    tiles_under((double)x * TILE, (double)sublight->job.scale[0], (double)sublight->job.shift[0],
+    tiles_under((double)x * TILE, (double)sublight->place.scale[0], (double)sublight->place.shift[0],
                 slab->tiles_x, &x0, &x1);
     if (any_present(&sublight->job, x0, x1, y0, y1) && task->functions->composite(&sublight->job, x, y))
       sublight->touched[tile] = 1;
@@ -396,14 +404,20 @@ static void clear_row(void *data, size_t index, int worker) {
   }
 }
 
-/* Lit blocks are found once for a run of slabs. The first slab is a run of its own; each later run has
- * LIT_SLABS slabs. */
-enum { LIT_SLABS = 4 };
-static int run_of_slab(int slab) { return (slab + LIT_SLABS - 1) / LIT_SLABS + 1; }
+static sublight_map map_of_place(const sublight_place *place) {
+  return (sublight_map){{1 / (double)place->scale[0], 1 / (double)place->scale[1]},
+                        {(double)place->shift[0], (double)place->shift[1]}};
+}
 
-static sublight_map map_of_job(const sublight_job *job) {
-  return (sublight_map){{1 / (double)job->scale[0], 1 / (double)job->scale[1]},
-                        {(double)job->shift[0], (double)job->shift[1]}};
+bool hl_sublight_maps(const view *sublight, const view *slab, vec3 normal, double height, double spacing,
+                      sublight_maps *maps) {
+  sublight_place place;
+  const bool far = hl_sublight_place(sublight, slab, normal, height + (LIT_SLABS - 0.5) * spacing, &place);
+  maps->far = map_of_place(&place);
+  const bool near = hl_sublight_place(sublight, slab, normal, height + 0.5 * spacing, &place);
+  maps->near = map_of_place(&place);
+  maps->comes = far && !near;
+  return near;
 }
 
 /* Sets the sub-lights' maps for the first and the last slab of the next run. height: the height at which the
@@ -412,12 +426,8 @@ static void map_run(sublights *sublights, const shadow_buffer *slab, vec3 normal
                     double spacing) {
   for (int i = 0; i < sublights->count; i++) {
     sublight *sublight = &sublights->sublight[i];
-    map_sublight(sublights, sublight, slab, normal, height + (LIT_SLABS - 0.5) * spacing);
-    sublight->far = map_of_job(&sublight->job);
-    bool reached = sublight->reaches;
-    map_sublight(sublights, sublight, slab, normal, height + 0.5 * spacing);
-    sublight->near = map_of_job(&sublight->job);
-    sublight->comes = reached && !sublight->reaches;
+    sublight->reaches = hl_sublight_maps(&sublight->view, &slab->view, normal, height, spacing,
+                                         &sublight->maps);
   }
 }
 
@@ -436,8 +446,8 @@ static void advance_sublights(light_shadow *shadow, const occupancy *occupancy, 
                         .needed_until = shadow->sublights_until,
                         .slab_after = sheet + 1};
   hl_pool_run(pool, (size_t)slab->tiles_y, move_row, &task);
-  int run = run_of_slab(sublights->slabs++);
-  task.ends_run = run_of_slab(sublights->slabs) != run;
+  int run = hl_sublight_run(sublights->slabs++);
+  task.ends_run = hl_sublight_run(sublights->slabs) != run;
   bound_present(&task);
   if (task.x1 >= 0 || task.ends_run)
     hl_pool_run(pool, (size_t)sublights->count * (size_t)sublights->tiles_y, advance_row, &task);
@@ -452,20 +462,14 @@ static void advance_sublights(light_shadow *shadow, const occupancy *occupancy, 
  * distance. */
 enum { BLOCK_SPARE = 2 };
 
-/* The sub-light's blocks that lie under a tile of the slab: for each of the tile's four rows (or columns) of
- * blocks, the first and the last row (or column) of the sub-light's blocks. */
-typedef struct blocks_under {
-  int first[TILE / BLOCK], last[TILE / BLOCK];
-} blocks_under;
-
 /* Divides a line of pixels into `count` segments of `length` pixels. Returns the number of the segment that
  * holds a position; -1 before the first segment, `count` after the last one. */
 static int segment_of(double position, int length, int count) {
   return position < 0 ? -1 : position >= (double)length * count ? count : (int)position / length;
 }
 
-static blocks_under find_under(const sublight *sublight, int axis, int tile, int tiles) {
-  const sublight_map *near = &sublight->near, *far = &sublight->far;
+blocks_under hl_sublight_blocks(const sublight_maps *maps, int axis, int tile, int tiles) {
+  const sublight_map *near = &maps->near, *far = &maps->far;
   int end = tiles * (TILE / BLOCK);
   blocks_under under;
   for (int i = 0; i < TILE / BLOCK; i++) {
@@ -515,8 +519,8 @@ static uint32_t lit_by_blocks(const sublights *all, const sublight *sublight, co
 /* Finds the blocks of a slab's tile that the light of one sub-light reaches. Most tiles are lit everywhere or
  * nowhere, so these two cases are tested first. */
 static uint32_t lit_by_sublight(const sublights *all, const sublight *sublight, int tile_x, int tile_y) {
-  blocks_under columns = find_under(sublight, 0, tile_x, all->tiles_x),
-               rows = find_under(sublight, 1, tile_y, all->tiles_y);
+  blocks_under columns = hl_sublight_blocks(&sublight->maps, 0, tile_x, all->tiles_x),
+               rows = hl_sublight_blocks(&sublight->maps, 1, tile_y, all->tiles_y);
   int x0 = columns.first[0] / 4, x1 = columns.last[TILE / BLOCK - 1], y0 = rows.first[0] / 4,
       y1 = rows.last[TILE / BLOCK - 1];
   uint32_t any = 0, every = ALL_BLOCKS;
@@ -531,13 +535,13 @@ static uint32_t lit_by_sublight(const sublights *all, const sublight *sublight, 
 
 void hl_sublights_find_lit(const sublights *sublights, shadow_buffer *slab, size_t tile) {
   int x = (int)(tile % (size_t)slab->tiles_x), y = (int)(tile / (size_t)slab->tiles_x);
-  uint32_t run = (uint32_t)run_of_slab(sublights->slabs);
+  uint32_t run = (uint32_t)hl_sublight_run(sublights->slabs);
   if (sublights->found[tile] == run) return;
   uint32_t lit = sublights->slabs == 0 ? ALL_BLOCKS : 0;
   for (int i = 0; i < sublights->count && lit != ALL_BLOCKS; i++) {
     const sublight *sublight = &sublights->sublight[i];
     if (sublight->reaches) lit |= lit_by_sublight(sublights, sublight, x, y);
-    else if (sublight->comes) lit = ALL_BLOCKS;
+    else if (sublight->maps.comes) lit = ALL_BLOCKS;
   }
   slab->tile_lit[tile] = (uint16_t)lit;
   sublights->found[tile] = run;
@@ -557,11 +561,10 @@ static void plan_sublights(light_shadow *shadow) {
   hl_shadow_view(setup->source, setup->sheets->normal, &plan->extent, &plan->view);
   sublights *all = shadow->state;
   int side = setup->settings->light_samples;
-  view unused;
   all->count = side * side;
   all->channels = setup->channels;
   all->kinds = plan->outside ? 2 : 1;
-  for (int i = 0; i < all->count; i++) view_of_sublight(shadow, i, &unused, &all->tiles_x, &all->tiles_y);
+  find_tiles(shadow, all);
   shadow->sublight_count = all->count;
   shadow->sublight_tiles_x = all->tiles_x;
   shadow->sublight_tiles_y = all->tiles_y;

@@ -9,7 +9,7 @@
 #ifndef HL_SHADOW_SUBLIGHTS_SUBLIGHTS_H
 #define HL_SHADOW_SUBLIGHTS_SUBLIGHTS_H
 
-#include "shadow/shadow_buffer.h"
+#include "shadow/shadow_method.h"
 #include "shadow_sublights/sublight_field.h"
 
 enum { SUBLIGHT_REACH = 31 /* number of pixels beyond a tile of the slab's buffer that may be read */ };
@@ -19,6 +19,13 @@ enum { SUBLIGHT_REACH = 31 /* number of pixels beyond a tile of the slab's buffe
 typedef struct sublight_map {
   double scale[2], shift[2];
 } sublight_map;
+
+/* The maps of a sub-light for a run of slabs. */
+typedef struct sublight_maps {
+  sublight_map near, far; /* near: the map for the first slab of the run; far: the map for the last slab */
+  bool comes; /* whether the sub-light lies within the run: its rays reach the last slab of the run, but not
+               * the first slab */
+} sublight_maps;
 
 /* One sub-light with its buffer. */
 typedef struct sublight {
@@ -34,11 +41,8 @@ typedef struct sublight {
   sublight_job job;       /* the job that attenuates the sub-light's buffer by the current slab */
   bool reaches;           /* whether the slab lies beyond the sub-light, so that the sub-light's rays reach
                            * the slab */
-  bool shifted;           /* whether the scale of `job` is 1, so that the slab is only shifted */
-  sublight_map near, far; /* near: the sub-light's map for the first slab of the next run of slabs; far: its
-                           * map for the last slab of the same run */
-  bool comes; /* whether the sub-light lies within the next run of slabs: its rays reach the last slab of the
-               * run, but not the first slab */
+  sublight_place place;   /* the place of the current slab in the sub-light's view */
+  sublight_maps maps;     /* of the next run of slabs */
 } sublight;
 
 typedef struct sublights {
@@ -58,6 +62,40 @@ typedef struct sublights {
   uint32_t *found; /* [tiles of the slab]; for each tile, the run of slabs for which the tile's lit blocks
                     * were found last; if 0, they were never found */
 } sublights;
+
+/* ---- for a device ---- */
+
+/* Lit blocks are found once for a run of slabs. The first slab is a run of its own; each later run has
+ * LIT_SLABS slabs. slab: a slab's number among the slabs that the light reaches, from 0. */
+enum { LIT_SLABS = 4 };
+static inline int hl_sublight_run(int slab) { return (slab + LIT_SLABS - 1) / LIT_SLABS + 1; }
+
+/* Makes the view of sub-light i of a planned shadow. */
+void hl_sublight_view(const light_shadow *shadow, int i, view *view);
+
+/* Finds the place of a slab in a sub-light's view. Both views are parallel to the sheets and have the same
+ * axes, so the slab's pixels are only scaled and shifted. slab: the view of the light's centre. height: of
+ * the slab's middle. Returns false if the slab lies behind the sub-light or behind the light's centre. */
+bool hl_sublight_place(const view *sublight, const view *slab, vec3 normal, double height,
+                       sublight_place *place);
+
+/* Finds the number that is added before values are truncated in a slab (`carry` of sublight_field.h): the
+ * fractional part of a multiple of the golden ratio. So the numbers of any successive slabs are spread evenly
+ * between 0 and 1. slabs: the number of slabs before the slab. i: the sub-light's number among `count`. */
+float hl_sublight_carry(int slabs, int i, int count);
+
+/* Finds a sub-light's maps for the run of slabs that begins at a height. Returns whether the sub-light's rays
+ * reach the run's first slab. */
+bool hl_sublight_maps(const view *sublight, const view *slab, vec3 normal, double height, double spacing,
+                      sublight_maps *maps);
+
+/* The sub-light's blocks that lie under a tile of the slab: for each of the tile's four rows (or columns) of
+ * blocks, the first and the last row (or column) of the sub-light's blocks. */
+typedef struct blocks_under {
+  int32_t first[TILE / BLOCK], last[TILE / BLOCK];
+} blocks_under;
+/* tiles: the number of the sub-light's tiles along the axis. */
+blocks_under hl_sublight_blocks(const sublight_maps *maps, int axis, int tile, int tiles);
 
 /* Sets slab->tile_lit of a tile: the blocks of the next slab that light of some sub-light still reaches. Only
  * one task works on a tile. */

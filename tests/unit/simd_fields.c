@@ -138,8 +138,6 @@ void test_fields(void **unused) {
                                     hl_blur_box(random_between(&seed, 1, 2 * BLUR_GREATEST_REACH)),
                                     ALL_ROWS};
     s.sublight = (sublight_job){.slab_stride = FIELD,
-                                .slab_width = 60,
-                                .slab_height = 50,
                                 .stride = FIELD,
                                 .rows = s.rows,
                                 .slab_tiles_x = 4,
@@ -148,11 +146,11 @@ void test_fields(void **unused) {
                                 .carry = random_between(&seed, 0.01f, 0.99f),
                                 .channels = 1 + 2 * (round % 2)};
     for (int axis = 0; axis < 2; axis++) {
-      s.sublight.scale[axis] = round % 3 == 0 ? 1
-                                              : random_between(&seed, round % 3 == 1 ? 0.8f : 0.3f,
-                                                               round % 3 == 1 ? 1.25f : 3);
-      s.sublight.shift[axis] = random_between(&seed, -20, 20);
-      s.sublight.half[axis] = (int)(2 * s.sublight.shift[axis]);
+      s.sublight.place.scale[axis] = round % 3 == 0 ? 1
+                                                    : random_between(&seed, round % 3 == 1 ? 0.8f : 0.3f,
+                                                                     round % 3 == 1 ? 1.25f : 3);
+      s.sublight.place.shift[axis] = random_between(&seed, -20, 20);
+      s.sublight.place.half[axis] = (int)(2 * s.sublight.place.shift[axis]);
     }
     for (int c = 0; c < HL_CHANNELS; c++) {
       for (int i = 0; i < SLAB_COPIES; i++) s.sublight.slab[c][i] = &s.a[MARGIN + c][MARGIN + 5 * i];

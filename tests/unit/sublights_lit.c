@@ -47,10 +47,10 @@ static void make_case(lit_case *c, uint32_t *seed) {
     sublight->reaches = i < 2;
     sublight->lit = c->flags[i];
     for (int axis = 0; axis < 2; axis++) {
-      sublight->near.scale[axis] = random_between(seed, 0, 1) < 0.5 ? 1 : random_between(seed, 0.8, 1.3);
-      sublight->far.scale[axis] = sublight->near.scale[axis];
-      sublight->near.shift[axis] = random_between(seed, -30, 20);
-      sublight->far.shift[axis] = sublight->near.shift[axis] + random_between(seed, -3, 3);
+      sublight->maps.near.scale[axis] = random_between(seed, 0, 1) < 0.5 ? 1 : random_between(seed, 0.8, 1.3);
+      sublight->maps.far.scale[axis] = sublight->maps.near.scale[axis];
+      sublight->maps.near.shift[axis] = random_between(seed, -30, 20);
+      sublight->maps.far.shift[axis] = sublight->maps.near.shift[axis] + random_between(seed, -3, 3);
     }
     for (int tile = 0; tile < SUBLIGHT_TILES * SUBLIGHT_TILES; tile++)
       c->flags[i][tile] = random_between(seed, 0, 1) < 0.7
@@ -79,8 +79,8 @@ static bool is_under(const sublight *sublight, const sublight_map *map, int x, i
 
 static bool is_lit(const lit_case *c, int x, int y, double around) {
   for (int i = 0; i < SUBLIGHTS; i++)
-    if (c->sublight[i].reaches && (is_under(&c->sublight[i], &c->sublight[i].near, x, y, around) ||
-                                   is_under(&c->sublight[i], &c->sublight[i].far, x, y, around)))
+    if (c->sublight[i].reaches && (is_under(&c->sublight[i], &c->sublight[i].maps.near, x, y, around) ||
+                                   is_under(&c->sublight[i], &c->sublight[i].maps.far, x, y, around)))
       return true;
   return false;
 }
@@ -118,7 +118,7 @@ static void test_when_it_is_found(void **state) {
   c.sublights.slabs = 1;
   hl_sublights_find_lit(&c.sublights, &c.slab, 0);
   assert_int_equal(c.tile_lit[0], 0);
-  c.sublight[0].comes = true; /* found anew with the next run only */
+  c.sublight[0].maps.comes = true; /* found anew with the next run only */
   hl_sublights_find_lit(&c.sublights, &c.slab, 0);
   assert_int_equal(c.tile_lit[0], 0);
   c.sublights.slabs = 5;
