@@ -220,6 +220,7 @@ static void tell_of_log(gpu_device *device, const cuda_library *api, cuda_object
   size_t size = 0;
   char *log = api->nvrtcGetProgramLogSize(program, &size) == 0 ? calloc(1, size + 1) : NULL;
   if (log != NULL) api->nvrtcGetProgramLog(program, log);
+  if (log != NULL) hl_gpu_make_line(log);
   snprintf(device->problem, sizeof device->problem, "nvrtc does not compile the kernels: %.300s",
            log == NULL ? "" : log);
   free(log);

@@ -101,4 +101,7 @@ extern const gpu_driver hl_cuda_driver, hl_opencl_driver;
 /* Opens the first shared library of a list of names that the system has. names: ends with null. */
 void *hl_load_library(const char *const *names, char *problem);
 
+/* Makes one line of ASCII of a driver's text: other bytes become spaces. */
+void hl_gpu_make_line(char *text);
+
 #endif

@@ -24,6 +24,11 @@ void *hl_load_library(const char *const *names, char *problem) {
   return NULL;
 }
 
+void hl_gpu_make_line(char *text) {
+  for (; *text != '\0'; text++)
+    if (*text < ' ' || *text > '~') *text = ' ';
+}
+
 static bool find_of_driver(const gpu_driver *driver, gpu_found *found, void *data, char *problem) {
   void *library;
   gpu_device_info info;

@@ -195,9 +195,10 @@ static bool open_opencl(void *library, int index, gpu_device *device) {
     return false;
   }
   state->context = api->clCreateContext(NULL, 1, &state->device, NULL, NULL, &code);
-  if (!fails(device, code, "opening"))
+  if (!fails(device, code, "opening")) {
     state->queue = api->clCreateCommandQueue(state->context, state->device, CL_QUEUE_PROFILING_ENABLE, &code);
-  if (state->queue != NULL && !fails(device, code, "opening")) return true;
+    if (!fails(device, code, "opening")) return true;
+  }
   close_opencl(device);
   return false;
 }
@@ -235,6 +236,7 @@ static bool compile_opencl(gpu_device *device, const char *text, const char *con
   if (code != 0) {
     char log[300] = "";
     api->clGetProgramBuildInfo(program, state->device, CL_PROGRAM_BUILD_LOG, sizeof log - 1, log, NULL);
+    hl_gpu_make_line(log);
     snprintf(device->problem, sizeof device->problem, "%.60s does not compile the kernels: %.250s",
              device->info.name, log);
   }
