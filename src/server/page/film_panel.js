@@ -6,7 +6,8 @@ import { reshaped } from "./camera.js";
 import { button, isActive, make, row, section, select, toggle } from "./controls.js";
 import { download, fileWord, quoted, sceneText, stem } from "./export.js";
 import { placesOf } from "./light.js";
-import { CAMERA, FORMATS, MOST_FPS, MOST_FRAMES, isKeyable, joined, keyTexts, readFilm, stretched, trackName, trackOf, valueAt, withKey } from "./timeline.js";
+import { difference } from "./link.js";
+import { CAMERA, FORMATS, MOST_FPS, MOST_FRAMES, isKeyable, joined, keyTexts, readFilm, stretched, trackName, trackOf, valueAt, withKey, withValue } from "./timeline.js";
 import { timelineStrip } from "./timeline_strip.js";
 
 const ASK_EVERY = 300; // milliseconds between questions for the film's progress
@@ -46,9 +47,12 @@ class Film {
   #edits = 0; // number of changes by a person; a new window size is none
   #asking = false;
   #again = false;
+  #seen; // the store's scene at its last change
+  #own = new Set(); // of what the film changes: what a person has changed since the frame's scene was asked for, as paths
 
   constructor(viewer) {
     this.#viewer = viewer;
+    this.#seen = viewer.store.scene;
     this.#take();
     viewer.store.listen((...change) => this.#follow(...change));
   }
@@ -72,10 +76,15 @@ class Film {
   // A track of a number for which the scene has no place, as of a light that was removed.
   get #gone() { return this.tracks.find(({ path }) => path !== CAMERA && !hasPlace(this.scene, path)); }
 
+  // The paths of all that the film changes.
+  get #changes() { return [...this.tracks.map(({ path }) => path), ...(this.turns ? [CAMERA] : [])]; }
+
   get #isEmpty() { return this.tracks.length === 0 && !this.turns; }
 
   // A turn starts from the camera that a person has chosen, not from the place where the turn has taken it.
   #follow(scene, name, frame) {
+    const before = this.#seen;
+    this.#seen = scene;
     if (frame !== undefined) {
       this.#followHistory(scene, frame);
       return;
@@ -90,6 +99,7 @@ class Film {
     if (name !== "size") {
       this.#edits++;
       this.playing = false;
+      this.#changes.filter((path) => difference(valueAt(before, path), valueAt(scene, path)) !== undefined).forEach((path) => this.#own.add(path));
     }
     this.scene = !this.turns || name === "camera" ? scene : { ...scene, camera: this.scene.camera };
     this.changed();
@@ -142,28 +152,27 @@ class Film {
 
   // Shows the scene of the film's frame. Of frames that are asked for meanwhile, only the last one is shown.
   async #showScene() {
-    const { channel, store, report, waits } = this.#viewer, gone = this.#gone;
+    const { channel, store, waits } = this.#viewer;
     if (!channel.sceneAt) return;
-    if (gone !== undefined) {
-      this.playing = false;
-      report(`The scene no longer has what this track of the film changes: ${trackName(gone.path)}.`);
-      return;
-    }
+    this.#own.clear();
     this.#again = store.isDue = true;
     if (this.#asking) return;
     this.#asking = true;
     await waits(this.#takeScenes());
   }
 
-  // Takes the scene of the frame as long as another one is asked for. No picture is final meanwhile.
+  // Takes the scene of the frame, and asks for it again as long as another frame is wanted or the scene is changed meanwhile. No picture is
+  // final until then.
   async #takeScenes() {
     const { channel, store, report } = this.#viewer;
     while (this.#again) {
       this.#again = false;
-      const before = this.#edits;
+      const before = this.#edits, gone = this.#gone;
       try {
+        if (gone !== undefined) throw new Error(`The scene no longer has what this track of the film changes: ${trackName(gone.path)}.`);
         const at = await channel.sceneAt(this.scene, this.wanted, this.frame);
-        if (this.#edits === before) store.change("time", ({ image: { width, height } }) => ({ volumes: [], ...at, image: { ...at.image, width, height } }));
+        if (this.#edits === before) store.change("time", (scene) => this.#withOwn({ volumes: [], ...at }, scene));
+        else this.#again = true;
       } catch (error) {
         this.playing = false;
         report(error.message);
@@ -171,6 +180,13 @@ class Film {
     }
     this.#asking = store.isDue = false;
     this.changed();
+  }
+
+  // The frame's scene in the picture's size, with what a person has changed since it was asked for. This is seen until the next frame, as
+  // all changes between keys are.
+  #withOwn(at, now) {
+    const { width, height } = now.image, sized = { ...at, image: { ...at.image, width, height } };
+    return [...this.#own].filter((path) => valueAt(now, path) !== undefined).reduce((scene, path) => withValue(scene, path, valueAt(now, path)), sized);
   }
 
   async play() {

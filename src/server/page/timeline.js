@@ -12,6 +12,13 @@ const VECTORS = /(^|[._])(ambient|background|albedo|color|direction|normal|axis|
 // What lies at a path of a scene: a number, a vector, or something without a track.
 export const valueAt = (scene, path) => path.split(".").reduce((at, key) => at?.[key], scene);
 
+// The scene with another value there.
+export function withValue(scene, path, value) {
+  const [key, ...rest] = path.split("."), copy = Array.isArray(scene) ? [...scene] : { ...scene };
+  copy[key] = rest.length > 0 ? withValue(copy[key], rest.join("."), value) : value;
+  return copy;
+}
+
 // The path of the track of a number.
 export function trackOf(scene, path) {
   const whole = path.replace(/\.[012]$/, "");
