@@ -172,6 +172,10 @@ def rigs(browser):
     check(names == ["studio", "raking", "rim", "overcast"], f"four rigs: {names}")
     browser.wait(f"{pictures_of(browser, 'Light rigs')}.every((canvas) => canvas.dataset.drawn === '')")
     first = scene_of(browser)["lights"]
+    columns = browser.run("""import('./gallery.js').then(({ evenColumns }) => [evenColumns(4, 315), evenColumns(4, 250), evenColumns(7, 315), evenColumns(5, 320), evenColumns(3, 900), evenColumns(2, 50)])""")
+    check(columns == [4, 2, 4, 3, 3, 1], f"rows are as even as the width allows: {columns}")
+    rows = browser.run("""[...document.querySelectorAll('[aria-label="Light rigs"] button')].map((b) => b.getBoundingClientRect()).map(({ top, left }) => [Math.round(top), Math.round(left)])""")
+    check(len({top for top, _ in rows}) == 1 and len({left for _, left in rows}) == 4, f"four rigs lie in one row: {rows}")
 
     def take(name):
         before = scene_of(browser)["lights"]

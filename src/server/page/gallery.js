@@ -7,6 +7,7 @@ import { difference } from "./link.js";
 
 const SIDES = { width: 112, height: 80 }; // pixels
 const STEP = 2; // voxels between sheets
+const LEAST_WIDTH = 76; // pixels of a choice on the page, with the gap beside it
 
 const LANE = "-small";
 
@@ -27,6 +28,12 @@ export function smallPictures(channel, store) {
   };
 }
 
+// The number of columns with which choices fill as few rows as the width allows, and these as evenly as can be.
+export function evenColumns(count, width) {
+  const most = Math.max(1, Math.floor(width / LEAST_WIDTH)), rows = Math.max(1, Math.ceil(count / most));
+  return Math.max(1, Math.ceil(count / rows));
+}
+
 // names: the choices. made(name) resolves to the scene with one of them; take(name, scene) takes it; isTaken(scene of a choice): whether
 // the viewer shows it now; seen(scene of a choice): the part of it that makes its picture another one. Returns { element, update, atRest }: atRest() is called when the picture has come to rest.
 export function gallery({ label, names, viewer: { store, smallPicture, failed, frames, waits }, made, take, isTaken, seen }) {
@@ -37,6 +44,7 @@ export function gallery({ label, names, viewer: { store, smallPicture, failed, f
     return make("button", { type: "button", class: "choice", "aria-pressed": "false", onclick: () => choose(name) }, canvas, make("span", {}, name));
   });
   const element = make("div", { class: "gallery", role: "group", "aria-label": label }, ...buttons);
+  new ResizeObserver(([{ contentRect: { width } }]) => { element.style.gridTemplateColumns = `repeat(${evenColumns(names.length, width)}, minmax(0, 1fr))`; }).observe(element);
   let busy = false, shown = null, drawn = 0; // drawn: number of the pictures that are there of the scene `shown`
 
   async function choose(name) {
