@@ -261,6 +261,10 @@ def labels_and_isolines(browser):
     value, pictured = browser.run("(({ values, pictured }) => [values, pictured].map((all) => Math.max(...all)))(halflight.slices.shown('axial'))")
     check(value == 3000 and 2500 < pictured < 2900, f"isolines are of smoothed values: {value} {pictured}")
     shot(browser, "labels")
+    for title in ("Isosurfaces", "Transfer function"):
+        open_section(browser, title)
+        told = browser.run("document.querySelector('details[open] .smoothed:not([hidden])')?.textContent")
+        check(told is not None and told.endswith(" to 3000."), f"{title}: the range of the file's values is told beside that of the smoothed ones: {told}")
     browser.run("halflight.store.undo()")
 
 

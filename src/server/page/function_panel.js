@@ -4,6 +4,7 @@
 import { hexOf, linearOf } from "./color.js";
 import { button, color, isActive, make, row, section, select, slider } from "./controls.js";
 import { FunctionCanvas } from "./function_canvas.js";
+import { smoothedLine } from "./histogram.js";
 import { byGradient, planePanel } from "./plane_panel.js";
 import { colormapOf, isPlane, isProjection, movePoint, moveStop, rangeOf, recolorStop, stretched, withColormap } from "./transfer_function.js";
 
@@ -120,7 +121,7 @@ export function functionPanel({ store, start, current, channel, failed, waits })
     if (ofTwo) {
       const plane = planePanel({ store, start, current, get, set });
       const back = button("by value", () => (store.aside(key()) ? set(store.aside(key()), "by value") : applyPreset("automatic")), { title: "The line over the values again" });
-      body.replaceChildren(...plane.elements, presets.element, row("", back));
+      body.replaceChildren(...plane.elements, smoothedLine(about), presets.element, row("", back));
       parts = [...plane.parts, presets];
       parts.forEach((part) => part.update());
       return;
@@ -143,7 +144,7 @@ export function functionPanel({ store, start, current, channel, failed, waits })
       button("all values", () => { canvas.shown = range; }),
       button("range", () => { canvas.shown = rangeOf(get()); }),
       gradient));
-    body.replaceChildren(canvas.element, chosen.element, density.element, maps.element, presets.element, ends.element, zoomed);
+    body.replaceChildren(canvas.element, smoothedLine(about), chosen.element, density.element, maps.element, presets.element, ends.element, zoomed);
     parts = [{ update: () => canvas.draw() }, chosen, density, maps, presets, ends, { update: () => { gradient.hidden = isProjection(store.scene); } }];
     parts.forEach((part) => part.update());
   }

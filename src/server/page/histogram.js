@@ -1,7 +1,7 @@
 // A volume's histogram: bars whose heights are logarithms, so that rare values are seen beside common ones;
 // and the axis of values below them.
 
-import { shortNumber } from "./controls.js";
+import { make, shortNumber } from "./controls.js";
 
 // counts: of equal bins over range. x(value): the place of a value. left, right: of the plot. base: the bars'
 // lower end. height: of the tallest bar.
@@ -37,6 +37,12 @@ export function drawValueAxis(context, { range: [low, high], x, left, right, y, 
     context.stroke();
     context.fillText(text, Math.min(Math.max(at - half, left - 8), right + 8 - 2 * half), y + TICK_LINE + 1);
   }
+}
+
+// A line for panels of the values that a picture shows: where the volume is smoothed, these are not the file's. about: of start.json.
+export function smoothedLine({ range, unsmoothed }) {
+  const told = (ends) => ends.map(shortNumber).join(" to ");
+  return make("p", { class: "facts smoothed", hidden: !unsmoothed }, unsmoothed ? `The picture has smoothed values, ${told(range)}. The file's are ${told(unsmoothed.range)}.` : "");
 }
 
 // A canvas, emptied and as large as it is shown; null: it is not shown.

@@ -3,7 +3,7 @@
 import { hexOf, linearOf } from "./color.js";
 import { color, make, section, shortNumber, slider, tabs, toggle } from "./controls.js";
 import { followDrag, reachOf } from "./drag.js";
-import { blankContext, drawBars, drawValueAxis } from "./histogram.js";
+import { blankContext, drawBars, drawValueAxis, smoothedLine } from "./histogram.js";
 import { isProjection, opacityAt, rangeOf } from "./transfer_function.js";
 
 const HEIGHT = 88, AXIS = 16, MARGIN = 9, GRIP = 10; // pixels
@@ -144,8 +144,8 @@ export function surfacePanel({ store, start, current, failed, channel, waits }) 
       toggle({ label: "Surfaces alone", get: () => isClear(volume().transfer_function), set: setAlone }),
       drawing,
     ];
-    const none = make("p", { class: "facts" }, `+ adds the surface of one value, of ${about().range.map(shortNumber).join(" to ")}.`);
-    body.replaceChildren(list.element, none, drawing.element, ...parts.slice(0, 4).map((part) => part.element));
+    const none = make("p", { class: "facts" }, `+ adds the surface of one value${about().unsmoothed ? "" : `, of ${about().range.map(shortNumber).join(" to ")}`}.`);
+    body.replaceChildren(list.element, none, drawing.element, smoothedLine(about()), ...parts.slice(0, 4).map((part) => part.element));
     parts.unshift({ element: none, update: () => {} });
     update();
   }
