@@ -79,11 +79,11 @@ hl_status hl_scene_frame(const hl_scene_description *description, hl_camera *cam
 
 /* Chooses the key light and, where the look asks for it, a fill light. *count: 1 or 2. */
 static void choose_lights(const hl_look *look, hl_light lights[2], size_t *count) {
-  hl_scene_warm_key_light(look->key, &lights[0]);
-  if (look->aside) hl_light_direction_beside(ASIDE_AZIMUTH, ASIDE_ELEVATION, lights[0].direction);
-  *count = look->fill > 0 ? 2 : 1;
+  hl_scene_warm_key_light(look->light.key, &lights[0]);
+  if (look->light.aside) hl_light_direction_beside(ASIDE_AZIMUTH, ASIDE_ELEVATION, lights[0].direction);
+  *count = look->light.fill > 0 ? 2 : 1;
   hl_scene_fill_light(&lights[1]);
-  lights[1].intensity = look->fill;
+  lights[1].intensity = look->light.fill;
 }
 
 /* Returns true if the memory limit leaves room for a number of bytes beside the voxels and the copy of them
@@ -250,7 +250,7 @@ static hl_status make_scene_of(hl_context *context, hl_volume *volume, const cha
     choose_lights(look, lights, &description.light_count);
     description.lights = lights;
     if (!look->on_black) hl_scene_choose_background(&description);
-    hl_scene_choose_sky(look->sky, &description);
+    hl_scene_choose_sky(look->light.sky, &description);
     description.render.kernel = labelled ? HL_KERNEL_BSPLINE : look->kernel; /* smooth labels are splines */
     status = expose(look, &analysis, lights, &description, error);
     if (!has_room(volume, HL_ROOM_FOR_SKY)) hl_scene_level_sky(&description);

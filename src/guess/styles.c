@@ -113,16 +113,24 @@ static void write_vessels(hl_function_writer *w) {
 
 /* Rows are as in looks.c. */
 static const hl_look styles[] = {
-    {"surface", write_surface, HL_SHADING_PHONG, HL_KERNEL_BSPLINE, 1.35, 0.06, 0.95, 0.72, false,
-     "translucent", false, false},
-    {"translucent", write_translucent, HL_SHADING_PHONG, HL_KERNEL_BSPLINE, 1.40, 0.25, 0.95, 0.72, false,
-     "surface", false, false},
-    {"xray", write_xray, HL_SHADING_FLAT, HL_KERNEL_BSPLINE, 1.20, 0, 0, 0, true, "translucent", false,
-     false},
-    {"smoke", write_smoke, HL_SHADING_NONE, HL_KERNEL_BSPLINE, 1.35, 0, 0.45, 0, false, "surface", true,
-     false},
-    {"vessels", write_vessels, HL_SHADING_PHONG, HL_KERNEL_BSPLINE, 1.45, 0.15, 0.90, 0.75, true, "surface",
-     false, false},
+    {"surface", write_surface, HL_SHADING_PHONG, HL_KERNEL_BSPLINE, HL_LIGHT_OF_SURFACES, 0.72, false,
+     "translucent", false, "surface"},
+    {"translucent", write_translucent, HL_SHADING_PHONG, HL_KERNEL_BSPLINE, HL_LIGHT_OF_SHELLS, 0.72, false,
+     "surface", false, "translucent"},
+    {"xray",
+     write_xray,
+     HL_SHADING_FLAT,
+     HL_KERNEL_BSPLINE,
+     {1.20, 0, 0, false},
+     0,
+     true,
+     "translucent",
+     false,
+     "xray"},
+    {"smoke", write_smoke, HL_SHADING_NONE, HL_KERNEL_BSPLINE, HL_LIGHT_OF_MEDIA, 0, false, "surface", false,
+     "smoke"},
+    {"vessels", write_vessels, HL_SHADING_PHONG, HL_KERNEL_BSPLINE, HL_LIGHT_OF_SURFACES, 0.75, true,
+     "surface", false, "vessels"},
 };
 
 enum { STYLES = sizeof styles / sizeof *styles };
@@ -136,8 +144,9 @@ const hl_look *hl_style_find(const char *name) {
 }
 
 void hl_style_write(const hl_look *style, const hl_look *base, hl_function_writer *w) {
+  const bool is_own = base->style != NULL && strcmp(base->style, style->name) == 0;
   base->write(w);
-  if (w->analysis->kind != HL_DATA_CONSTANT) style->write(w);
+  if (w->analysis->kind != HL_DATA_CONSTANT && !is_own) style->write(w);
 }
 
 hl_status hl_style_named(const char *name, const hl_look **style, hl_error *error) {

@@ -13,7 +13,7 @@ const hl_look *hl_style_find(const char *name);
 hl_status hl_style_named(const char *name, const hl_look **style, hl_error *error);
 
 /* Writes a style's opacities. The colours are the colours of the look that suits the volume (base), unless
- * the style has colours of its own. */
+ * the style has colours of its own. If the style is the look that suits the volume, that look is written. */
 void hl_style_write(const hl_look *style, const hl_look *base, hl_function_writer *w);
 
 #endif

@@ -616,6 +616,40 @@ static void looks_by_name(void **state) {
   hl_context_destroy(context);
 }
 
+/* A look that the data have by themselves makes the same scene if it is asked for by its name. */
+static void own_looks_by_name_change_nothing(void **state) {
+  (void)state;
+  static const struct {
+    double (*each)(int, int, int);
+    const char *look;
+  } cases[] = {{puff, "smoke"}, {angiogram, "vessels"}};
+  hl_context *context = make_context();
+  for (size_t n = 0; n < sizeof cases / sizeof *cases; n++) {
+    hl_scene *scenes[2] = {NULL, NULL};
+    fill(cases[n].each);
+    hl_volume *volume = make_volume(context, N, values);
+    volume->says_fog = cases[n].each == puff;
+    assert_int_equal(hl_scene_for_volume(context, volume, NULL, &scenes[0], NULL), HL_OK);
+    assert_int_equal(hl_scene_for_volume_look(context, volume, NULL, cases[n].look, &scenes[1], NULL), HL_OK);
+    const hl_scene_description *a = hl_scene_describe(scenes[0]), *b = hl_scene_describe(scenes[1]);
+    const hl_transfer_function *f = &a->volumes[0].transfer_function, *g = &b->volumes[0].transfer_function;
+    assert_int_equal(f->opacity_count, g->opacity_count);
+    assert_memory_equal(f->opacity, g->opacity, f->opacity_count * sizeof *f->opacity);
+    assert_memory_equal(f->color, g->color, f->color_count * sizeof *f->color);
+    assert_int_equal(a->light_count, b->light_count);
+    for (size_t l = 0; l < a->light_count; l++) {
+      assert_true(a->lights[l].intensity == b->lights[l].intensity);
+      assert_memory_equal(a->lights[l].direction, b->lights[l].direction, sizeof a->lights[l].direction);
+    }
+    assert_true(a->sky.strength == b->sky.strength);
+    hl_scene_release(scenes[0]);
+    hl_scene_release(scenes[1]);
+    hl_volume_release(volume);
+  }
+  assert_int_equal(hl_context_memory_held(context), 0);
+  hl_context_destroy(context);
+}
+
 int main(void) {
   const struct CMUnitTest tests[] = {
       cmocka_unit_test(kinds_are_told_apart),
@@ -637,6 +671,7 @@ int main(void) {
       cmocka_unit_test(light_is_warm_and_shade_is_cool),
       cmocka_unit_test(boundaries_are_no_materials),
       cmocka_unit_test(looks_by_name),
+      cmocka_unit_test(own_looks_by_name_change_nothing),
   };
   return cmocka_run_group_tests(tests, NULL, NULL);
 }
