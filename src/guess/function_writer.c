@@ -67,8 +67,7 @@ static void color_materials(hl_function_writer *w) {
   }
 }
 
-/* Returns whether the dense matter of scanned objects is metal: it is far brighter than all other matter. */
-static bool holds_metal(const hl_data_analysis *a) {
+bool hl_data_holds_metal(const hl_data_analysis *a) {
   return a->material_count <= 1 && a->dense_mean > METAL * a->mean;
 }
 
@@ -104,7 +103,7 @@ void hl_write_matter(hl_function_writer *w) {
                        {a->light_mean, {0.64, 0.57, 0.46}},
                        {dense_of(a), {0.97, 0.96, 0.94}},
                        {top_of(a), {0.97, 0.97, 0.97}}};
-  if (holds_metal(a)) write_metal(w);
+  if (hl_data_holds_metal(a)) write_metal(w);
   else if (hl_data_is_one_material(a)) write_solid(w, one, sizeof one / sizeof *one);
   else write_solid(w, two, sizeof two / sizeof *two);
   if (a->material_count > 1) color_materials(w);

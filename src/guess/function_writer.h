@@ -24,6 +24,9 @@ void hl_add_color(hl_function_writer *w, double distance, const double color[3])
 void hl_add_colormap(hl_function_writer *w, const char *name, double from, double to, double start,
                      double end);
 
+/* Returns whether the dense matter of scanned objects is metal: it is far brighter than all other matter. */
+bool hl_data_holds_metal(const hl_data_analysis *analysis);
+
 /* The opacity per voxel edge that adds up to an optical depth across the objects. */
 double hl_opacity_for(const hl_data_analysis *analysis, double optical_depth);
 

@@ -94,13 +94,17 @@ static void write_smoke(hl_function_writer *w) {
 
 /* Writes only the brightest matter, in colours from red to cream, as vessels with a contrast medium show it.
  * If vessels were found, opacity begins a little below their values, because voxels at their edges also
- * contain the matter around them. */
+ * contain the matter around them. Metal, such as a stent, is brighter than vessels: they are then the solid
+ * matter below metal. */
 static void write_vessels(hl_function_writer *w) {
   static const double wall[3] = {0.42, 0.03, 0.02}, blood[3] = {0.75, 0.10, 0.05},
                       bright[3] = {0.95, 0.75, 0.50};
   const hl_data_analysis *a = w->analysis;
-  double from = a->vessels > 0 ? 0.9 * a->vessels : inner_of(a), top = fmax(a->top, 1.001 * from),
-         way = top - from;
+  const bool metal = a->kind == HL_DATA_SURFACES && !(a->vessels > 0) && hl_data_holds_metal(a);
+  double from = a->vessels > 0 ? 0.9 * a->vessels
+                : metal        ? a->solid
+                               : inner_of(a),
+         top = fmax(metal ? inner_of(a) : a->top, 1.001 * from), way = top - from;
   const opacity_step steps[] = {
       {from, 0}, {from + 0.1 * way, 0.15}, {from + 0.25 * way, 0.7}, {from + 0.5 * way, 0.97}};
   add_steps(w, steps, 4);

@@ -532,6 +532,10 @@ static void metal_is_seen_within_matter(void **state) {
   const double opacity = hl_transfer_function_opacity(&f, 100);
   assert_true(opacity > 0.1 && opacity < 0.4 && hl_transfer_function_opacity(&f, 380) > 0.85);
   hl_transfer_function_release(context, &f);
+  hl_shading shading;
+  assert_int_equal(hl_transfer_function_look(context, "vessels", volume, &f, &shading, NULL), HL_OK);
+  assert_true(hl_transfer_function_opacity(&f, 150) > 0.5); /* vessels are not the metal alone */
+  hl_transfer_function_release(context, &f);
   hl_volume_release(volume);
   assert_int_equal(hl_context_memory_held(context), 0);
   hl_context_destroy(context);
