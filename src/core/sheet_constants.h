@@ -16,6 +16,13 @@
  * nearer to the face is partly lit as a surface at the face. */
 #define FACE_VOXELS 2.0f
 
+/* ---- the sheets ---- */
+
+/* The greatest number of sheets of a sweep; a sweep of more sheets is refused. A cube of 14,000 voxels a side
+ * has as many with sheets a quarter of a voxel apart. A picture of 32 x 32 pixels takes some ten seconds with
+ * as many sheets, and floats tell their heights apart to a hundredth of their distance. */
+#define GREATEST_SHEETS 100000
+
 /* ---- the weights of voxels ---- */
 
 /* Weights along x of u8 and u16 voxels are integers, so that the weighted sum of four taps is exact on every

@@ -7,13 +7,12 @@
 #include "core/context.h"
 #include "core/door.h"
 #include "core/memory.h"
+#include "guess/for_volume.h"
 #include "scene/scene.h"
 #include "text/plain.h"
 #include "text/stem.h"
 
-/* MANY_SHEETS: a scene with more sheets than this may get a warning. A single volume of 2048 voxels along
- * each side has fewer sheets. */
-enum { NAME_BYTES = 256, MANY_SHEETS = 4096 };
+enum { NAME_BYTES = 256 };
 
 /* ---- one scene of several ---- */
 
@@ -76,7 +75,7 @@ static void tell_of_sheets(hl_scene *const *scenes, size_t count, const hl_scene
     most = fmax(most, diagonal_of(own) / sheet_distance(own));
     greatest = fmax(greatest, hl_scene_smallest_edge(own));
   }
-  if (sheets > MANY_SHEETS && sheets > 2 * most)
+  if (sheets > HL_MANY_SHEETS && sheets > 2 * most)
     hl_log(
         scenes[0]->description.volumes[0].volume->context, HL_LOG_WARNING,
         "about %.0f sheets, since the smallest voxel edges of the volumes are %.3g and %.3g: "

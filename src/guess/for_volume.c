@@ -6,6 +6,7 @@
 #include "core/context.h"
 #include "core/door.h"
 #include "core/error.h"
+#include "core/sheet_constants.h"
 #include "guess/analysis.h"
 #include "guess/exposure.h"
 #include "guess/holders.h"
@@ -125,29 +126,49 @@ void hl_scene_level_sky(hl_scene_description *description) {
   description->sky = plain.sky;
 }
 
-/* The sheet spacing, in smallest voxel edges, with which a grid of any size has about the same number of
- * sheets. */
-static double even_spacing(const hl_volume *volume, hl_shading shading) {
-  double sheets = shading == HL_SHADING_PHONG ? SHEETS_OF_SURFACES : SHEETS_OF_MEDIA;
+/* The length of a grid's diagonal, in smallest voxel edges. */
+static double diagonal_of(const hl_volume *volume) {
   double edge = INFINITY, diagonal = 0;
   for (int a = 0; a < 3; a++) {
     double length = vec3_length(mat3_column(volume->index_to_world.linear, a));
     edge = fmin(edge, length);
     diagonal = hypot(diagonal, length * (double)volume->dimension[a]);
   }
-  return diagonal / edge / sheets;
+  return diagonal / edge;
+}
+
+/* Warns if voxels that are thin on one axis make many sheets, because a frame's time grows with the number of
+ * its sheets. More than GREATEST_SHEETS are refused by the frame. */
+static void tell_of_sheets(const hl_volume *volume, double spacing) {
+  double edges[3], cubes = 0, sheets = diagonal_of(volume) / spacing;
+  for (int a = 0; a < 3; a++) {
+    edges[a] = vec3_length(mat3_column(volume->index_to_world.linear, a));
+    cubes = hypot(cubes, (double)volume->dimension[a] / spacing);
+  }
+  if (sheets > HL_MANY_SHEETS && sheets <= GREATEST_SHEETS && sheets > 2 * cubes)
+    hl_log(volume->context, HL_LOG_WARNING,
+           "about %.0f sheets, which takes long, since the voxels' edges are %.3g, %.3g and %.3g long: "
+           "--spacing corrects wrong lengths%s",
+           sheets, edges[0], edges[1], edges[2],
+           spacing < GRID_MARGIN ? ", --sheet-spacing 4 makes the fewest sheets" : "");
 }
 
 /* The sheet spacing, in smallest voxel edges: from LEAST_SPACING to 1; in small grids with thin surfaces,
  * from SMALL_GRIDS_SPACING. In coarse grids, sheets a voxel apart would show as rings on smooth surfaces, and
- * more sheets take little time. thickness: the surfaces' thickness, in smallest voxel edges; infinite: there
- * are no surfaces. */
+ * more sheets take little time. If a frame would have too many sheets, the spacing is greater, up to
+ * GRID_MARGIN. thickness: the surfaces' thickness, in smallest voxel edges; infinite: there are no
+ * surfaces. */
 static double choose_spacing(const hl_volume *volume, hl_shading shading, double thickness) {
-  double even = even_spacing(volume, shading);
+  /* with `even`, a grid of any size has about the same number of sheets */
+  double diagonal = diagonal_of(volume),
+         even = diagonal / (shading == HL_SHADING_PHONG ? SHEETS_OF_SURFACES : SHEETS_OF_MEDIA);
   double spacing = fmin(fmax(even, LEAST_SPACING), fmax(SPACING_PER_THICKNESS * thickness, LEAST_SPACING));
   double in_small = fmax(even, SMALL_GRIDS_SPACING_PER_THICKNESS * thickness);
   spacing = fmin(spacing, fmax(in_small, SMALL_GRIDS_SPACING));
-  return round(1000 * fmin(spacing, 1)) / 1000;
+  double allowed = fmin(ceil(1000 * diagonal / (GREATEST_SHEETS - 10)) / 1000, GRID_MARGIN);
+  spacing = fmax(round(1000 * fmin(spacing, 1)) / 1000, allowed);
+  tell_of_sheets(volume, spacing);
+  return spacing;
 }
 
 static hl_status judge_exposure(const hl_look *look, const hl_data_analysis *analysis,

@@ -29,6 +29,10 @@ void hl_scene_fill_light(hl_light *light);
  * field, and the work of making it, take less than half of this. */
 #define HL_ROOM_FOR_SKY (512u << 20)
 
+/* A scene with more sheets than this may get a warning. A single volume of 2048 cubic voxels along each side
+ * has fewer sheets. */
+#define HL_MANY_SHEETS 4096
+
 /* Chooses the background of a scene that gives none: a dark grey. */
 void hl_scene_choose_background(hl_scene_description *description);
 

@@ -2,6 +2,7 @@
  * a sweep. */
 #include "plan/slicing.h"
 
+#include "core/sheet_constants.h"
 #include "scene/light/light_kind.h"
 
 /* The cosine of 60 degrees. Lights share a sweep only if the eye's direction and the direction of each light
@@ -205,10 +206,6 @@ static bool try_light(const frame *frame, const hl_render_settings *settings, sw
   return false;
 }
 
-/* The greatest number of sheets of a sweep; a sweep of more sheets is refused. Floats cannot tell the heights
- * of more sheets apart well. */
-enum { GREATEST_SHEETS = 1 << 20 };
-
 /* Lays sheets over the whole content, with one more sheet on either side. */
 static void place_sheets(const frame *frame, sheet_stack *sheets) {
   double low = INFINITY, high = -INFINITY;
@@ -219,7 +216,7 @@ static void place_sheets(const frame *frame, sheet_stack *sheets) {
   }
   sheets->spacing = frame->spacing;
   double count = frame->content.point_count == 0 ? 0 : ceil((high - low) / sheets->spacing) + 3;
-  sheets->count = count > GREATEST_SHEETS ? GREATEST_SHEETS + 1 : (int)count;
+  sheets->count = (int)fmin(count, GREATEST_SHEETS + 1);
   sheets->first = (low + high) / 2 - (sheets->count - 1) * 0.5 * sheets->spacing;
 }
 
@@ -285,14 +282,19 @@ static bool has_sun(const frame *frame, const sweep_sheets *sweep) {
   return any;
 }
 
+/* Refuses sheets of a number that is too large. */
+static hl_status refuse_sheets(const frame *frame, const sheet_stack *sheets, hl_error *error) {
+  bool can_rise = sheets->spacing < GRID_MARGIN * frame->content.voxel;
+  return hl_fail(
+      error, HL_ERROR_UNSUPPORTED,
+      "/render/sheet_spacing: makes more than %d sheets of the volumes, whose smallest voxel edge is "
+      "small beside their size: %scorrect the spacing of voxels (--spacing)",
+      GREATEST_SHEETS, can_rise ? "raise it, or " : "");
+}
+
 hl_status hl_frame_check_sweeps(const frame *frame, const sweep_sheets *sweeps, int count, hl_error *error) {
   for (int s = 0; s < count; s++) {
-    if (sweeps[s].sheets.count > GREATEST_SHEETS)
-      return hl_fail(
-          error, HL_ERROR_UNSUPPORTED,
-          "/render/sheet_spacing: makes more than %d sheets of the volumes, whose smallest voxel "
-          "edge is small beside their size: raise it, or correct the spacing of voxels (--spacing)",
-          GREATEST_SHEETS);
+    if (sweeps[s].sheets.count > GREATEST_SHEETS) return refuse_sheets(frame, &sweeps[s].sheets, error);
     if (flattest_eye_ray(&frame->eye, sweeps[s].sheets.normal) < FLATTEST_EYE_RAY)
       return hl_fail(
           error, HL_ERROR_UNSUPPORTED,

@@ -222,10 +222,10 @@ static void test_too_many_sheets(void **state) {
   assert_int_equal(hl_scene_create(set.context, &set.scene, &scene, &error), HL_OK);
   assert_int_equal(hl_renderer_create(set.context, &renderer, &error), HL_OK);
   assert_int_equal(hl_renderer_render(renderer, scene, pixels, 64, NULL, &error), HL_ERROR_UNSUPPORTED);
-  assert_string_equal(
-      error.message,
-      "/render/sheet_spacing: makes more than 1048576 sheets of the volumes, whose smallest voxel "
-      "edge is small beside their size: raise it, or correct the spacing of voxels (--spacing)");
+  assert_string_equal(error.message,
+                      "/render/sheet_spacing: makes more than 100000 sheets of the volumes, whose smallest "
+                      "voxel edge is small "
+                      "beside their size: raise it, or correct the spacing of voxels (--spacing)");
   hl_renderer_destroy(renderer);
   hl_scene_release(scene);
   stage_close(&set);
