@@ -126,13 +126,13 @@ void hl_scene_level_sky(hl_scene_description *description) {
   description->sky = plain.sky;
 }
 
-/* The length of a grid's diagonal, in smallest voxel edges. */
-static double diagonal_of(const hl_volume *volume) {
+/* The length of the diagonal of a grid with more voxels on each axis, in smallest voxel edges. */
+static double diagonal_of(const hl_volume *volume, double more) {
   double edge = INFINITY, diagonal = 0;
   for (int a = 0; a < 3; a++) {
     double length = vec3_length(mat3_column(volume->index_to_world.linear, a));
     edge = fmin(edge, length);
-    diagonal = hypot(diagonal, length * (double)volume->dimension[a]);
+    diagonal = hypot(diagonal, length * ((double)volume->dimension[a] + more));
   }
   return diagonal / edge;
 }
@@ -140,7 +140,7 @@ static double diagonal_of(const hl_volume *volume) {
 /* Warns if voxels that are thin on one axis make many sheets, because a frame's time grows with the number of
  * its sheets. More than GREATEST_SHEETS are refused by the frame. */
 static void tell_of_sheets(const hl_volume *volume, double spacing) {
-  double edges[3], cubes = 0, sheets = diagonal_of(volume) / spacing;
+  double edges[3], cubes = 0, sheets = diagonal_of(volume, 1) / spacing;
   for (int a = 0; a < 3; a++) {
     edges[a] = vec3_length(mat3_column(volume->index_to_world.linear, a));
     cubes = hypot(cubes, (double)volume->dimension[a] / spacing);
@@ -160,12 +160,12 @@ static void tell_of_sheets(const hl_volume *volume, double spacing) {
  * surfaces. */
 static double choose_spacing(const hl_volume *volume, hl_shading shading, double thickness) {
   /* with `even`, a grid of any size has about the same number of sheets */
-  double diagonal = diagonal_of(volume),
-         even = diagonal / (shading == HL_SHADING_PHONG ? SHEETS_OF_SURFACES : SHEETS_OF_MEDIA);
+  double even = diagonal_of(volume, 0) / (shading == HL_SHADING_PHONG ? SHEETS_OF_SURFACES : SHEETS_OF_MEDIA);
   double spacing = fmin(fmax(even, LEAST_SPACING), fmax(SPACING_PER_THICKNESS * thickness, LEAST_SPACING));
   double in_small = fmax(even, SMALL_GRIDS_SPACING_PER_THICKNESS * thickness);
   spacing = fmin(spacing, fmax(in_small, SMALL_GRIDS_SPACING));
-  double allowed = fmin(ceil(1000 * diagonal / (GREATEST_SHEETS - 10)) / 1000, GRID_MARGIN);
+  /* sheets cover the matter, which reaches half a voxel beyond the faces */
+  double allowed = fmin(ceil(1000 * diagonal_of(volume, 1) / (GREATEST_SHEETS - 10)) / 1000, GRID_MARGIN);
   spacing = fmax(round(1000 * fmin(spacing, 1)) / 1000, allowed);
   tell_of_sheets(volume, spacing);
   return spacing;
