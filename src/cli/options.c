@@ -323,10 +323,10 @@ static int parse_option(const cli_command *command, int argument_count, char **a
   }
   if (attached == NULL) {
     cli_value chosen = {0}; /* a value such as "-y" may be one of the choices */
-    if (*index + 1 >= argument_count) return refuse_missing(option);
-    attached = arguments[++*index];
-    if (looks_like_option(attached) && !parse_choice(option, &attached, &chosen))
-      return refuse_missing(option);
+    attached = *index + 1 < argument_count ? arguments[*index + 1] : NULL;
+    if (attached == NULL || (looks_like_option(attached) && !parse_choice(option, &attached, &chosen)))
+      return option->implied != NULL ? parse_value(option, option->implied, value) : refuse_missing(option);
+    ++*index;
   }
   return parse_value(option, attached, value);
 }

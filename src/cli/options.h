@@ -54,13 +54,15 @@ typedef struct cli_option {
   const char *if_picture; /* OPTION_COLOR: the advice for a user who gives a picture's file; null if there is
                            * none */
   bool named;             /* for OPTION_NUMBERS: whether NAME= may stand before the numbers */
-  bool optional;   /* for OPTION_NUMBERS: whether the numbers may be left out; they are then 0, and `count` is
-                    * 0 */
-  bool repeatable; /* whether the option may be given several times; every text is kept */
-  bool reserved;   /* whether this version does not have the option yet: it is not shown in help, and is
-                    * refused if it is given */
-  bool joins;      /* whether processes of an MPI launcher wait for each other if they are given this
-                    * option */
+  bool optional; /* for OPTION_NUMBERS: whether the numbers may be left out; they are then 0, and `count` is
+                  * 0 */
+  const char *implied; /* the value of an option that stands alone, at the end or before another option; null:
+                        * a value must be given */
+  bool repeatable;     /* whether the option may be given several times; every text is kept */
+  bool reserved;       /* whether this version does not have the option yet: it is not shown in help, and is
+                        * refused if it is given */
+  bool joins;          /* whether processes of an MPI launcher wait for each other if they are given this
+                        * option */
 } cli_option;
 
 enum { MAXIMUM_REPEATS = 32 };

@@ -41,11 +41,13 @@ hl_status hl_check_isosurfaces(const hl_asked *iso, hl_error *error) {
   hl_isosurface_defaults(&surface);
   for (int n = 0; n < iso->count; n++)
     if (!read_iso(text_of_surface(iso->texts[n]), &surface))
-      return hl_fail(error, HL_ERROR_ARGUMENT,
-                     "--iso: '%.300s' is not VALUE[:COLOR[:OPACITY]]: a value of the volume, a colour as "
-                     "#rrggbb, linear "
-                     "R,G,B or a CSS name, and an opacity from 0 to 1 (120:gold:0.3)",
-                     iso->texts[n]);
+      return hl_fail(
+          error, HL_ERROR_ARGUMENT,
+          "--iso: '%.300s' is not VALUE[:COLOR[:OPACITY]]: a value of the volume, a colour as "
+          "#rrggbb, linear "
+          "R,G,B or a CSS name, and an opacity from 0 to 1 (120:gold:0.3); give --iso once for each "
+          "surface",
+          iso->texts[n]);
   return HL_OK;
 }
 

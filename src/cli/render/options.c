@@ -99,6 +99,7 @@ const cli_option render_options[RENDER_OPTION_COUNT] = {
     [RENDER_SCALE_BAR] = {.name = "scale-bar",
                           .kind = OPTION_TEXT,
                           .argument = "auto|LENGTH[@DEPTH]",
+                          .implied = "auto",
                           .help = "a bar with its length, as 50um; in a perspective\npicture (not --ortho) "
                                   "it holds at the target (@target)\nor at this distance from the eye"},
     [RENDER_UNIT] =
@@ -109,12 +110,14 @@ const cli_option render_options[RENDER_OPTION_COUNT] = {
     [RENDER_LEGEND] = {.name = "legend",
                        .kind = OPTION_TEXT,
                        .argument = "auto|TITLE",
+                       .implied = "auto",
                        .help = "colours and opacity over the values, or surfaces, or\nnames of labels; TITLE "
                                "as 'Density (g/cm3)'"},
     [RENDER_AXES] =
         {.name = "axes",
          .kind = OPTION_CHOICE,
          .choices = axes_choices,
+         .implied = "arrows",
          .help = "arrows of the world's directions, or letters of the\nbody's directions at the edges"},
     [RENDER_MARKS] = {.name = "marks",
                       .kind = OPTION_SWITCH,
