@@ -197,7 +197,7 @@ static int load_volume(cli_host *host, const cli_value *values, const char *in, 
 
 static int convert(cli_host *host, const cli_value *values, const char *in, const char *out,
                    hl_volume_save_options *options) {
-  double started = clock_seconds();
+  double started = hl_clock_seconds();
   cli_input input = {0};
   hl_volume *volume = NULL;
   hl_error error = {0};
@@ -211,7 +211,7 @@ static int convert(cli_host *host, const cli_value *values, const char *in, cons
     if (status == HL_OK) status = hl_volume_save_with(host->context, volume, out, options, &error);
     host_clear_bar(host);
     if (status != HL_OK) exit_code = host_fail(host, PHASE_CHANGE, status, &error);
-    else if (!host->quiet) report(out, clock_seconds() - started);
+    else if (!host->quiet) report(out, hl_clock_seconds() - started);
   }
   input_close(&input);
   hl_volume_release(volume);
@@ -270,7 +270,7 @@ static int load_mesh(cli_host *host, const cli_value *values, const char *in, hl
 
 /* Writes a mesh: IN itself, or the surface of the volume IN. */
 static int convert_mesh(cli_host *host, const cli_value *values, const char *in, const char *out) {
-  double started = clock_seconds();
+  double started = hl_clock_seconds();
   hl_mesh *mesh = NULL;
   hl_error error = {0};
   int exit_code = hl_mesh_reads_name(host->context, in) ? load_mesh(host, values, in, &mesh)
@@ -280,7 +280,7 @@ static int convert_mesh(cli_host *host, const cli_value *values, const char *in,
     hl_status status = hl_mesh_save(host->context, mesh, out, &error);
     host_clear_bar(host);
     if (status != HL_OK) exit_code = host_fail(host, PHASE_RUN, status, &error);
-    else if (!host->quiet) report(out, clock_seconds() - started);
+    else if (!host->quiet) report(out, hl_clock_seconds() - started);
     if (exit_code == EXIT_CODE_OK && values[CONVERT_UNIT].given && !host->quiet)
       say("%s: meshes state no unit: the lengths in it are in %s", out, values[CONVERT_UNIT].text);
   }
@@ -336,7 +336,7 @@ static void read_picture_options(const cli_value *values, hl_image_write_options
 /* Writes a picture in another format. An .npy that is no picture is a volume. */
 static int convert_picture(cli_host *host, const cli_value *values, const char *in, const char *out,
                            hl_volume_save_options *of_volume) {
-  double started = clock_seconds();
+  double started = hl_clock_seconds();
   hl_image *image = NULL;
   hl_error error = {0};
   hl_image_write_options options;
@@ -356,7 +356,7 @@ static int convert_picture(cli_host *host, const cli_value *values, const char *
   host_clear_bar(host);
   hl_image_destroy(image);
   if (status != HL_OK) return host_fail(host, PHASE_RUN, status, &error);
-  if (!host->quiet) report(out, clock_seconds() - started);
+  if (!host->quiet) report(out, hl_clock_seconds() - started);
   return EXIT_CODE_OK;
 }
 

@@ -75,7 +75,7 @@ typedef struct export_job {
 } export_job;
 
 static int export_scene(export_job *job) {
-  double started = clock_seconds();
+  double started = hl_clock_seconds();
   cli_input input = {0};
   hl_scene *scene = NULL;
   hl_error error = {0};
@@ -94,7 +94,7 @@ static int export_scene(export_job *job) {
       cli_phase phase = status == HL_ERROR_INPUT ? PHASE_READ : PHASE_RUN;
       exit_code = host_fail(&job->host, phase, status, &error);
     } else if (!job->host.quiet && stat(job->output, &written) == 0)
-      say("%s: %.1f MB in %.1f s", job->output, (double)written.st_size / 1e6, clock_seconds() - started);
+      say("%s: %.1f MB in %.1f s", job->output, (double)written.st_size / 1e6, hl_clock_seconds() - started);
   }
   hl_scene_release(scene);
   input_close(&input);

@@ -6,7 +6,6 @@
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
-#include <time.h>
 #include <unistd.h>
 
 #include "fetch/asking.h"
@@ -29,12 +28,6 @@ static int on_cancelled(void *user_data) {
   return interrupted != 0 || (host->cancelled != NULL && host->cancelled());
 }
 
-double clock_seconds(void) {
-  struct timespec now;
-  clock_gettime(CLOCK_MONOTONIC, &now);
-  return (double)now.tv_sec + 1e-9 * (double)now.tv_nsec;
-}
-
 void host_clear_bar(cli_host *host) {
   if (!host->drawn) return;
   fputs("\r\033[K", stderr);
@@ -43,7 +36,7 @@ void host_clear_bar(cli_host *host) {
 
 void host_draw_bar(cli_host *host, double fraction, const char *text) {
   enum { WIDTH = 32 };
-  double now = clock_seconds();
+  double now = hl_clock_seconds();
   if (!host->bar || (host->drawn && now - host->drawn_at < 0.1)) return;
   if (!(fraction > 0)) fraction = 0;
   if (fraction > 1) fraction = 1;
@@ -70,10 +63,10 @@ static double seconds_left(cli_host *host, const char *stage, double fraction, d
   host_stage *now = &host->stage;
   if (strcmp(now->name, stage) != 0 || fraction < now->fraction) {
     snprintf(now->name, sizeof now->name, "%s", stage);
-    now->began = clock_seconds();
+    now->began = hl_clock_seconds();
   }
   now->fraction = fraction;
-  *past = clock_seconds() - now->began;
+  *past = hl_clock_seconds() - now->began;
   return fraction > 0 ? *past * (1 - fraction) / fraction : 0;
 }
 

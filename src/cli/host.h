@@ -7,11 +7,12 @@
 
 #include "message.h"
 #include "output.h"
+#include "platform/clock.h"
 
 /* The current stage of a call of the library, which reports its progress. */
 typedef struct host_stage {
   char name[16];
-  double began;     /* seconds of clock_seconds() */
+  double began;     /* seconds of hl_clock_seconds() */
   double fraction;  /* the fraction of the stage that was done at the last report */
   const char *hint; /* advice on how to make the command faster, which is printed once if the command takes
                      * long; null if there is no advice */
@@ -108,8 +109,5 @@ int host_fail(cli_host *host, cli_phase phase, hl_status status, const hl_error 
 
 /* Returns whether the user has asked to stop. */
 bool host_interrupted(void);
-
-/* Seconds of a steady clock. */
-double clock_seconds(void);
 
 #endif

@@ -231,7 +231,7 @@ static int load_volume(looks_job *job) {
 }
 
 static int make_and_write(looks_job *job) {
-  double started = clock_seconds();
+  double started = hl_clock_seconds();
   hl_error error = {0};
   int exit_code = load_volume(job);
   if (exit_code == EXIT_CODE_OK) exit_code = read_files_protect(&job->host.read, job->output, job->input);
@@ -241,7 +241,7 @@ static int make_and_write(looks_job *job) {
   host_clear_bar(&job->host);
   if (status != HL_OK) return host_fail(&job->host, PHASE_RUN, status, &error);
   if (!job->host.quiet)
-    say("%s: %zu looks in %.1f s", job->output, job->shown_count, clock_seconds() - started);
+    say("%s: %zu looks in %.1f s", job->output, job->shown_count, hl_clock_seconds() - started);
   return EXIT_CODE_OK;
 }
 

@@ -112,7 +112,7 @@ static void report(const hl_volume *volume, const char *output, double seconds) 
 }
 
 static int make_and_save(const cli_value *values, char *shape, const char *output) {
-  double started = clock_seconds();
+  double started = hl_clock_seconds();
   const char *preset = hl_shape_preset_text(shape);
   char *text = NULL;
   size_t length = preset != NULL ? strlen(preset) : 0;
@@ -133,7 +133,7 @@ static int make_and_save(const cli_value *values, char *shape, const char *outpu
     hl_status status = hl_volume_save(host.context, volume, output, &error);
     host_clear_bar(&host);
     if (status != HL_OK) exit_code = host_fail(&host, PHASE_RUN, status, &error);
-    else if (!host.quiet) report(volume, output, clock_seconds() - started);
+    else if (!host.quiet) report(volume, output, hl_clock_seconds() - started);
   }
   hl_volume_release(volume);
   host_close(&host);

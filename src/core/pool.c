@@ -24,12 +24,12 @@
 #include <signal.h>
 #include <stdatomic.h>
 #include <string.h>
-#include <time.h>
 #include <unistd.h>
 
 #include "core/context.h"
 #include "core/door.h"
 #include "core/memory.h"
+#include "platform/clock.h"
 #include "platform/processors.h"
 
 enum { MAXIMUM_THREADS = 256, SPINS = 4000 };
@@ -108,15 +108,9 @@ static inline void relax(void) {
 #endif
 }
 
-static int64_t now_nanoseconds(void) {
-  struct timespec now;
-  clock_gettime(CLOCK_MONOTONIC, &now);
-  return (int64_t)now.tv_sec * 1000000000 + now.tv_nsec;
-}
-
 bool hl_pool_cancelled(hl_pool *pool) {
   if (atomic_load(&pool->cancelled)) return true;
-  pool->asked = now_nanoseconds();
+  pool->asked = hl_clock_nanoseconds();
   if (!hl_cancelled(pool->context)) return false;
   atomic_store(&pool->cancelled, true);
   return true;
@@ -133,7 +127,7 @@ static bool is_time_to_ask(hl_pool *pool) {
     pool->unread--;
     return false;
   }
-  int64_t now = now_nanoseconds();
+  int64_t now = hl_clock_nanoseconds();
   bool quick = now - pool->read < NANOSECONDS_BETWEEN_READINGS;
   pool->read = now;
   pool->readings = quick ? (pool->readings < MOST_UNREAD ? 2 * pool->readings + 1 : MOST_UNREAD) : 0;

@@ -1,11 +1,11 @@
 /* ranks/blocks.c - see blocks.h. */
 #define _GNU_SOURCE
 #include "ranks/blocks.h"
+#include "platform/clock.h"
 
 #include <signal.h>
 #include <string.h>
 #include <sys/prctl.h>
-#include <time.h>
 
 #include "core/memory.h"
 
@@ -313,12 +313,6 @@ static void place(const hl_blocks *blocks, const hl_box *box, const hl_box *part
       memcpy(to + k * step[1] + j * step[0], from, row);
 }
 
-static uint64_t nanoseconds_now(void) {
-  struct timespec now;
-  clock_gettime(CLOCK_MONOTONIC, &now);
-  return (uint64_t)now.tv_sec * 1000000000u + (uint64_t)now.tv_nsec;
-}
-
 /* The address in the caller's array at which a part can be received without a copy. Null if the part's rows
  * and slices are not adjacent in the caller's array. */
 static unsigned char *place_of(const hl_blocks *blocks, const hl_box *box, const hl_box *part,
@@ -331,7 +325,7 @@ void hl_blocks_fetch(hl_blocks *blocks, const hl_box *box, unsigned char *to, si
                      size_t slice_bytes) {
   hl_ranks *ranks = blocks->ranks;
   const size_t step[2] = {row_bytes, slice_bytes};
-  uint64_t before = nanoseconds_now();
+  int64_t before = hl_clock_nanoseconds();
   block_fetch *fetch = begin_fetch(blocks);
   unsigned char *next = fetch->received;
   for (int rank = 0; rank < ranks->size; rank++) {
@@ -351,6 +345,6 @@ void hl_blocks_fetch(hl_blocks *blocks, const hl_box *box, unsigned char *to, si
     if (place_of(blocks, box, part, to, step) == NULL) place(blocks, box, part, next, to, step);
     next += elements_of(part) * blocks->shape.element_bytes;
   }
-  atomic_fetch_add(&ranks->nanoseconds, nanoseconds_now() - before);
+  atomic_fetch_add(&ranks->nanoseconds, (uint64_t)(hl_clock_nanoseconds() - before));
   end_fetch(blocks, fetch);
 }

@@ -10,6 +10,7 @@
 #include "core/memory.h"
 #include "isosurface/isosurface.h"
 #include "plan/plan_text.h"
+#include "platform/clock.h"
 #include "ranks/exchange.h"
 #include "render/device_backend.h"
 #include "render/estimate.h"

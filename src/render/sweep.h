@@ -220,9 +220,6 @@ uint32_t hl_light_tile(const sweep *sweep, const tile_slab *slab);
  * for each light of the frame. memory: [FRAME_LIGHTS]; blocks that the frame's sweeps use one after the
  * other. */
 hl_status hl_sweep_begin(sweep *sweep, shadow_buffer *buffers, shadow_memory *memory, hl_error *error);
-/* The time in seconds, by a clock that never runs backwards. */
-double hl_clock_seconds(void);
-
 /* Marks all blocks of the sweep's part of the picture as open. */
 void hl_sweep_open(sweep *sweep);
 /* Adds the sweep's counts and seconds to the statistics. */

@@ -1,15 +1,14 @@
 /* render/sweep_begin.c - begins a sweep (steps 1 to 4): makes its views, sorts voxels, allocates memory and
  * fills shadow buffers with full light. */
-#define _POSIX_C_SOURCE 200809L /* clock_gettime */
 #include <math.h>
 #include <string.h>
-#include <time.h>
 
 #include <halflight/render.h>
 
 #include "core/memory.h"
 #include "core/sheet_constants.h"
 #include "grid/faces.h"
+#include "platform/clock.h"
 #include "render/light_reads.h"
 #include "render/maximum.h"
 #include "render/sweep_layers.h"
@@ -263,12 +262,6 @@ void hl_sweep_end(sweep *sweep) {
 }
 
 /* ---- what is counted ---- */
-
-double hl_clock_seconds(void) {
-  struct timespec now;
-  clock_gettime(CLOCK_MONOTONIC, &now);
-  return (double)now.tv_sec + 1e-9 * (double)now.tv_nsec;
-}
 
 void hl_sweep_count(const sweep *sweep, hl_render_statistics *statistics) {
   double fill = 0, shade = 0, light = 0, composite = 0;

@@ -12,6 +12,7 @@
  * If the method of some light cannot be run in stretches, the work on picture and lights alternates, slab by
  * slab. */
 #include "core/context.h"
+#include "platform/clock.h"
 #include "render/sweep.h"
 
 /* ---- tasks ---- */

@@ -1,6 +1,7 @@
 /* render/sweep_stages.c - does the work on one tile in one slab. It is a tile of the picture, or of a light's
  * buffer. */
 #include "core/context.h"
+#include "platform/clock.h"
 #include "render/sweep_layers.h"
 #include "render/sweep_surfaces.h"
 

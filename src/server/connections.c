@@ -14,6 +14,8 @@
 #include <sys/socket.h>
 #include <time.h>
 
+#include "platform/clock.h"
+
 /* The state of a connection. */
 enum {
   CONNECTION_FREE,
@@ -23,12 +25,6 @@ enum {
   CONNECTION_ANSWERED,
   CONNECTION_ENDS
 };
-
-double server_seconds(void) {
-  struct timespec now;
-  clock_gettime(CLOCK_MONOTONIC, &now);
-  return (double)now.tv_sec + 1e-9 * (double)now.tv_nsec;
-}
 
 bool connections_begin(connection_table *table) { return pthread_mutex_init(&table->lock, NULL) == 0; }
 void connections_end(connection_table *table) { pthread_mutex_destroy(&table->lock); }
@@ -73,7 +69,7 @@ static connection_place *let_in(connection_table *table, int socket, bool *crowd
     table->turned_away++;
   }
   if (taken != NULL)
-    *taken = (connection_place){.socket = socket, .state = CONNECTION_STRANGER, .since = server_seconds()};
+    *taken = (connection_place){.socket = socket, .state = CONNECTION_STRANGER, .since = hl_clock_seconds()};
   return taken;
 }
 
@@ -112,7 +108,7 @@ static void enter(connection_table *table, struct MHD_Connection *connection, in
   pthread_mutex_lock(&table->lock);
   if (c->state != CONNECTION_ENDS) {
     c->state = state;
-    c->since = server_seconds();
+    c->since = hl_clock_seconds();
     c->received = 0;
   }
   pthread_mutex_unlock(&table->lock);
@@ -139,7 +135,7 @@ void connection_received(connection_table *table, struct MHD_Connection *connect
 }
 
 void connections_expire(connection_table *table) {
-  double now = server_seconds();
+  double now = hl_clock_seconds();
   pthread_mutex_lock(&table->lock);
   for (int n = 0; n < MOST_CONNECTIONS; n++) {
     connection_place *c = &table->places[n];

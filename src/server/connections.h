@@ -21,7 +21,7 @@ enum {
 typedef struct connection_place {
   int socket;
   int state;         /* one of the states in connections.c; if 0, this place is free */
-  double since;      /* time at which the state began, by server_seconds() */
+  double since;      /* time at which the state began, by hl_clock_seconds() */
   uint64_t received; /* number of bytes of the body that have arrived */
 } connection_place;
 
@@ -31,9 +31,6 @@ typedef struct connection_table {
   /* Number of connections that were ended to make room for others; guarded by `lock`. */
   unsigned long long turned_away;
 } connection_table;
-
-/* The number of seconds since a fixed time in the past. */
-double server_seconds(void);
 
 bool connections_begin(connection_table *table);
 void connections_end(connection_table *table);

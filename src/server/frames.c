@@ -14,6 +14,7 @@
 #include <time.h>
 
 #include "parts.h"
+#include "platform/clock.h"
 #include "start/joined.h"
 
 /* The work of this thread: a frame that it renders, or a file that it opens. */
@@ -144,7 +145,7 @@ static server_page *enter_page(server *s, const char *name, unsigned long long n
   if (page != NULL) {
     page->users++;
     page->last_use = ++s->uses;
-    page->last_seen = server_seconds();
+    page->last_seen = hl_clock_seconds();
     if (atomic_load(&page->newest) < number) atomic_store(&page->newest, number);
   }
   pthread_mutex_unlock(&s->pages_lock);
@@ -156,7 +157,7 @@ static bool is_lane(const server_page *page) { return strchr(page->name, '-') !=
 static void leave_page(server *s, server_page *page) {
   pthread_mutex_lock(&s->pages_lock);
   page->users--;
-  page->last_seen = server_seconds();
+  page->last_seen = hl_clock_seconds();
   if ((page->leaving || is_lane(page)) && page->users == 0) release_page(s, page);
   pthread_mutex_unlock(&s->pages_lock);
 }
@@ -176,7 +177,7 @@ void page_is_gone(server *s, const char *name) {
 }
 
 void pages_expire(server *s) {
-  double now = server_seconds();
+  double now = hl_clock_seconds();
   pthread_mutex_lock(&s->pages_lock);
   for (int p = 0; p < MOST_PAGES; p++) {
     server_page *page = &s->pages[p];
@@ -341,25 +342,18 @@ static hl_renderer **quick_renderer_of(server_page *page, const hl_scene *scene)
 static hl_status make_overlay(server *s, server_page *page, const hl_scene *scene,
                               const frame_request *request, server_answer *answer, hl_error *error) {
   hl_render_statistics statistics = {.struct_size = sizeof statistics};
-  double began = server_seconds();
+  double began = hl_clock_seconds();
   hl_status status = HL_OK;
   hl_image *matter = matter_find(s, request);
   if (matter == NULL) {
     if (page->renderer == NULL) status = hl_renderer_create(s->options.context, &page->renderer, error);
     if (status == HL_OK) status = render_small(s, page->renderer, scene, &matter, &statistics, error);
     answer->seconds_once += statistics.seconds_prepare;
-    answer->seconds_render = server_seconds() - began;
+    answer->seconds_render = hl_clock_seconds() - began;
   }
   if (status == HL_OK) status = write_overlay(s, matter, scene, request, answer, error);
   hl_image_destroy(matter);
   return status;
-}
-
-/* The processor time of this process so far, in seconds. */
-static double processor_seconds(void) {
-  struct timespec now;
-  clock_gettime(CLOCK_PROCESS_CPUTIME_ID, &now);
-  return (double)now.tv_sec + 1e-9 * (double)now.tv_nsec;
 }
 
 /* Renders a frame. renderer: the page's renderer for moving scenes, or for scenes at rest. */
@@ -369,7 +363,7 @@ static hl_status render(server *s, server_page *page, hl_renderer **renderer, co
   hl_image *image = NULL;
   hl_render_statistics statistics = {.struct_size = sizeof statistics};
   const bool is_new = *renderer == NULL;
-  double began = server_seconds(), worked = processor_seconds();
+  double began = hl_clock_seconds(), worked = hl_processor_seconds();
   hl_status status = is_new ? hl_renderer_create(s->options.context, renderer, error) : HL_OK;
   if (status == HL_OK && strcmp(request->format, "depth") == 0)
     return render_depth(page, scene, answer, error);
@@ -379,13 +373,13 @@ static hl_status render(server *s, server_page *page, hl_renderer **renderer, co
     status = hl_renderer_render(*renderer, scene, hl_image_pixels(image), 4 * (size_t)d->width, &statistics,
                                 error);
   if (is_new) answer->seconds_once += statistics.seconds_prepare;
-  double rendered = server_seconds();
+  double rendered = hl_clock_seconds();
   if (status == HL_OK && !request->moving && !is_lane(page)) matter_keep(s, page, request, image);
   if (status == HL_OK) status = write_picture(s, scene, image, request, answer, error);
   hl_image_destroy(image);
   answer->seconds_render = rendered - began;
-  answer->seconds_encode = server_seconds() - rendered;
-  if (!is_new) answer->seconds_processor = processor_seconds() - worked;
+  answer->seconds_encode = hl_clock_seconds() - rendered;
+  if (!is_new) answer->seconds_processor = hl_processor_seconds() - worked;
   return status;
 }
 
@@ -393,15 +387,15 @@ static hl_status render(server *s, server_page *page, hl_renderer **renderer, co
 static hl_status make_frame(server *s, server_page *page, const frame_request *request,
                             const film_request *film, server_answer *answer, hl_error *error) {
   hl_scene *scene = NULL, *quick = NULL;
-  double began = server_seconds();
+  double began = hl_clock_seconds();
   if (server_is_outdated()) return HL_ERROR_CANCELLED;
   hl_status status = request->coarse ? HL_OK : await_finest(s, request->opened, error);
   if (status == HL_OK) status = read_scene(s, request->opened, request->text, request->length, &scene, error);
-  double parsed = server_seconds();
+  double parsed = hl_clock_seconds();
   if (status == HL_OK && request->moving) status = make_quick(s, request->opened, scene, &quick, error);
   bool coarser = quick != NULL && quick != scene;
-  answer->seconds_read = server_seconds() - began;
-  answer->seconds_once = server_seconds() - parsed;
+  answer->seconds_read = hl_clock_seconds() - began;
+  answer->seconds_once = hl_clock_seconds() - parsed;
   if (status == HL_OK)
     status = film != NULL ? render_film(s, page, scene, film, answer, error)
              : strcmp(request->format, "overlay") == 0

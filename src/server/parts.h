@@ -90,7 +90,7 @@ typedef struct server_page {
   bool leaving; /* whether the page was closed; its place becomes free when the last request that holds it
                  * ends; guarded by server.pages_lock */
   unsigned long long last_use; /* guarded by server.pages_lock */
-  double last_seen;            /* the time of the page's last request, by server_seconds(); guarded by
+  double last_seen;            /* the time of the page's last request, by hl_clock_seconds(); guarded by
                                 * server.pages_lock */
   char *base; /* owned; the text of the newest scene that the page has sent as a whole; null if there is none;
                * guarded by server.pages_lock */

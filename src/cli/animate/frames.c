@@ -37,7 +37,7 @@ static hl_status do_frame(animate_frames *frames, hl_renderer *renderer, int fra
                           hl_error *error) {
   char path[PATH_BYTES];
   hl_scene *scene = NULL;
-  double began = clock_seconds();
+  double began = hl_clock_seconds();
   /* A picture with overlays is always rendered anew, because the scene that a picture carries does not tell
    * its overlays. */
   if (overlay_is_any(frames->style.overlay) || !animate_frame_is_there(frames, frame)) {
@@ -49,7 +49,7 @@ static hl_status do_frame(animate_frames *frames, hl_renderer *renderer, int fra
     hl_scene_release(scene);
     if (status != HL_OK) return status;
     frames->rendered++;
-    *seconds += clock_seconds() - began;
+    *seconds += hl_clock_seconds() - began;
   }
   frames->done++;
   return HL_OK;

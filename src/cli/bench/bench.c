@@ -8,7 +8,6 @@
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
-#include <time.h>
 
 #include "cli/commands.h"
 #include "cli/input.h"
@@ -154,14 +153,6 @@ static int open_renderers(bench_job *job) {
   return EXIT_CODE_OK;
 }
 
-/* The processor time of all threads together, in seconds. On a busy machine it is a better measure than the
- * elapsed time. */
-static double processor_seconds(void) {
-  struct timespec now;
-  clock_gettime(CLOCK_PROCESS_CPUTIME_ID, &now);
-  return (double)now.tv_sec + 1e-9 * (double)now.tv_nsec;
-}
-
 static bench_sample sample_of(double frame, const hl_render_statistics *statistics) {
   bench_sample sample = {.frame = frame};
   sample.stage[STAGE_PREPARE] = statistics->seconds_prepare;
@@ -188,11 +179,11 @@ static int run_frame(bench_job *job, enum bench_setting setting, int frame) {
   if (scene == NULL) return exit_code;
   hl_error error = {0};
   run->statistics = (hl_render_statistics){.struct_size = sizeof run->statistics};
-  double start = clock_seconds(), spent = processor_seconds();
+  double start = hl_clock_seconds(), spent = hl_processor_seconds();
   hl_status status = hl_renderer_render(job->renderer[setting], scene, hl_image_pixels(job->image),
                                         4 * (size_t)result->width, &run->statistics, &error);
-  bench_sample sample = sample_of(clock_seconds() - start, &run->statistics);
-  sample.processor = processor_seconds() - spent;
+  bench_sample sample = sample_of(hl_clock_seconds() - start, &run->statistics);
+  sample.processor = hl_processor_seconds() - spent;
   hl_scene_release(scene);
   if (status == HL_ERROR_UNSUPPORTED && setting == SETTING_SUBLIGHTS) {
     run->supported = false;

@@ -340,7 +340,7 @@ static hl_status render_panels(figure_job *job, hl_error *error) {
 }
 
 static int make_and_write(figure_job *job) {
-  double started = clock_seconds();
+  double started = hl_clock_seconds();
   hl_error error = {0};
   int exit_code = make_scenes(job);
   if (exit_code == EXIT_CODE_OK) exit_code = read_files_protect(&job->host.read, job->output, job->input);
@@ -360,7 +360,7 @@ static int make_and_write(figure_job *job) {
   if (status != HL_OK) return host_fail(&job->host, PHASE_RUN, status, &error);
   if (!job->host.quiet)
     say("%s: %d pictures on %.4g x %.4g mm, %.3g s", job->shown, job->page.count, job->page.width, height,
-        clock_seconds() - started);
+        hl_clock_seconds() - started);
   return EXIT_CODE_OK;
 }
 

@@ -32,7 +32,7 @@ typedef struct render_job {
   cli_overlay overlay;  /* owned */
   hl_ranks *ranks;      /* owned; the ranks of --strips-over-ranks and --volume-over-ranks; null if this
                          * process is alone */
-  double started;       /* seconds of clock_seconds() */
+  double started;       /* seconds of hl_clock_seconds() */
   render_result result;
 } render_job;
 
@@ -139,7 +139,7 @@ static int job_load(render_job *job) {
                          ? overlay_check_scene(job->host.context, &job->overlay, job->scene, &error)
                          : HL_OK;
   if (status != HL_OK) exit_code = host_fail(&job->host, PHASE_CHANGE, status, &error);
-  job->result.seconds.load = clock_seconds() - job->started;
+  job->result.seconds.load = hl_clock_seconds() - job->started;
   return exit_code;
 }
 
@@ -177,11 +177,11 @@ static hl_status render_reference(render_job *job, const hl_scene_description *d
   job->host.stage.hint =
       "--reference marches every ray: a smaller --size, fewer --light-points or a greater --step "
       "is faster";
-  double started = clock_seconds();
+  double started = hl_clock_seconds();
   hl_status status = hl_reference_render_layers(job->host.context, job->scene, &options,
                                                 hl_image_pixels(job->image), 4 * (size_t)description->width,
                                                 wanted_layers(job), error);
-  statistics->seconds_render = clock_seconds() - started;
+  statistics->seconds_render = hl_clock_seconds() - started;
   statistics->threads = options.threads > 0 ? options.threads : (int)sysconf(_SC_NPROCESSORS_ONLN);
   statistics->instruction_set = HL_INSTRUCTION_SET_SCALAR;
   snprintf(statistics->device, sizeof statistics->device, "cpu");
@@ -265,7 +265,7 @@ static int job_print(render_job *job) {
 }
 
 static int job_write(render_job *job) {
-  double started = clock_seconds();
+  double started = hl_clock_seconds();
   hl_error error = {0};
   char *scene_json = NULL;
   int exit_code = EXIT_CODE_OK;
@@ -285,7 +285,7 @@ static int job_write(render_job *job) {
                                             job->output, &options, &error);
   }
   hl_text_release(job->host.context, scene_json);
-  job->result.seconds.write = clock_seconds() - started;
+  job->result.seconds.write = hl_clock_seconds() - started;
   return status == HL_OK ? exit_code : host_fail(&job->host, PHASE_RUN, status, &error);
 }
 
@@ -309,7 +309,7 @@ static void find_choice(render_job *job) {
 static int job_report(render_job *job) {
   host_clear_bar(&job->host);
   job->result.output = job->to_stdout ? "standard output" : job->output;
-  job->result.seconds.total = clock_seconds() - job->started;
+  job->result.seconds.total = hl_clock_seconds() - job->started;
   find_choice(job);
   if (job->values[RENDER_JSON].given) return render_print_json(&job->result);
   if (!job->host.quiet) render_print_summary(&job->result);
@@ -337,7 +337,7 @@ static int render_one(const cli_value *values, char **operands) {
                 "--%s shares one picture between processes: --frames-over-ranks shares out several pictures",
                 render_options[values[RENDER_STRIPS].given ? RENDER_STRIPS : RENDER_VOLUME].name);
   }
-  render_job job = {.input = {.all = operands, .first = operands[0]}, .started = clock_seconds()};
+  render_job job = {.input = {.all = operands, .first = operands[0]}, .started = hl_clock_seconds()};
   memcpy(job.values, values, sizeof job.values);
   while (operands[job.input.count] != NULL) job.input.count++;
   job.result.input = job.input.first;

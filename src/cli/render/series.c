@@ -228,7 +228,7 @@ static int make_picture(series_job *job, hl_renderer *renderer, int number) {
   char path[PATH_BYTES];
   hl_scene *scene = NULL;
   hl_error error = {0};
-  double began = clock_seconds();
+  double began = hl_clock_seconds();
   int exit_code = picture_path(job, number, path, sizeof path);
   if (exit_code != EXIT_CODE_OK) return exit_code;
   if (is_made(job, number, path)) {
@@ -254,7 +254,7 @@ static int make_picture(series_job *job, hl_renderer *renderer, int number) {
   if (status != HL_OK) return host_fail(&job->host, PHASE_RUN, status, &error);
   job->progress.done++;
   job->progress.rendered += !there;
-  if (!there) job->progress.seconds += clock_seconds() - began;
+  if (!there) job->progress.seconds += hl_clock_seconds() - began;
   return EXIT_CODE_OK;
 }
 

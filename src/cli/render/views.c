@@ -204,7 +204,7 @@ static hl_status write_sheet(views_job *job, hl_error *error) {
 }
 
 static int make_and_write(views_job *job) {
-  double started = clock_seconds();
+  double started = hl_clock_seconds();
   hl_error error = {0};
   int exit_code = load(job);
   if (exit_code == EXIT_CODE_OK && !job->files)
@@ -216,7 +216,7 @@ static int make_and_write(views_job *job) {
     status = write_file(job, v, &error);
   if (status == HL_OK && !job->files) status = write_sheet(job, &error);
   if (status != HL_OK) return host_fail(&job->host, PHASE_RUN, status, &error);
-  if (!job->host.quiet) say("%s: %zu sides, %.3g s", job->output, job->count, clock_seconds() - started);
+  if (!job->host.quiet) say("%s: %zu sides, %.3g s", job->output, job->count, hl_clock_seconds() - started);
   return EXIT_CODE_OK;
 }
 

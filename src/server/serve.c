@@ -1,4 +1,4 @@
-/* server/server.c - runs the server: opens its socket, makes its token, serves requests, and ends. */
+/* server/serve.c - runs the server: opens its socket, makes its token, serves requests, and ends. */
 #define _GNU_SOURCE
 #include "server.h"
 
