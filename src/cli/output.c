@@ -12,6 +12,7 @@
 #include <unistd.h>
 
 #include "message.h"
+#include "text/number_word.h"
 #include "text/plain.h"
 
 const char *const picture_extensions[] = {".png", ".exr", ".npy", ".tif", ".tiff", NULL};
@@ -170,21 +171,32 @@ char *output_pattern(const char *folder, const char *extension) {
   return pattern;
 }
 
-char *output_name_picture(const char *pattern, const char *input) {
-  char *stem = output_default_name(input, "");
-  const size_t length = stem != NULL ? strlen(stem) : 0;
-  char *name = stem != NULL ? malloc(strlen(pattern) + length + 1) : NULL, *end = name;
-  while (name != NULL && *pattern != '\0') {
-    if (pattern[0] == '%' && pattern[1] == 's') {
-      memcpy(end, stem, length);
-      end += length;
-      pattern += 2;
+char *output_fill(const char *text, output_words words) {
+  const size_t name_length = words.name != NULL ? strlen(words.name) : 0;
+  size_t count = 0;
+  for (const char *at = text; *at != '\0'; at++) count += *at == '%';
+  char *filled = malloc(strlen(text) + count * (name_length + HL_NUMBER_BYTES) + 1), *end = filled;
+  while (filled != NULL && *text != '\0') {
+    hl_number_word word;
+    if (words.name != NULL && text[0] == '%' && text[1] == 's') {
+      memcpy(end, words.name, name_length);
+      end += name_length;
+      text += 2;
+    } else if (words.number >= 0 && hl_number_word_read(text, "d", &word)) {
+      end += hl_number_word_write(&word, words.number, end);
+      text += word.length;
     } else {
-      pattern += pattern[0] == '%' && pattern[1] == '%';
-      *end++ = *pattern++;
+      text += words.doubled && text[0] == '%' && text[1] == '%';
+      *end++ = *text++;
     }
   }
-  if (name != NULL) *end = '\0';
+  if (filled != NULL) *end = '\0';
+  return filled;
+}
+
+char *output_name_picture(const char *pattern, const char *input) {
+  char *stem = output_default_name(input, "");
+  char *name = stem != NULL ? output_fill(pattern, (output_words){stem, -1, true}) : NULL;
   free(stem);
   return name;
 }

@@ -51,6 +51,18 @@ bool output_is_folder(const char *path);
  * null if memory is short. */
 char *output_pattern(const char *folder, const char *extension);
 
+/* What stands in place of the words of a text. name: in place of "%s"; null leaves this word. number: in
+ * place of "%d" and "%04d" (text/number_word.h); -1 leaves these words. doubled: whether "%%" stands for a
+ * '%', as in the names of files. */
+typedef struct output_words {
+  const char *name;
+  long number;
+  bool doubled;
+} output_words;
+
+/* Replaces the words of a text. Owned by the caller (free); null if memory is short. */
+char *output_fill(const char *text, output_words words);
+
 /* Makes the name of an input's picture: the pattern with the input's name, without folder and extension, in
  * place of its "%s" (output_has_name()). Owned by the caller (free); null if memory is short. */
 char *output_name_picture(const char *pattern, const char *input);

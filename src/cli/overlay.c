@@ -1,4 +1,5 @@
 /* cli/overlay.c - writes pictures to files, with their overlays. */
+#define _GNU_SOURCE
 #include "overlay.h"
 
 #include <stdio.h>
@@ -39,38 +40,16 @@ void overlay_hold(cli_overlay *overlay) {
   hold(&overlay->overlay.arrows_corner, HL_CORNER_LOWER_RIGHT);
 }
 
-/* The length of "%d" or of "%04d" and the like, with which a text begins; 0 if it begins with neither.
- * *digits: the least number of digits. */
-static size_t number_word(const char *text, int *digits) {
-  const bool padded = text[0] == '%' && text[1] == '0' && text[2] >= '1' && text[2] <= '9';
-  *digits = padded ? text[2] - '0' : 1;
-  const size_t length = padded ? 3 : 1;
-  return text[0] == '%' && text[length] == 'd' ? length + 1 : 0;
-}
-
 /* Replaces the words for a picture's number and for its file's name in a text. The caller owns the new text,
  * which is null if memory is short. */
 static char *fill_text(const char *text, int number, const char *file) {
-  size_t stem_length = 0, words = 1, length = 0;
-  const char *stem = file != NULL ? hl_stem(file, &stem_length) : NULL;
-  for (const char *at = text; *at != '\0'; at++) words += *at == '%';
-  const size_t size = strlen(text) + words * (stem_length + 16);
-  char *made = malloc(size);
-  while (made != NULL && *text != '\0') {
-    int digits;
-    const size_t word = number_word(text, &digits);
-    if (word > 0) {
-      length += (size_t)snprintf(made + length, size - length, "%0*d", digits, number);
-    } else if (stem != NULL && text[0] == '%' && text[1] == 's') {
-      length += (size_t)snprintf(made + length, size - length, "%.*s", (int)stem_length, stem);
-    } else {
-      made[length++] = *text++;
-      continue;
-    }
-    text += word > 0 ? word : 2;
-  }
-  if (made != NULL) made[length] = '\0';
-  return made;
+  size_t length = 0;
+  const char *begin = file != NULL ? hl_stem(file, &length) : NULL;
+  char *stem = begin != NULL ? strndup(begin, length) : NULL;
+  char *filled = begin == NULL || stem != NULL ? output_fill(text, (output_words){stem, number, false})
+                                               : NULL;
+  free(stem);
+  return filled;
 }
 
 bool overlay_for_picture(const cli_overlay *overlay, int number, const char *file, cli_overlay *copy) {

@@ -20,19 +20,11 @@
 enum { PATH_BYTES = 4096 };
 
 static int picture_path(const series_job *job, int number, char *path, size_t size) {
-  char *name = NULL;
-  int length;
-  if (output_has_name(job->pattern)) {
-    name = output_name_picture(job->pattern, job->files.names[number]);
-    if (name == NULL) return fail(EXIT_CODE_FAILURE, "out of memory");
-    length = snprintf(path, size, "%s", name);
-    free(name);
-  } else {
-#pragma GCC diagnostic push
-#pragma GCC diagnostic ignored "-Wformat-nonliteral"
-    length = snprintf(path, size, job->pattern, number); /* series_has_number() */
-#pragma GCC diagnostic pop
-  }
+  char *name = output_has_name(job->pattern) ? output_name_picture(job->pattern, job->files.names[number])
+                                             : output_fill(job->pattern, (output_words){NULL, number, true});
+  if (name == NULL) return fail(EXIT_CODE_FAILURE, "out of memory");
+  const int length = snprintf(path, size, "%s", name);
+  free(name);
   return length >= 0 && (size_t)length < size
              ? EXIT_CODE_OK
              : fail(EXIT_CODE_USAGE, "%s: the picture's name is too long", job->files.names[number]);

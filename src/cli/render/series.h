@@ -38,7 +38,7 @@ typedef struct series_job {
                                      * picture; null if nothing changes */
 } series_job;
 
-/* Returns true if the text has one "%d" or "%04d", and no other '%' but "%%". */
+/* Returns true if the text has one word for a number (text/number_word.h), and no other '%' but "%%". */
 bool series_has_number(const char *text);
 
 /* Finds the files that the operands name. Files of the series are separated from files that are in every

@@ -13,6 +13,7 @@
 #include "cli/input.h"
 #include "series.h"
 #include "start/joined.h"
+#include "text/number_word.h"
 #include "text/plain.h"
 
 enum { MOST_LABEL_LAYERS = 64 };
@@ -23,17 +24,13 @@ static bool is_pattern(const char *path) {
   return strpbrk(path, "*?[") != NULL && !hl_plain_is_url(path) && access(path, F_OK) != 0;
 }
 
-/* Returns true if the text has one "%d" or "%04d", and no other '%' but "%%". */
 bool series_has_number(const char *text) {
   int numbers = 0;
-  for (const char *c = strchr(text, '%'); c != NULL; c = strchr(c + 1, '%')) {
-    if (c[1] == '%') {
-      c++;
-      continue;
-    }
-    const char *end = c + 1 + strspn(c + 1, "0123456789");
-    if (*end != 'd' || end - c > 3) return false;
-    numbers++;
+  hl_number_word word;
+  for (const char *at = strchr(text, '%'); at != NULL; at = strchr(at + word.length, '%')) {
+    if (hl_number_word_read(at, "d", &word)) numbers++;
+    else if (at[1] == '%') word.length = 2;
+    else return false;
   }
   return numbers == 1;
 }

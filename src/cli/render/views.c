@@ -11,7 +11,7 @@
 #include "render.h"
 #include "text/plain.h"
 
-enum { MOST_VIEWS = 7, NAME_BYTES = 16, WIDTH_BYTES = 40, PATH_BYTES = 4096 };
+enum { MOST_VIEWS = 7, NAME_BYTES = 16, WIDTH_BYTES = 40 };
 
 /* The gap between two pictures of a sheet, as a part of a picture's width. */
 static const double gap_part = 1.0 / 50;
@@ -148,13 +148,11 @@ static hl_status render_all(views_job *job, hl_error *error) {
 /* ---- files ---- */
 
 static hl_status write_file(views_job *job, size_t v, hl_error *error) {
-  char path[PATH_BYTES], *text = NULL;
-  hl_status status = HL_OK;
-#pragma GCC diagnostic push
-#pragma GCC diagnostic ignored "-Wformat-nonliteral"
-  snprintf(path, sizeof path, job->output, job->names[v]); /* output_has_name() */
-#pragma GCC diagnostic pop
-  if (!job->values[RENDER_NO_METADATA].given)
+  char *path = output_fill(job->output, (output_words){job->names[v], -1, true}), *text = NULL;
+  hl_status status = path != NULL ? HL_OK : HL_ERROR_MEMORY;
+  if (path == NULL)
+    snprintf(error->message, sizeof error->message, "out of memory for the name of a picture");
+  if (status == HL_OK && !job->values[RENDER_NO_METADATA].given)
     status = output_scene_text(job->host.context, job->scenes[v], path, &text, error);
   if (status == HL_OK) {
     hl_image_write_options options;
@@ -165,6 +163,7 @@ static hl_status write_file(views_job *job, size_t v, hl_error *error) {
                            error);
   }
   hl_text_release(job->host.context, text);
+  free(path);
   return status;
 }
 

@@ -6,6 +6,7 @@
 #include <string.h>
 
 #include "core/memory.h"
+#include "text/number_word.h"
 #include "volume/io/decoders.h"
 #include "volume/io/text.h"
 
@@ -35,28 +36,22 @@ void hl_file_list_release(hl_file_list *list) {
 }
 
 /* Finds the number in a pattern: the only "%d", "%5d" or "%05d", where 'i' or 'u' may stand for 'd'. Returns
- * false if the pattern has none, or if it has another percent sign. */
-static bool find_number(const char *pattern, size_t *begin, size_t *end, int *width, bool *zeros) {
-  const char *percent = strchr(pattern, '%'), *at = percent;
-  if (percent == NULL) return false;
-  *width = 0;
-  *zeros = *++at == '0';
-  for (; *at >= '0' && *at <= '9' && *width < 100; at++) *width = 10 * *width + (*at - '0');
-  if (*at == 0 || strchr("diu", *at) == NULL || *width > 20 || strchr(at + 1, '%') != NULL) return false;
-  *begin = (size_t)(percent - pattern);
-  *end = (size_t)(at + 1 - pattern);
-  return true;
+ * its begin; null if the pattern has none, or if it has another percent sign. */
+static const char *find_number(const char *pattern, hl_number_word *word) {
+  const char *percent = strchr(pattern, '%');
+  return percent != NULL && hl_number_word_read(percent, "diu", word) &&
+                 strchr(percent + word->length, '%') == NULL
+             ? percent
+             : NULL;
 }
 
 hl_status hl_file_list_pattern(hl_file_list *list, const char *text, bool *sound, hl_error *error) {
   char pattern[NAME_BYTES], name[NAME_BYTES + 32], word[32];
   double numbers[3];
-  size_t begin, end;
-  int width, count = 0;
-  bool zeros;
-  const char *cursor = text;
-  *sound = hl_text_word(&cursor, pattern, sizeof pattern) &&
-           find_number(pattern, &begin, &end, &width, &zeros);
+  hl_number_word form;
+  int count = 0;
+  const char *cursor = text, *place = NULL;
+  *sound = hl_text_word(&cursor, pattern, sizeof pattern) && (place = find_number(pattern, &form)) != NULL;
   for (; *sound && count < 3; count++)
     *sound = hl_text_word(&cursor, word, sizeof word) &&
              hl_text_number(word, strlen(word), &numbers[count]) && numbers[count] == floor(numbers[count]) &&
@@ -66,9 +61,9 @@ hl_status hl_file_list_pattern(hl_file_list *list, const char *text, bool *sound
   hl_status status = HL_OK;
   for (double n = 0; *sound && status == HL_OK && n <= (numbers[1] - numbers[0]) / numbers[2]; n++) {
     long number = (long)(numbers[0] + n * numbers[2]);
-    char digits[64];
-    snprintf(digits, sizeof digits, zeros ? "%0*ld" : "%*ld", width, number);
-    snprintf(name, sizeof name, "%.*s%s%s", (int)begin, pattern, digits, pattern + end);
+    char digits[HL_NUMBER_BYTES];
+    hl_number_word_write(&form, number, digits);
+    snprintf(name, sizeof name, "%.*s%s%s", (int)(place - pattern), pattern, digits, place + form.length);
     status = hl_file_list_add(list, name, error);
   }
   return status;
