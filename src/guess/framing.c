@@ -8,7 +8,6 @@
 #include "core/door.h"
 #include "core/error.h"
 #include "guess/outline.h"
-#include "guess/seen_cells.h"
 #include "guess/view.h"
 
 /* The fraction of the picture's half width or height that the visible voxels fill. */
@@ -277,42 +276,15 @@ static double flatness(const hl_outline *outline, const hl_view *view) {
   return extent[0] / fmin(extent[1], extent[2]);
 }
 
-/* The faces of a volume's grid, in which it may cut matter off. */
-typedef struct cut_faces {
-  vec3 outward[6];
-  double share[6]; /* the fraction of the face's cells that are seen */
-} cut_faces;
-
-static double share_of_face(const hl_seen *seen, int axis, int end) {
-  const int across = (axis + 1) % 3, along = (axis + 2) % 3;
-  int at[3], count = 0;
-  at[axis] = end ? seen->size[axis] - 1 : 0;
-  for (at[across] = 0; at[across] < seen->size[across]; at[across]++)
-    for (at[along] = 0; at[along] < seen->size[along]; at[along]++)
-      count += seen->kind[((ptrdiff_t)at[2] * seen->size[1] + at[1]) * seen->size[0] + at[0]] == HL_SEEN;
-  return (double)count / ((double)seen->size[across] * seen->size[along]);
-}
-
-static hl_status find_cut_faces(const hl_scene_volume *volume, cut_faces *faces, hl_error *error) {
-  hl_seen seen;
-  bool any;
+/* The matter in the faces of the first volume's grid that are turned to the eye, 0 to 3: the sum of each
+ * face's share times the cosine between the face and the eye. */
+static double seen_of_faces(const hl_scene_volume *volume, const double share[6], vec3 forward) {
   const affine3 placement = hl_scene_volume_index_to_world(volume);
-  const hl_status status = hl_seen_find(volume, &seen, &any, error);
-  for (int face = 0; status == HL_OK && face < 6; face++) {
-    const vec3 axis = vec3_normalise(mat3_column(placement.linear, face / 2));
-    faces->outward[face] = vec3_scale(axis, face % 2 ? 1 : -1);
-    faces->share[face] = any ? share_of_face(&seen, face / 2, face % 2) : 0;
-  }
-  hl_seen_release(&seen);
-  return status;
-}
-
-/* The matter in the faces that are turned to the eye, 0 to 3: the sum of each face's share times the cosine
- * between the face and the eye. */
-static double seen_of_faces(const cut_faces *faces, vec3 forward) {
   double seen = 0;
-  for (int face = 0; face < 6; face++)
-    seen += faces->share[face] * fmax(-vec3_dot(faces->outward[face], forward), 0);
+  for (int face = 0; face < 6; face++) {
+    const vec3 axis = vec3_normalise(mat3_column(placement.linear, face / 2));
+    seen += share[face] * fmax((face % 2 ? -1 : 1) * vec3_dot(axis, forward), 0);
+  }
   return seen;
 }
 
@@ -325,9 +297,7 @@ hl_status hl_view_widen(const hl_scene_description *description, hl_outline *out
   square.width = square.height = 1;
   const hl_view given = *view;
   frame_job job;
-  cut_faces faces;
   hl_status status = begin(&square, 1, &usual, outline, &job, error);
-  if (status == HL_OK) status = find_cut_faces(&description->volumes[0], &faces, error);
   double most = 0;
   if (status == HL_OK && flatness(outline, view) < FLAT) view->elevation_deg = FLAT_ELEVATION;
   for (size_t n = 0; status == HL_OK && n < sizeof turns / sizeof *turns; n++) {
@@ -335,7 +305,7 @@ hl_status hl_view_widen(const hl_scene_description *description, hl_outline *out
     at.azimuth_deg += turns[n] * HL_VIEW_AZIMUTH;
     look(&job, &at);
     const double wide = (reach(&job, job.right, 0) + reach(&job, vec3_scale(job.right, -1), 0)) /
-                        (1 + seen_of_faces(&faces, job.forward));
+                        (1 + seen_of_faces(&description->volumes[0], outline->share, job.forward));
     if (wide <= WIDER * most) continue;
     most = wide;
     view->azimuth_deg = at.azimuth_deg;

@@ -79,11 +79,28 @@ static hl_status add_slices(hl_outline *outline, const hl_seen *seen, affine3 pl
   return status;
 }
 
-static hl_status add_shown(hl_outline *outline, const hl_scene_volume *volume, hl_error *error) {
+/* The fraction of cells with visible matter in a face of the grid. end: 0 or 1, the face at the begin or at
+ * the end of an axis. */
+static double share_of_face(const hl_seen *seen, int axis, int end) {
+  const int across = (axis + 1) % 3, along = (axis + 2) % 3;
+  int at[3], count = 0;
+  at[axis] = end ? seen->size[axis] - 1 : 0;
+  for (at[across] = 0; at[across] < seen->size[across]; at[across]++)
+    for (at[along] = 0; at[along] < seen->size[along]; at[along]++)
+      count += seen->kind[((ptrdiff_t)at[2] * seen->size[1] + at[1]) * seen->size[0] + at[0]] == HL_SEEN;
+  return (double)count / ((double)seen->size[across] * seen->size[along]);
+}
+
+/* Adds the matter that the transfer function shows. share: receives the shares of the grid's faces; null if
+ * nobody asks for them. */
+static hl_status add_shown(hl_outline *outline, const hl_scene_volume *volume, double *share,
+                           hl_error *error) {
   hl_seen seen;
   bool any;
   size_t rows = volume->volume->dimension[1];
   hl_status status = hl_seen_find(volume, &seen, &any, error);
+  for (int face = 0; share != NULL && status == HL_OK && any && face < 6; face++)
+    share[face] = share_of_face(&seen, face / 2, face % 2);
   if (status == HL_OK && any) {
     ptrdiff_t *ends = hl_allocate(outline->context, 4 * rows, sizeof *ends);
     if (ends != NULL) {
@@ -100,8 +117,9 @@ static hl_status add_shown(hl_outline *outline, const hl_scene_volume *volume, h
 
 /* Adds the visible part of a volume: the matter that its transfer function shows, and the matter within the
  * isosurface of the least value. */
-static hl_status add_volume(hl_outline *outline, const hl_scene_volume *volume, hl_error *error) {
-  hl_status status = add_shown(outline, volume, error);
+static hl_status add_volume(hl_outline *outline, const hl_scene_volume *volume, double *share,
+                            hl_error *error) {
+  hl_status status = add_shown(outline, volume, share, error);
   double least = INFINITY;
   for (size_t i = 0; i < volume->iso_count; i++) least = fmin(least, volume->iso[i].value);
   if (status != HL_OK || volume->iso_count == 0 || !volume->visible) return status;
@@ -109,19 +127,20 @@ static hl_status add_volume(hl_outline *outline, const hl_scene_volume *volume, 
   hl_scene_volume solid = *volume;
   solid.transfer_function = (hl_transfer_function){.opacity = points, .opacity_count = 2};
   solid.transfer_function.unit_distance = mat3_shortest_column(volume->volume->index_to_world.linear);
-  return add_shown(outline, &solid, error);
+  return add_shown(outline, &solid, NULL, error);
 }
 
 /* Adds the visible part of a volume, without the part that the scene's cuts remove. */
 static hl_status add_cut_volume(hl_outline *outline, const hl_scene_description *scene,
                                 const hl_scene_volume *volume, hl_error *error) {
-  if (scene->cut_count == 0) return add_volume(outline, volume, error);
+  double *share = volume == scene->volumes ? outline->share : NULL;
+  if (scene->cut_count == 0) return add_volume(outline, volume, share, error);
   size_t count = volume->cut_count + scene->cut_count;
   hl_scene_volume both = *volume;
   hl_cut *cuts = hl_allocate(outline->context, count, sizeof *cuts);
   if (cuts == NULL) return hl_fail_memory(error, count * sizeof *cuts, "cuts");
   hl_add_scene_cuts(scene, &both, cuts);
-  hl_status status = add_volume(outline, &both, error);
+  hl_status status = add_volume(outline, &both, share, error);
   hl_release(outline->context, cuts);
   return status;
 }

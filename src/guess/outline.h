@@ -12,6 +12,10 @@ typedef struct hl_outline {
   vec3 *point;    /* owned; [count]; world */
   double *radius; /* owned; [count] */
   size_t count, capacity;
+  /* The fraction of cells with visible matter in each face of the first volume's grid, which may cut matter
+   * off there: the face before the first voxel along x, the face behind the last voxel along x; along y;
+   * along z. 0 if the scene has no volume. */
+  double share[6];
 } hl_outline;
 
 /* Finds the outline of all visible volumes and meshes. If nothing is visible, the outline is the corners of
