@@ -35,7 +35,8 @@ def legends():
     for name, greatest in ("part_0.nii", 199.9), ("part_1.nii", 200):
         nifti(name, np.minimum(rods, greatest), 1.0)
     halflight("part_*.nii", "--range-of-all", "--size", "400x200", "--quiet", "--legend", "auto", "-o", "%s.png")
-    first, second = (np.asarray(Image.open(f"part_{n}.png").convert("RGB"))[:, 355:] for n in range(2))
+    # The numbers stand right of column 365. Left of it the matter shines through the legend's ground, and may differ.
+    first, second = (np.asarray(Image.open(f"part_{n}.png").convert("RGB"))[:, 365:] for n in range(2))
     check(np.array_equal(first, second) and np.ptp(first) > 100, "a series with one range has the same numbers beside its legends")
     table = np.array(points)
 
