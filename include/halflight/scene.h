@@ -518,11 +518,9 @@ typedef enum hl_side {
 
 /* Finds the view from a side. up: the direction that is up, of any length. If up is null, the direction
  * follows from the patient's position if the file tells it, or else is guessed from the voxels. If the file
- * does not say how a patient lies, the view from the front has +x to its right (+y where up is along x); so
- * where z is up, the view from the front looks from -y. But if the volume is the scan of a body and its back
- * has clearly more relief than its front, as a head's face has, all sides are turned by half a turn about up.
- * The camera of a scene file without a camera is
- * hl_camera_frame_view() of HL_SIDE_AUTOMATIC. */
+ * does not say how a patient lies, the view from the front has +x to its right (+y where up is along x). But
+ * if such a volume is the scan of a body and its back has clearly more relief, as a head's face has, all
+ * sides are turned by half a turn. A scene file without a camera has the side HL_SIDE_AUTOMATIC. */
 HL_API HL_WARN_UNUSED hl_status hl_view_choose(const hl_scene_description *description, hl_side side,
                                                const double up[3], hl_view *view, hl_error *error);
 
