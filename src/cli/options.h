@@ -56,8 +56,8 @@ typedef struct cli_option {
   bool named;             /* for OPTION_NUMBERS: whether NAME= may stand before the numbers */
   bool optional; /* for OPTION_NUMBERS: whether the numbers may be left out; they are then 0, and `count` is
                   * 0 */
-  const char *implied; /* the value of an option that stands alone, at the end or before another option; null:
-                        * a value must be given */
+  const char *implied; /* the value that the option has where no value follows it: at the end of the command
+                        * or before another option. If null, a value must follow */
   bool repeatable;     /* whether the option may be given several times; every text is kept */
   bool reserved;       /* whether this version does not have the option yet: it is not shown in help, and is
                         * refused if it is given */

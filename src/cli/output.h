@@ -51,9 +51,9 @@ bool output_is_folder(const char *path);
  * null if memory is short. */
 char *output_pattern(const char *folder, const char *extension);
 
-/* What stands in place of the words of a text. name: in place of "%s"; null leaves this word. number: in
- * place of "%d" and "%04d" (text/number_word.h); -1 leaves these words. doubled: whether "%%" stands for a
- * '%', as in the names of files. */
+/* The values that replace the words of a text. `name` replaces "%s"; if it is null, "%s" stays. `number`
+ * replaces "%d", "%04d" and the like (text/number_word.h); if it is -1, these words stay. `doubled` says
+ * whether "%%" becomes one '%', as in the names of files. */
 typedef struct output_words {
   const char *name;
   long number;

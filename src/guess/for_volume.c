@@ -164,11 +164,10 @@ static double choose_spacing(const hl_volume *volume, hl_shading shading, double
   double spacing = fmin(fmax(even, LEAST_SPACING), fmax(SPACING_PER_THICKNESS * thickness, LEAST_SPACING));
   double in_small = fmax(even, SMALL_GRIDS_SPACING_PER_THICKNESS * thickness);
   spacing = fmin(spacing, fmax(in_small, SMALL_GRIDS_SPACING));
-  /* sheets cover the matter, which reaches half a voxel beyond the faces */
+  /* The sheets cover the matter, which reaches half a voxel beyond the faces. A sweep adds three sheets; the
+   * other seven allow for rounding. */
   double allowed = fmin(ceil(1000 * diagonal_of(volume, 1) / (GREATEST_SHEETS - 10)) / 1000, GRID_MARGIN);
-  spacing = fmax(round(1000 * fmin(spacing, 1)) / 1000, allowed);
-  tell_of_sheets(volume, spacing);
-  return spacing;
+  return fmax(round(1000 * fmin(spacing, 1)) / 1000, allowed);
 }
 
 static hl_status judge_exposure(const hl_look *look, const hl_data_analysis *analysis,
@@ -192,8 +191,9 @@ static hl_status expose(const hl_look *look, const hl_data_analysis *analysis, h
   for (size_t l = 0; l < description->light_count; l++) lights[l].intensity *= exposure.factor;
   for (int channel = 0; channel < 3; channel++) description->ambient[channel] *= exposure.factor;
   description->sky.strength *= exposure.factor;
-  description->render.sheet_spacing = choose_spacing(description->volumes[0].volume, look->shading,
-                                                     exposure.thickness);
+  const hl_volume *volume = description->volumes[0].volume;
+  description->render.sheet_spacing = choose_spacing(volume, look->shading, exposure.thickness);
+  tell_of_sheets(volume, description->render.sheet_spacing);
   return status;
 }
 

@@ -341,8 +341,9 @@ static double azimuth_of_left(const hl_scene_description *description, const hl_
   return vec3_dot(vec3_cross(vec3_of(view->up), vec3_of(view->front)), left_of(space)) > 0 ? 90 : -90;
 }
 
-/* Finds the azimuth of the front. It is 0, but 180 for a body whose file does not tell its directions and
- * whose automatic view shows the other side, because this side has more relief: the body's face is there. */
+/* Finds the azimuth of the front, in degrees. For most volumes it is 0. A scanned body whose file does not
+ * tell its directions has its face on the side with more relief, which the automatic view shows. If this is
+ * the side behind, the azimuth is 180. */
 static hl_status find_front(const hl_scene_description *description, const hl_view *automatic,
                             double *azimuth_deg, hl_error *error) {
   *azimuth_deg = 0;

@@ -6,8 +6,9 @@
 
 bool hl_is_convolved(const light_shadow *shadow) { return shadow->method == &hl_shadow_paper; }
 
-/* The number of passes of a convolution: two find its tiles, and two convolve each kind of planes, of which
- * there are the transmittance and the light at the outside of surfaces. */
+/* The greatest number of passes of one convolution. Two passes find the tiles that it changes. Two passes
+ * convolve the transmittance, along rows and along columns. Two more convolve the light at the outside of
+ * surfaces. */
 enum { PASSES_OF_CONVOLUTION = 2 + 2 * 2 };
 
 /* Adds the passes that convolve the buffer of one light. */
