@@ -142,6 +142,16 @@ def looks_follow(browser):
     rest(browser)
     asked = browser.run("small")
     check(set(asked) == {"final"} and count <= len(asked) <= count + 1, f"none is begun while something moves, and the one under way once more: {asked}")
+    browser.run("""(() => { const own = window.fetch; window.held = []; small.length = 0; window.fetch = async (path, options) => {
+      if (path.startsWith('scene?') && window.goOn !== true) { held.push(path); await new Promise((go) => { window.letGo = go; }); }
+      return own(path, options); }; window.goOn = false; })()""")
+    browser.run("halflight.store.changeVolume(0, 'cuts', (v) => ({ ...v, cuts: [{ ...v.cuts[0], normal: v.cuts[0].normal.map((x) => -x) }] }))")
+    browser.wait("held.length > 0")
+    browser.run("import('./camera.js').then((m) => { halflight.store.setCamera(m.turn(halflight.store.scene.camera, 0.1, 0)); goOn = true; letGo(); })")
+    rest(browser)
+    asked = browser.run("small")
+    check(asked == ["final"] * count, f"a look that comes while something moves waits for the rest: {asked}")
+    press_named(browser, "Undo")
     browser.run("halflight.store.undoCamera()")
     for _ in range(2):
         press_named(browser, "Undo")

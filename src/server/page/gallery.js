@@ -13,16 +13,17 @@ const LANE = "-small";
 
 // The small pictures of all galleries are made in turn, by one lane of the channel. The viewer has one
 // renderer for them, which ends with the last picture. Returns a function of a scene, which asks for a
-// picture as a channel's fetchFrame() does. A picture that is being made when something changes is given up.
+// picture as a channel's fetchFrame() does, if isWanted() still holds when the picture's turn comes; it resolves to null otherwise.
+// A picture that is being made when something changes is given up.
 export function smallPictures(channel, store) {
   let last = Promise.resolve(), shown = store.scene, underWay = 0;
   store.listen((scene) => {
     if (scene !== shown && underWay > 0) channel.cancel?.(LANE).catch(() => {}); // a lost viewer has been told
     shown = scene;
   });
-  return (scene) => {
+  return (scene, isWanted) => {
     underWay++;
-    const picture = last.then(() => channel.fetchFrame(scene, { quality: 85, moving: true, lane: LANE })).finally(() => { underWay--; });
+    const picture = last.then(() => (isWanted() ? channel.fetchFrame(scene, { quality: 85, moving: true, lane: LANE }) : null)).finally(() => { underWay--; });
     last = picture.catch(() => {}); // the caller that has asked for the picture is told
     return picture;
   };
@@ -64,7 +65,7 @@ export function gallery({ label, names, viewer: { store, smallPicture, failed, f
     scenes.set(name, scene);
     const small = { ...scene, image, camera: reshaped(store.scene.camera, store.scene.image, image), render: { ...scene.render, sheet_spacing: Math.max(STEP, scene.render.sheet_spacing), pixel_samples: 0 } };
     if (pictured.has(name) && difference(pictured.get(name), seen(scene)) === undefined) return true;
-    const frame = await smallPicture(small);
+    const frame = await smallPicture(small, () => isResting() && shown === store.scene);
     if (frame === null) return false;
     pictured.set(name, seen(scene));
     const bitmap = await createImageBitmap(frame.blob), canvas = canvases.get(name);
