@@ -14,6 +14,7 @@
 #include "bricks/evaluate.h"
 #include "core/context.h"
 #include "core/memory.h"
+#include "elementary/elementary.h"
 
 enum { SHIFT = 4, SIDE = 1 << SHIFT, STORED = SIDE + BRICK_MARGIN, LEVELS_MOST = 9 };
 
@@ -48,7 +49,7 @@ typedef struct cell_field {
 /* The edge of a regular tetrahedron or of a cube with the cell's volume. */
 static double edge_of(const hl_cell_shape *shape) {
   double volume = hl_cell_volume(shape);
-  return cbrt(shape->is_tetrahedron ? 6 * sqrt(2) * volume : volume);
+  return hl_cbrt(shape->is_tetrahedron ? 6 * sqrt(2) * volume : volume);
 }
 
 /* Returns whether all corners are nearer than FARTHEST; false for NaN. */
@@ -84,7 +85,7 @@ enum { BINS = 512 };
 
 /* The bin of a histogram of edges. Eight bins double the edge. */
 static int bin_of(double edge) {
-  int bin = (int)floor(log2(edge) * 8) + BINS / 2;
+  int bin = (int)floor(hl_log2(edge) * 8) + BINS / 2;
   return bin < 0 ? 0 : bin >= BINS ? BINS - 1 : bin;
 }
 
@@ -96,7 +97,7 @@ static double finest_edge(const cell_field *field, size_t used) {
     if (field->edges[n] > 0) counts[bin_of((double)field->edges[n])]++;
   for (int bin = 0; bin < BINS; bin++) {
     sum += counts[bin];
-    if ((double)sum > FINEST_PART * (double)used) return exp2((bin - BINS / 2 + 0.5) / 8);
+    if ((double)sum > FINEST_PART * (double)used) return hl_exp2((bin - BINS / 2 + 0.5) / 8);
   }
   return 1;
 }
@@ -104,7 +105,7 @@ static double finest_edge(const cell_field *field, size_t used) {
 static int level_of(double edge, double spacing) {
   /* The finest edge is known only to within its bin, an eighth of an octave. The summand 0.25 is greater than
    * this error. */
-  double level = floor(log2(edge / POINTS_OF_AN_EDGE / spacing) + 0.25);
+  double level = floor(hl_log2(edge / POINTS_OF_AN_EDGE / spacing) + 0.25);
   return level < 0 ? 0 : level > LEVELS_MOST - 1 ? LEVELS_MOST - 1 : (int)level;
 }
 

@@ -8,6 +8,7 @@
 
 #include "cli/render/render.h"
 #include "commands.h"
+#include "elementary/elementary.h"
 #include "host.h"
 #include "input.h"
 #include "output.h"
@@ -108,7 +109,7 @@ static void put_caption(const looks_job *job, int left, int top, const char *nam
 /* Copies a picture over its scene's background into the sheet. */
 static void put_picture(const looks_job *job, const hl_scene_description *scene, const hl_image *picture,
                         int left, int top) {
-  float factor = (float)exp2(scene->exposure);
+  float factor = (float)hl_exp2(scene->exposure);
   const float *from = hl_image_pixels_const(picture);
   for (int y = 0; y < job->side; y++)
     for (int x = 0; x < job->side; x++, from += 4) {

@@ -7,6 +7,7 @@
 #include "compose/slice.h"
 #include "core/context.h"
 #include "core/vector.h"
+#include "elementary/elementary.h"
 #include "guess/cut_view.h"
 #include "guess/looks.h"
 #include "scene/geometry/camera.h"
@@ -30,12 +31,12 @@ static double distance(const double a[3], const double b[3]) {
 static void change_projection(const hl_asked *asked, hl_camera *camera) {
   double away = distance(camera->position, camera->target);
   if (asked[HL_ASK_ORTHO].given && camera->type == HL_CAMERA_PERSPECTIVE) {
-    camera->height = 2 * away * tan(camera->fovy_deg * degree / 2);
+    camera->height = 2 * away * hl_tan(camera->fovy_deg * degree / 2);
     camera->type = HL_CAMERA_ORTHOGRAPHIC;
   }
   if (!asked[HL_ASK_FOVY].given) return;
   if (camera->type == HL_CAMERA_ORTHOGRAPHIC && away > 0) {
-    double wanted = camera->height / (2 * tan(asked[HL_ASK_FOVY].number[0] * degree / 2));
+    double wanted = camera->height / (2 * hl_tan(asked[HL_ASK_FOVY].number[0] * degree / 2));
     for (int i = 0; i < 3; i++)
       camera->position[i] = camera->target[i] + (camera->position[i] - camera->target[i]) * wanted / away;
   }
@@ -57,8 +58,8 @@ static int nearest_axis(vec3 direction) {
 static vec3 towards_eye(const hl_view *view) {
   const vec3 up = vec3_of(view->up), front = vec3_of(view->front), right = vec3_cross(up, front);
   const double azimuth = view->azimuth_deg * degree, elevation = view->elevation_deg * degree;
-  const vec3 level = vec3_add(vec3_scale(front, cos(azimuth)), vec3_scale(right, sin(azimuth)));
-  return vec3_add(vec3_scale(level, cos(elevation)), vec3_scale(up, sin(elevation)));
+  const vec3 level = vec3_add(vec3_scale(front, hl_cos(azimuth)), vec3_scale(right, hl_sin(azimuth)));
+  return vec3_add(vec3_scale(level, hl_cos(elevation)), vec3_scale(up, hl_sin(elevation)));
 }
 
 /* If "view" asks for a side of a volume whose file does not tell the directions, logs which side this is in

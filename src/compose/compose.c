@@ -16,6 +16,7 @@
 #include "core/door.h"
 #include "core/memory.h"
 #include "core/vector.h"
+#include "elementary/elementary.h"
 
 /* The changed copy of the description, and the arrays that this copy owns. */
 typedef struct scene_change {
@@ -46,7 +47,7 @@ static void tell_of_hidden_floor(const hl_composer *composer, const hl_scene_des
   const bool orthographic = camera->type == HL_CAMERA_ORTHOGRAPHIC;
   const vec3 to_eye = vec3_subtract(eye, orthographic ? vec3_of(camera->target) : middle);
   const double seen = orthographic ? camera->height
-                                   : 2 * vec3_length(to_eye) * tan(camera->fovy_deg * HL_PI / 360);
+                                   : 2 * vec3_length(to_eye) * hl_tan(camera->fovy_deg * HL_PI / 360);
   const double edge = vec3_length(vec3_subtract(corners[1], corners[0]));
   const double pixels = vec3_dot(vec3_normalise(to_eye), up) * edge / seen * description->height;
   if (!(pixels < 1)) return;

@@ -8,6 +8,7 @@
 #include <math.h>
 
 #include "compose/composer.h"
+#include "elementary/elementary.h"
 #include "scene/function/transfer_function.h"
 #include "scene/geometry/placement.h"
 #include "volume/volume.h"
@@ -26,17 +27,17 @@ static double typical_depth(const hl_scene_volume *seen) {
   for (int bin = 0; bin < HL_HISTOGRAM_BINS; bin++) {
     double opacity = hl_transfer_function_opacity(function, volume->minimum + (bin + 0.5) * width);
     if (!(opacity > 0)) continue;
-    sum -= (double)volume->histogram[bin] * log1p(-fmin(opacity, MOST_OPACITY)) / function->unit_distance;
+    sum -= (double)volume->histogram[bin] * hl_log1p(-fmin(opacity, MOST_OPACITY)) / function->unit_distance;
     visible += (double)volume->histogram[bin];
   }
   const mat3 placed = hl_scene_volume_index_to_world(seen).linear;
   const double voxel = fabs(vec3_dot(placed.row[0], vec3_cross(placed.row[1], placed.row[2])));
-  return visible > 0 ? sum / visible * cbrt(visible * voxel) : 0;
+  return visible > 0 ? sum / visible * hl_cbrt(visible * voxel) : 0;
 }
 
 void hl_compose_rest(hl_scene_volume *volume) {
   const double rest = volume->mask.rest;
   if (volume->mask.volume == NULL || !(rest > 0 && rest < 1)) return;
   const double depth = typical_depth(volume);
-  if (depth > 0) volume->mask.rest = fmin(-log1p(rest * expm1(-depth)) / depth, 1);
+  if (depth > 0) volume->mask.rest = fmin(-hl_log1p(rest * hl_expm1(-depth)) / depth, 1);
 }

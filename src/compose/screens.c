@@ -5,6 +5,7 @@
 
 #include "core/context.h"
 #include "core/memory.h"
+#include "elementary/elementary.h"
 #include "scene/function/transfer_function.h"
 #include "volume/volume.h"
 
@@ -47,7 +48,7 @@ hl_status hl_screen_begin(hl_context *context, const hl_scene_description *scene
     for (int n = 0; n < HL_SCREEN_TABLE; n++) {
       const double opacity = hl_transfer_function_opacity(function,
                                                           least + range * n / (HL_SCREEN_TABLE - 1));
-      screen->opacity[n] = 1 - pow(1 - opacity, screen->step / function->unit_distance);
+      screen->opacity[n] = 1 - hl_pow(1 - opacity, screen->step / function->unit_distance);
     }
   }
   return find_cuts(context, scene, volume, &screen->cuts, &screen->cut_count, error);

@@ -13,6 +13,7 @@
 #include "compose/screens.h"
 #include "core/context.h"
 #include "core/memory.h"
+#include "elementary/elementary.h"
 #include "guess/sample.h"
 #include "text/stem.h"
 
@@ -166,7 +167,7 @@ static hl_status thin_before(hl_context *context, channel_views *views, size_t o
     hiding += middle[v] < HIDES;
   }
   for (size_t v = 0; v < views->count && status == HL_OK; v++) {
-    const double factor = log(THROUGH) / ((double)hiding * log(middle[v]));
+    const double factor = hl_ln(THROUGH) / ((double)hiding * hl_ln(middle[v]));
     if (!(middle[v] < HIDES) || factor >= views->thin[v]) continue;
     views->thin[v] = factor;
     views->hidden[v] = of;

@@ -10,6 +10,7 @@
 #include "core/door.h"
 #include "core/error.h"
 #include "core/memory.h"
+#include "elementary/elementary.h"
 #include "text/color.h"
 #include "text/edit_distance.h"
 #include "text/plain.h"
@@ -104,7 +105,7 @@ static void show_label(hl_shown_label *shown, double opacity, bool exactly, hl_l
  * fill a space, a path meets as a rule the cube root of n. The fractions of light that these bodies let pass
  * are multiplied. */
 static double opacity_of_each(double opacity, size_t count) {
-  return opacity < 1 && count > 1 ? -expm1(log1p(-opacity) / cbrt((double)count)) : opacity;
+  return opacity < 1 && count > 1 ? -hl_expm1(hl_log1p(-opacity) / hl_cbrt((double)count)) : opacity;
 }
 
 /* Returns whether the item "all" or "rest" shows labels that are no objects to look up in a legend: they are

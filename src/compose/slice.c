@@ -8,6 +8,7 @@
 #include "compose/coordinates.h"
 #include "core/context.h"
 #include "core/memory.h"
+#include "elementary/elementary.h"
 #include "guess/analysis.h"
 #include "scene/geometry/camera.h"
 #include "text/plain.h"
@@ -155,5 +156,5 @@ void hl_compose_slice(const hl_composer *composer, hl_scene_description *descrip
   if (!composer->asked[HL_ASK_SLICE].given || !composer->bare) return;
   for (int c = 0; c < 3; c++) description->background[c] = 0;
   const size_t values = hl_count_values(description);
-  if (values > 1) description->exposure = log2((double)values);
+  if (values > 1) description->exposure = hl_log2((double)values);
 }

@@ -6,7 +6,7 @@
 #include <math.h>
 #include <stdbool.h>
 
-#define HL_PI 3.14159265358979323846
+#include "elementary/elementary.h"
 
 typedef struct vec3 {
   double x, y, z;
@@ -80,7 +80,7 @@ static inline bool mat3_invert(mat3 m, mat3 *inverse) {
 }
 /* The matrix of a right-handed rotation by angle_rad about the unit vector `axis` (Rodrigues). */
 static inline mat3 mat3_rotation(vec3 axis, double angle_rad) {
-  double c = cos(angle_rad), s = sin(angle_rad), t = 1 - c;
+  double c = hl_cos(angle_rad), s = hl_sin(angle_rad), t = 1 - c;
   return (mat3){
       {{t * axis.x * axis.x + c, t * axis.x * axis.y - s * axis.z, t * axis.x * axis.z + s * axis.y},
        {t * axis.x * axis.y + s * axis.z, t * axis.y * axis.y + c, t * axis.y * axis.z - s * axis.x},

@@ -3,6 +3,7 @@
 
 #include <string.h>
 
+#include "elementary/elementary.h"
 #include "field/surface_links.h"
 
 /* NEAR_CELLS: cells within this distance, in cells, from something visible receive light. A look-up is moved
@@ -24,7 +25,7 @@ field_lattice hl_field_lattice(const vec3 *points, int count, double voxel, doub
     double cells = 1;
     for (int a = 0; a < 3; a++) cells *= ceil(size[a] / cell) + 2 * FIELD_MARGIN;
     if (cells <= most_cells) break;
-    cell *= fmax(cbrt(cells / most_cells), 1.005);
+    cell *= fmax(hl_cbrt(cells / most_cells), 1.005);
   }
   field_lattice lattice = {.cell = cell};
   double corner[3];

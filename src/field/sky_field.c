@@ -15,6 +15,7 @@
 #include <string.h>
 
 #include "core/context.h"
+#include "elementary/elementary.h"
 #include "field/field_planes.h"
 #include "field/harmonics.h"
 #include "field/open_light.h"
@@ -50,8 +51,8 @@ static int samples_of_sky(const hl_sky *sky) {
  * a ray moves along the two other axes while it moves by 1 along the face's axis. */
 static vec3 direction_of(const field_slices *s, int sign, double x, double y, double slope[2]) {
   double v[3] = {0, 0, 0};
-  slope[0] = tan(HL_PI / 4 * x);
-  slope[1] = tan(HL_PI / 4 * y);
+  slope[0] = hl_tan(HL_PI / 4 * x);
+  slope[1] = hl_tan(HL_PI / 4 * y);
   v[s->axis] = sign;
   v[s->across] = slope[0];
   v[s->down] = slope[1];

@@ -6,6 +6,7 @@
  * feet. */
 #include <string.h>
 
+#include "elementary/elementary.h"
 #include "figure/overlay.h"
 #include "scene/geometry/camera.h"
 
@@ -39,7 +40,7 @@ static const double arrow_length = 2.1, letter_room = 1.1;
 
 /* Draws an arrow with a filled head, from (from_x, from_y) along (x, y). */
 static void draw_arrow(const hl_ink *ink, double from_x, double from_y, double x, double y) {
-  const double length = hypot(x, y), head = fmin(0.5 * ink->size, length);
+  const double length = hl_hypot(x, y), head = fmin(0.5 * ink->size, length);
   cairo_new_path(ink->cairo);
   cairo_move_to(ink->cairo, from_x, from_y);
   cairo_line_to(ink->cairo, from_x + x, from_y + y);
@@ -69,7 +70,7 @@ static void draw_arrows(const hl_ink *ink, const hl_overlay_place *place) {
   for (int a = 0; a < 3; a++) {
     vec3 way = seen(&place->map, order[a]);
     draw_arrow(ink, x, y, length * way.x, -length * way.y);
-    double flat = hypot(way.x, way.y), out = length * flat + 0.65 * ink->size;
+    double flat = hl_hypot(way.x, way.y), out = length * flat + 0.65 * ink->size;
     double ux = flat > 1e-6 ? way.x / flat : 0.7, uy = flat > 1e-6 ? way.y / flat : 0.7;
     hl_ink_text(ink, &(hl_line_of_text){.text = (*names)[order[a]][1],
                                         .x = x + out * ux,

@@ -8,6 +8,7 @@
 
 #include <glib.h>
 
+#include "elementary/elementary.h"
 #include "image/srgb.h"
 
 enum { MOST_BYTES = 2000 };
@@ -152,7 +153,7 @@ void hl_ink_stroke(const hl_ink *ink, double width) {
 static double encode(double linear) {
   if (!(linear > 0)) return 0;
   if (linear >= 1) return 1;
-  return linear <= 0.0031308 ? 12.92 * linear : 1.055 * pow(linear, 1 / 2.4) - 0.055;
+  return linear <= 0.0031308 ? 12.92 * linear : 1.055 * hl_pow(linear, 1 / 2.4) - 0.055;
 }
 
 void hl_ink_source(cairo_t *cairo, const double linear[3], double alpha) {

@@ -4,6 +4,7 @@
  * world; the height of a perspective picture, at the depth d, is 2 d tan(fovy / 2) units. */
 #include "figure/map.h"
 
+#include "elementary/elementary.h"
 #include "scene/geometry/camera.h"
 
 hl_map hl_map_of(const hl_camera *camera, hl_rectangle picture) {
@@ -12,7 +13,7 @@ hl_map hl_map_of(const hl_camera *camera, hl_rectangle picture) {
                 .center_y = picture.top + picture.height / 2,
                 .perspective = camera->type == HL_CAMERA_PERSPECTIVE};
   hl_camera_basis(camera, &map.right, &map.up, &map.forward);
-  double seen = map.perspective ? 2 * tan(camera->fovy_deg * HL_PI / 360) : camera->height;
+  double seen = map.perspective ? 2 * hl_tan(camera->fovy_deg * HL_PI / 360) : camera->height;
   map.scale = picture.height / seen;
   map.target_depth = vec3_length(vec3_subtract(vec3_of(camera->target), map.eye));
   return map;

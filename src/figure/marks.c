@@ -7,6 +7,7 @@
 #include <stdio.h>
 #include <string.h>
 
+#include "elementary/elementary.h"
 #include "figure/overlay.h"
 #include "scene/geometry/placement.h"
 #include "text/plain.h"
@@ -40,7 +41,7 @@ static double length_of(const hl_scene_description *scene, const hl_mark *mark) 
 static double angle_of(const hl_scene_description *scene, const hl_mark *mark) {
   const vec3 u = way_of(scene, mark, 1, 0), v = way_of(scene, mark, 1, 2);
   const double size = vec3_length(u) * vec3_length(v);
-  return size > 0 ? 180 / HL_PI * acos(fmin(fmax(vec3_dot(u, v) / size, -1), 1)) : 0;
+  return size > 0 ? 180 / HL_PI * hl_acos(fmin(fmax(vec3_dot(u, v) / size, -1), 1)) : 0;
 }
 
 /* Moves a number that lies in the middle between two decimals away from zero, so that printing rounds it as
@@ -105,7 +106,7 @@ typedef struct point_on_page {
 
 /* Adds the head of an arrow to the current path. */
 static void add_head(const hl_ink *ink, point_on_page from, point_on_page tip) {
-  const double far = hypot(tip.x - from.x, tip.y - from.y), head = 0.8 * ink->size;
+  const double far = hl_hypot(tip.x - from.x, tip.y - from.y), head = 0.8 * ink->size;
   if (!(far > 0)) return;
   const double x = (tip.x - from.x) / far * head, y = (tip.y - from.y) / far * head;
   cairo_move_to(ink->cairo, tip.x - x - y / 2, tip.y - y + x / 2);

@@ -10,6 +10,7 @@
 #include <stdio.h>
 #include <string.h>
 
+#include "elementary/elementary.h"
 #include "text/plain.h"
 
 enum { STEPS_BETWEEN_POINTS = 8, CURVE_STEPS = 256, TICKS_MOST = 6, NUMBER_BYTES = 40 };
@@ -35,13 +36,13 @@ hl_strip_scale hl_strip_scale_of(const hl_transfer_function *function, const dou
 
 /* The place of a value along the strip: 0 at the lower end, 1 at the upper end. */
 static double part_of(const hl_strip_scale *scale, double value) {
-  if (scale->logarithmic) return log(value / scale->low) / log(scale->high / scale->low);
+  if (scale->logarithmic) return hl_ln(value / scale->low) / hl_ln(scale->high / scale->low);
   return (value - scale->low) / (scale->high - scale->low);
 }
 
 /* The value at a place along the strip. */
 static double value_at(const hl_strip_scale *scale, double part) {
-  if (scale->logarithmic) return scale->low * pow(scale->high / scale->low, part);
+  if (scale->logarithmic) return scale->low * hl_pow(scale->high / scale->low, part);
   return scale->low + part * (scale->high - scale->low);
 }
 
@@ -117,7 +118,7 @@ typedef struct numbers {
 
 /* The least number of the form 1, 2 or 5 times a power of ten that is at least `least`. */
 static double round_step(double least) {
-  double power = pow(10, floor(log10(least)));
+  double power = hl_pow(10, floor(hl_log10(least)));
   static const double steps[] = {1, 2, 5, 10};
   for (int s = 0; s < 3; s++)
     if (steps[s] * power >= least * (1 - 1e-9)) return steps[s] * power;
@@ -136,7 +137,7 @@ static bool has_two(double low, double high, double step) {
  * powers of ten has multiples of a step. */
 static numbers choose_numbers(const hl_strip_scale *scale, double ticks) {
   if (scale->logarithmic) {
-    const double low = log10(scale->low), high = log10(scale->high);
+    const double low = hl_log10(scale->low), high = hl_log10(scale->high);
     double step = fmax(1, ceil((high - low) / fmax(ticks, 1) - 1e-9));
     while (step > 1 && !has_two(low, high, step)) step--;
     if (has_two(low, high, step)) return (numbers){step, true};
@@ -159,7 +160,7 @@ static void write_power(double exponent, char text[NUMBER_BYTES]) {
 
 static void write_number(double value, double step, const hl_strip_scale *scale, char text[NUMBER_BYTES]) {
   double greatest = fmax(fabs(scale->low), fabs(scale->high));
-  int decimals = step < 1 ? (int)ceil(-log10(step) - 1e-9) : 0;
+  int decimals = step < 1 ? (int)ceil(-hl_log10(step) - 1e-9) : 0;
   if (fabs(value) < step / 1e6) value = 0;
   if (greatest >= 1e6 || step < 1e-4) hl_plain_print(text, NUMBER_BYTES, "%.4g", value);
   else hl_plain_print(text, NUMBER_BYTES, "%.*f", decimals, value);
@@ -171,7 +172,7 @@ static double write_multiple(const numbers *shown, double n, const hl_strip_scal
   const double multiple = n * shown->step;
   if (shown->decades) write_power(multiple, text);
   else write_number(multiple, shown->step, scale, text);
-  return shown->decades ? pow(10, multiple) : multiple;
+  return shown->decades ? hl_pow(10, multiple) : multiple;
 }
 
 static void draw_number(const hl_ink *ink, const char *text, double x, double y) {
@@ -188,8 +189,8 @@ static void draw_number(const hl_ink *ink, const char *text, double x, double y)
 static double draw_numbers(const hl_ink *ink, const hl_strip_scale *scale, double x, double bottom,
                            double top, bool draws) {
   const numbers shown = choose_numbers(scale, fmin(TICKS_MOST, (bottom - top) / (1.6 * ink->size)));
-  const double low = shown.decades ? log10(scale->low) : scale->low;
-  const double high = shown.decades ? log10(scale->high) : scale->high;
+  const double low = shown.decades ? hl_log10(scale->low) : scale->low;
+  const double high = shown.decades ? hl_log10(scale->high) : scale->high;
   double widest = 0;
   for (double n = first_of(low, shown.step); n * shown.step <= high + 1e-9 * shown.step; n++) {
     char text[NUMBER_BYTES];

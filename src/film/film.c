@@ -4,6 +4,7 @@
  * library reads and checks this copy like any other scene. Then the camera is turned. */
 #define _GNU_SOURCE
 #include "film.h"
+#include "elementary/elementary.h"
 
 #include <math.h>
 #include <stdbool.h>
@@ -254,8 +255,8 @@ static void angles_of(const hl_light *light, const hl_camera *camera, double *az
   double up = dot(light->direction, above), x = dot(light->direction, aside),
          z = dot(light->direction, ahead);
   const double degrees = 180 / 3.14159265358979323846;
-  *azimuth = atan2(x, z) * degrees;
-  *elevation = atan2(up, hypot(x, z)) * degrees;
+  *azimuth = hl_atan2(x, z) * degrees;
+  *elevation = hl_atan2(up, hl_hypot(x, z)) * degrees;
 }
 
 static hl_status turn_lights(const film *f, int frame, hl_light *lights, const hl_scene_description *scene,

@@ -1,6 +1,7 @@
 /* film/keys.c - reads keys, and finds their values at a frame. */
 #define _GNU_SOURCE
 #include "keys.h"
+#include "elementary/elementary.h"
 #include "text/color.h"
 #include "text/plain.h"
 
@@ -171,9 +172,9 @@ static bool turn_between(const double a[3], const double b[3], double part, doub
   if (!(lengths[0] > 0 && lengths[1] > 0)) return false;
   for (int k = 0; k < 3; k++) from[k] = a[k] / lengths[0], to[k] = b[k] / lengths[1];
   if (!find_side(from, to, side)) return false;
-  const double angle = part * atan2(dot(to, side), dot(to, from));
+  const double angle = part * hl_atan2(dot(to, side), dot(to, from));
   const double length = lengths[0] + (lengths[1] - lengths[0]) * part;
-  for (int k = 0; k < 3; k++) between[k] = length * (from[k] * cos(angle) + side[k] * sin(angle));
+  for (int k = 0; k < 3; k++) between[k] = length * (from[k] * hl_cos(angle) + side[k] * hl_sin(angle));
   return true;
 }
 

@@ -5,6 +5,7 @@
 
 #include "core/memory.h"
 #include "core/sheet_constants.h"
+#include "elementary/elementary.h"
 
 /* The extinction sigma that belongs to an opacity alpha: sigma = -ln(1 - alpha) / u, where u is the length
  * for which the transfer function's opacities hold. alpha is clamped to 0.9999. */
@@ -12,7 +13,7 @@ static double extinction_of(const hl_transfer_function *function, double value) 
   double alpha = hl_transfer_function_opacity(function, value);
   if (alpha <= 0) return 0;
   if (alpha > 0.9999) alpha = 0.9999;
-  return -log1p(-alpha) / function->unit_distance;
+  return -hl_log1p(-alpha) / function->unit_distance;
 }
 
 double hl_transparent_below(const hl_volume *volume, const hl_transfer_function *function, double empty) {

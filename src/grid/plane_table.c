@@ -8,6 +8,7 @@
 #include <math.h>
 #include <string.h>
 
+#include "elementary/elementary.h"
 #include "grid/field.h"
 #include "scene/geometry/placement.h"
 
@@ -87,7 +88,7 @@ static void fill_row(const hl_transfer_function *function, const table_axis axes
     part_of_axis(&axes[0], column, &part.low[0], &part.high[0]);
     bool some = axes[0].start + column * axes[0].step >= axes[0].nothing;
     plane_sum mean = some ? hl_plane_mean(function, &part) : (plane_sum){0, {0, 0, 0}};
-    double opacity = -expm1(-mean.extinction * function->unit_distance), shown[4] = {0, 0, 0, opacity};
+    double opacity = -hl_expm1(-mean.extinction * function->unit_distance), shown[4] = {0, 0, 0, opacity};
     for (int c = 0; c < 3 && mean.extinction > 0; c++) shown[c] = opacity * mean.color[c] / mean.extinction;
     float *sum = table->sums[place_of(row, column)], *color = table->color[place_of(row, column)];
     integral += column == 0 ? 0 : (before + mean.extinction) / 2;

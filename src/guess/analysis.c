@@ -15,6 +15,7 @@
 #include "core/context.h"
 #include "core/door.h"
 #include "core/memory.h"
+#include "elementary/elementary.h"
 #include "guess/sample.h"
 
 #define BINS 32 /* bins of the histogram whose shape tells the kind of data */
@@ -353,7 +354,7 @@ static hl_status analyse_sample(const hl_volume *volume, const hl_sample *sample
   if (memory == NULL) return hl_fail_memory(error, count * sizeof *memory, "a volume's sample");
   hl_status status = analyse_values(volume, sample, memory, a, error);
   hl_release(volume->context, memory);
-  a->depth = cbrt(a->depth / (double)sample->count * (double)hl_volume_voxel_count(volume));
+  a->depth = hl_cbrt(a->depth / (double)sample->count * (double)hl_volume_voxel_count(volume));
   return status;
 }
 

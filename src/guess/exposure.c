@@ -11,6 +11,7 @@
 
 #include "core/context.h"
 #include "core/memory.h"
+#include "elementary/elementary.h"
 #include "guess/cut_face.h"
 #include "guess/glow.h"
 #include "guess/sample.h"
@@ -140,7 +141,7 @@ static void shade(const exposure *e, const double color[3], const sample_light *
       matt[c] += intensity * light->color[c] * (lit->surface ? material->diffuse * fmax(cosine, 0) : 1);
     if (lit->surface && cosine > 0)
       gloss += intensity * material->specular *
-               pow(fmax(vec3_dot(to_eye, reflected), 0), material->shininess);
+               hl_pow(fmax(vec3_dot(to_eye, reflected), 0), material->shininess);
   }
   for (int c = 0; c < 3; c++) sent[c] = color[c] * own[c] * matt[c] + gloss;
 }
@@ -168,7 +169,7 @@ static double thickness_at(const exposure *e, int entry, double value, double st
   int away = value > e->empty ? 1 : -1, first = entry;
   while (first - away >= 0 && first - away < TABLE && e->opacity[first - away] > 0) first -= away;
   for (int n = first; n >= 0 && n < TABLE; n += away) {
-    optical_depth -= log1p(-fmin(e->opacity[n], 0.9999)) * per_entry / steepness;
+    optical_depth -= hl_log1p(-fmin(e->opacity[n], 0.9999)) * per_entry / steepness;
     if (optical_depth >= 1) return (abs(n - first) + 1) * per_entry / steepness;
   }
   return INFINITY;
@@ -210,7 +211,7 @@ static double passing(const exposure *e, vec3 point, vec3 towards) {
     double value = hl_volume_value_within(e->volume->volume, (size_t)lround(at.x), (size_t)lround(at.y),
                                           (size_t)lround(at.z));
     double clear = isfinite(value) ? 1 - e->opacity[entry_of(e, value)] : 1;
-    if (clear < 1 && hl_cuts_leave(e->cuts, e->volume->cut_count, at)) left *= pow(clear, STEPS);
+    if (clear < 1 && hl_cuts_leave(e->cuts, e->volume->cut_count, at)) left *= hl_pow(clear, STEPS);
   }
 }
 
@@ -228,7 +229,7 @@ static void light_reaching_face(const exposure *e, vec3 point, vec3 normal, samp
   lit->sky = 0;
   for (int n = 0; n < DIRECTIONS && scene->sky.type != HL_SKY_NONE; n++) {
     double aside = sqrt(n % 2 ? 0.75 : 0.25), turn = 2 * HL_PI * n / DIRECTIONS;
-    vec3 flat = vec3_add(vec3_scale(u, aside * cos(turn)), vec3_scale(v, aside * sin(turn)));
+    vec3 flat = vec3_add(vec3_scale(u, aside * hl_cos(turn)), vec3_scale(v, aside * hl_sin(turn)));
     vec3 towards = vec3_add(flat, vec3_scale(normal, sqrt(1 - aside * aside)));
     lit->sky += passing(e, point, towards) / DIRECTIONS;
   }
@@ -347,7 +348,7 @@ static bool begin(const hl_scene_description *scene, double empty, double left, 
       !hl_camera_basis(camera, &e->right, &e->up, &e->forward))
     return false;
   hl_scene_volume_box(volume, e->low, e->high);
-  double half = tan(camera->fovy_deg * HL_PI / 360);
+  double half = hl_tan(camera->fovy_deg * HL_PI / 360);
   e->right = vec3_scale(e->right, half * scene->width / scene->height);
   e->up = vec3_scale(e->up, half);
   for (size_t l = 0; l < scene->light_count; l++) {
@@ -358,8 +359,8 @@ static bool begin(const hl_scene_description *scene, double empty, double left, 
   e->flat = 1e-3 * range / e->step;
   for (int n = 0; n < TABLE; n++) {
     double value = volume->volume->minimum + range * n / (TABLE - 1);
-    e->opacity[n] = 1 -
-                    pow(1 - hl_transfer_function_opacity(function, value), e->step / function->unit_distance);
+    e->opacity[n] = 1 - hl_pow(1 - hl_transfer_function_opacity(function, value),
+                               e->step / function->unit_distance);
     hl_transfer_function_color(function, value, e->color[n]);
   }
   return true;
@@ -410,7 +411,7 @@ static hl_glow_matter matter_at(const void *data, vec3 place) {
   const double value = hl_volume_value_within(volume, at[0], at[1], at[2]);
   if (!isfinite(value) || !hl_cuts_leave(e->cuts, e->volume->cut_count, place)) return (hl_glow_matter){0, 0};
   const int entry = entry_of(e, value);
-  const double extinction = -log1p(-fmin(e->opacity[entry], 0.9999)) / e->step;
+  const double extinction = -hl_log1p(-fmin(e->opacity[entry], 0.9999)) / e->step;
   double scattered = 0;
   for (int c = 0; c < 3; c++) scattered = fmax(scattered, e->volume->albedo[c] * e->color[entry][c]);
   return (hl_glow_matter){extinction, extinction * fmin(scattered, 1)};

@@ -7,6 +7,7 @@
 #include "core/door.h"
 #include "core/error.h"
 #include "core/sheet_constants.h"
+#include "elementary/elementary.h"
 #include "guess/analysis.h"
 #include "guess/exposure.h"
 #include "guess/holders.h"
@@ -132,7 +133,7 @@ static double diagonal_of(const hl_volume *volume, double more) {
   for (int a = 0; a < 3; a++) {
     double length = vec3_length(mat3_column(volume->index_to_world.linear, a));
     edge = fmin(edge, length);
-    diagonal = hypot(diagonal, length * ((double)volume->dimension[a] + more));
+    diagonal = hl_hypot(diagonal, length * ((double)volume->dimension[a] + more));
   }
   return diagonal / edge;
 }
@@ -143,7 +144,7 @@ static void tell_of_sheets(const hl_volume *volume, double spacing) {
   double edges[3], cubes = 0, sheets = diagonal_of(volume, 1) / spacing;
   for (int a = 0; a < 3; a++) {
     edges[a] = vec3_length(mat3_column(volume->index_to_world.linear, a));
-    cubes = hypot(cubes, (double)volume->dimension[a] / spacing);
+    cubes = hl_hypot(cubes, (double)volume->dimension[a] / spacing);
   }
   if (sheets > HL_MANY_SHEETS && sheets <= GREATEST_SHEETS && sheets > 2 * cubes)
     hl_log(volume->context, HL_LOG_WARNING,

@@ -7,6 +7,7 @@
 
 #include "core/door.h"
 #include "core/error.h"
+#include "elementary/elementary.h"
 #include "guess/outline.h"
 #include "guess/view.h"
 
@@ -210,7 +211,7 @@ static hl_status begin(const hl_scene_description *description, double zoom, con
                    "field of view");
   job->outline = outline;
   job->aspect = (double)description->width / description->height;
-  job->tangent_y = perspective ? tan(camera->fovy_deg * HL_PI / 360) : 0;
+  job->tangent_y = perspective ? hl_tan(camera->fovy_deg * HL_PI / 360) : 0;
   job->tangent_x = job->tangent_y * job->aspect;
   return outline->context != NULL ? HL_OK : hl_outline_find(description, outline, error);
 }

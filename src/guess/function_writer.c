@@ -8,6 +8,7 @@
 #include <math.h>
 #include <string.h>
 
+#include "elementary/elementary.h"
 #include "guess/analysis.h"
 #include "scene/function/transfer_function.h"
 #include "scene/scene.h"
@@ -44,7 +45,7 @@ static void write_solid(hl_function_writer *w, const shade *shades, size_t count
                             {a->solid + 0.5 * (dense - a->solid), 0.93},
                             {dense, 0.97}};
   for (size_t n = 0; n < sizeof rows / sizeof *rows; n++)
-    hl_add_opacity(w, rows[n][0], 1 - pow(1 - rows[n][1], edges));
+    hl_add_opacity(w, rows[n][0], 1 - hl_pow(1 - rows[n][1], edges));
   for (size_t n = 0; n < count; n++) hl_add_color(w, shades[n].distance, shades[n].color);
 }
 
@@ -325,7 +326,7 @@ void hl_add_colormap(hl_function_writer *w, const char *name, double from, doubl
 }
 
 double hl_opacity_for(const hl_data_analysis *analysis, double optical_depth) {
-  return 1 - exp(-optical_depth / fmax(analysis->depth, 1));
+  return 1 - hl_exp(-optical_depth / fmax(analysis->depth, 1));
 }
 
 /* Reverses the order of the points if objects lie below the background, because points are added with rising

@@ -14,6 +14,7 @@
 #include <math.h>
 
 #include "core/memory.h"
+#include "elementary/elementary.h"
 
 /* LONGEST: the number of cells along the longest side of the box. SUBDIVIDED: the number of places along each
  * side of a cell at which matter is looked up. SWEEPS: the number of times that all cells are relaxed. */
@@ -101,7 +102,7 @@ static double find_unscattered(const glow_grid *grid, const int at[3]) {
       if (!within) break;
       depth += step * grid->extinction[cell_of(glow, cell[0], cell[1], cell[2])];
     }
-    light += request->strength[l] * exp(-depth);
+    light += request->strength[l] * hl_exp(-depth);
   }
   return light;
 }

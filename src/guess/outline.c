@@ -9,6 +9,7 @@
 #include "core/door.h"
 #include "core/error.h"
 #include "core/memory.h"
+#include "elementary/elementary.h"
 #include "guess/sample.h"
 #include "guess/seen_cells.h"
 #include "mesh/mesh.h"
@@ -165,7 +166,7 @@ void hl_outline_release(hl_outline *outline) {
 
 vec3 hl_even_direction(int n, int count) {
   double z = 1 - (2 * n + 1.0) / count, across = sqrt(1 - z * z), angle = n * HL_PI * (3 - sqrt(5));
-  return (vec3){across * cos(angle), across * sin(angle), z};
+  return (vec3){across * hl_cos(angle), across * hl_sin(angle), z};
 }
 
 /* A box around up to POINTS_A_BOX consecutive points, and the greatest of their radii. */

@@ -7,6 +7,7 @@
 #include <string.h>
 
 #include "core/memory.h"
+#include "elementary/elementary.h"
 
 /* An unsigned integer that sorts as the float does. The bits of a negative float are inverted; other floats
  * get the highest bit set. */
@@ -145,7 +146,7 @@ double hl_threshold_cross_entropy(const float *ascending, size_t count, double f
     if (below == 0 || below == count) break;
     double low = fmax(sum / (double)below, floor), high = (total - sum) / (double)(count - below);
     if (!(high > low)) break;
-    double next = (high - low) / (log(high) - log(low));
+    double next = (high - low) / (hl_ln(high) - hl_ln(low));
     bool settled = fabs(next - threshold) <= 1e-4 * threshold;
     threshold = next;
     if (settled) break;

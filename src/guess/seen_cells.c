@@ -6,6 +6,7 @@
 #include <string.h>
 
 #include "core/memory.h"
+#include "elementary/elementary.h"
 #include "guess/looks.h"
 #include "guess/sample.h"
 #include "volume/store/pages.h"
@@ -29,7 +30,7 @@ enum { BINS = 4096, SPECK = 3, SPECK_RATIO = 50, SMALL_RATIO = 5000 };
 
 static double depth_of(const hl_transfer_function *function, double value) {
   double opacity = fmin(hl_transfer_function_opacity(function, value), OPAQUE);
-  return -log1p(-opacity) / function->unit_distance;
+  return -hl_log1p(-opacity) / function->unit_distance;
 }
 
 static double greatest_opacity(const hl_transfer_function *function, double low, double high) {
@@ -328,7 +329,7 @@ hl_status hl_seen_find(const hl_scene_volume *volume, hl_seen *seen, bool *any, 
   *seen = (hl_seen){.volume = volume->volume, .cut_count = volume->cut_count, .bins.function = function};
   *any = volume->visible && greatest > 0 && find_range(volume, seen);
   if (!*any) return HL_OK;
-  seen->faint = (float)(-log1p(-FAINT * fmin(greatest, OPAQUE)) / function->unit_distance * (1 - 1e-6));
+  seen->faint = (float)(-hl_log1p(-FAINT * fmin(greatest, OPAQUE)) / function->unit_distance * (1 - 1e-6));
   hl_status status = make_table(seen, error);
   if (status == HL_OK) status = make_cells(seen, error);
   if (status == HL_OK) status = hl_cut_shapes(volume->volume->context, volume, &seen->cuts, error);

@@ -9,6 +9,7 @@
 #include <math.h>
 
 #include "core/door.h"
+#include "elementary/elementary.h"
 #include "guess/looks.h"
 #include "volume/smooth.h"
 #include "volume/store/gathered.h"
@@ -77,7 +78,7 @@ hl_status hl_volume_smooth(hl_volume *volume, double sigma, hl_volume **smoothed
   } else {
     status = hl_volume_convolve(volume, sigma, smoothed, error);
     if (status != HL_OK) return status;
-    (*smoothed)->smoothing = hypot(sigma, volume->smoothing);
+    (*smoothed)->smoothing = hl_hypot(sigma, volume->smoothing);
     status = hl_volume_keep_unsmoothed(*smoothed, volume, error);
     /* The smoothed volume keeps the analysis of the unsmoothed one, because smoothing removes the noise by
      * which scans are told from fields. A smoothed mask has more than two values. */

@@ -10,6 +10,7 @@
 #include "core/door.h"
 #include "core/error.h"
 #include "core/memory.h"
+#include "elementary/elementary.h"
 #include "guess/looks.h"
 #include "guess/sample.h"
 #include "guess/seen_cells.h"
@@ -357,7 +358,7 @@ static hl_status find_front(const hl_scene_description *description, const hl_vi
 
 /* Turns a view to a side. front: the azimuth of the front, 0 or 180 degrees. */
 static void look_from(const hl_scene_description *description, hl_side side, double front, hl_view *view) {
-  const double left = azimuth_of_left(description, view), isometric = atan(sqrt(0.5)) * 180 / HL_PI;
+  const double left = azimuth_of_left(description, view), isometric = hl_atan(sqrt(0.5)) * 180 / HL_PI;
   const double azimuth[] = {
       [HL_SIDE_BACK] = 180, [HL_SIDE_LEFT] = left, [HL_SIDE_RIGHT] = -left, [HL_SIDE_ISO] = 45};
   const double elevation[] = {[HL_SIDE_TOP] = 90, [HL_SIDE_BOTTOM] = -90, [HL_SIDE_ISO] = isometric};

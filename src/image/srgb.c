@@ -10,6 +10,7 @@
 #include <string.h>
 
 #include "core/memory.h"
+#include "elementary/elementary.h"
 
 /* Finds the root of r^5 = value by seven steps of Newton's method. They reach double precision for values in
  * [0.008, 1.02]: the guess is at most 31 % off, and each step squares the error. */
@@ -47,7 +48,7 @@ double hl_srgb_decode(double encoded) {
 }
 
 double hl_srgb_encode_number(double linear) {
-  return linear <= 0.0031308 ? 12.92 * linear : 1.055 * pow(linear, 1 / 2.4) - 0.055;
+  return linear <= 0.0031308 ? 12.92 * linear : 1.055 * hl_pow(linear, 1 / 2.4) - 0.055;
 }
 
 /* The least float that is not below a double. */

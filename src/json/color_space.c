@@ -5,13 +5,14 @@
 #include <string.h>
 
 #include "core/vector.h"
+#include "elementary/elementary.h"
 #include "scene/function/transfer_function.h"
 
 static double linear_to_srgb(double linear) { /* the curve of IEC 61966-2-1 */
-  return linear <= 0.0031308 ? 12.92 * linear : 1.055 * pow(linear, 1 / 2.4) - 0.055;
+  return linear <= 0.0031308 ? 12.92 * linear : 1.055 * hl_pow(linear, 1 / 2.4) - 0.055;
 }
 
-static double lab_function(double t) { return t > 0.008856 ? cbrt(t) : 7.787 * t + 16.0 / 116; }
+static double lab_function(double t) { return t > 0.008856 ? hl_cbrt(t) : 7.787 * t + 16.0 / 116; }
 static double lab_inverse(double f) { return f * f * f > 0.008856 ? f * f * f : (f - 16.0 / 116) / 7.787; }
 
 static const double white[3] = {0.9505, 1, 1.089}; /* the white point D65 */
@@ -82,15 +83,15 @@ static msh msh_of(const double srgb[3]) {
   double lab[3];
   srgb_to_lab(srgb, lab);
   double m = vec3_length(vec3_of(lab));
-  double s = m > 0.001 ? acos(fmin(fmax(lab[0] / m, -1), 1)) : 0;
-  return (msh){m, s, s > 0.001 ? atan2(lab[2], lab[1]) : 0};
+  double s = m > 0.001 ? hl_acos(fmin(fmax(lab[0] / m, -1), 1)) : 0;
+  return (msh){m, s, s > 0.001 ? hl_atan2(lab[2], lab[1]) : 0};
 }
 
 /* The hue that an unsaturated colour of magnitude m gets when it is mixed with a saturated colour. With this
  * hue, colours change evenly from one to the other. */
 static double spun_hue(msh saturated, double m) {
   if (saturated.m >= m - 0.1) return saturated.h;
-  double spin = saturated.s * sqrt(m * m - saturated.m * saturated.m) / (saturated.m * sin(saturated.s));
+  double spin = saturated.s * sqrt(m * m - saturated.m * saturated.m) / (saturated.m * hl_sin(saturated.s));
   return saturated.h > -0.3 * HL_PI ? saturated.h + spin : saturated.h - spin;
 }
 
@@ -106,7 +107,7 @@ static void mix_diverging(const double a[3], const double b[3], double t, double
   if (from.s < 0.05 && to.s > 0.05) from.h = spun_hue(to, from.m);
   else if (from.s > 0.05 && to.s < 0.05) to.h = spun_hue(from, to.m);
   double m = from.m + t * (to.m - from.m), s = from.s + t * (to.s - from.s), h = from.h + t * (to.h - from.h);
-  double lab[3] = {m * cos(s), m * sin(s) * cos(h), m * sin(s) * sin(h)};
+  double lab[3] = {m * hl_cos(s), m * hl_sin(s) * hl_cos(h), m * hl_sin(s) * hl_sin(h)};
   lab_to_srgb(lab, mixed);
 }
 

@@ -2,6 +2,8 @@
  * sheets. */
 #include "light/light_extent.h"
 
+#include "elementary/elementary.h"
+
 vec3 hl_light_point(const light_source *source, double a, double b) {
   return source->shape.kind->point(&source->shape, source->direction, a, b);
 }
@@ -16,8 +18,8 @@ typedef struct covariance {
 /* Turns u and v by the angle at which the covariance uv vanishes, tan(2 angle) = 2 uv / (uu - vv)
  * (derived). */
 static covariance turn_to_axes(covariance c, vec3 *u, vec3 *v) {
-  double angle = 0.5 * atan2(2 * c.uv, c.uu - c.vv);
-  double cosine = cos(angle), sine = sin(angle);
+  double angle = 0.5 * hl_atan2(2 * c.uv, c.uu - c.vv);
+  double cosine = hl_cos(angle), sine = hl_sin(angle);
   vec3 turned = vec3_add(vec3_scale(*u, cosine), vec3_scale(*v, sine));
   *v = vec3_add(vec3_scale(*v, cosine), vec3_scale(*u, -sine));
   *u = turned;

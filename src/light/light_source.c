@@ -1,6 +1,8 @@
 /* light/light_source.c - see light_source.h. */
 #include "light/light_source.h"
 
+#include "elementary/elementary.h"
+
 /* A light counts as a point if the square of its size is at most this fraction of the square of its distance.
  * The light's penumbrae are then too narrow for any pixel. */
 static const double POINT_LIKE = 1e-12;
@@ -62,15 +64,15 @@ light_sectors hl_light_sectors(vec3 eye_direction, double widest) {
   vec3 u = vec3_perpendicular(eye_direction), v = vec3_cross(eye_direction, u);
   light_sectors sectors;
   for (int i = 0; i < LIGHT_SECTORS; i++) {
-    double turn = i * HL_PI / 3, along = i % 2 == 0 ? cos(phi) : -cos(phi);
-    vec3 across = vec3_add(vec3_scale(u, cos(turn)), vec3_scale(v, sin(turn)));
-    sectors.axis[i] = vec3_add(vec3_scale(eye_direction, along), vec3_scale(across, sin(phi)));
+    double turn = i * HL_PI / 3, along = i % 2 == 0 ? hl_cos(phi) : -hl_cos(phi);
+    vec3 across = vec3_add(vec3_scale(u, hl_cos(turn)), vec3_scale(v, hl_sin(turn)));
+    sectors.axis[i] = vec3_add(vec3_scale(eye_direction, along), vec3_scale(across, hl_sin(phi)));
   }
   /* A direction at a right angle to the eye's direction, midway between two axes, has the cosine cos(30
    * degrees) sin(phi) with these axes. For every direction, the cosine of the angle to the nearest axis is at
    * least 0.84 times this number (tested with 200,000 directions, phi from 15 to 45 degrees). A sector ends a
    * little farther from its axis, at 0.7 times this cosine, so that sectors fade into each other. */
-  sectors.least = 0.7 * cos(HL_PI / 6) * sin(phi);
+  sectors.least = 0.7 * hl_cos(HL_PI / 6) * hl_sin(phi);
   return sectors;
 }
 
@@ -90,7 +92,7 @@ light_cone hl_light_cone(const light_source *source, vec3 content, double pixel)
   double distance = vec3_length(vec3_subtract(content, source->position));
   double sharpest = distance > pixel ? pixel / distance : 1,
          middle = shape->cone_half_angle - shape->cone_edge / 2, edge = fmax(shape->cone_edge, sharpest);
-  double outer = cos(fmin(middle + edge / 2, HL_PI)), full = cos(fmax(middle - edge / 2, 0));
+  double outer = hl_cos(fmin(middle + edge / 2, HL_PI)), full = hl_cos(fmax(middle - edge / 2, 0));
   vec3_store(cone.axis, vec3_normalise(shape->direction));
   cone.outer = (float)outer;
   cone.scale = (float)(1 / (full - outer));
@@ -124,15 +126,15 @@ static bool bound_screen(const view *view, const light_source *source, double lo
 static bool bound_cone(const view *view, const light_source *source, double low[2], double high[2]) {
   const vec3 axes[2] = {view->du, view->dv};
   vec3 cone = vec3_normalise(source->shape.direction);
-  double sine = sin(source->shape.cone_half_angle);
+  double sine = hl_sin(source->shape.cone_half_angle);
   for (int i = 0; i < 2; i++) {
     double along = vec3_dot(cone, axes[i]), ahead = vec3_dot(cone, view->corner);
-    double r = hypot(along, ahead), psi = atan2(along, ahead);
+    double r = hl_hypot(along, ahead), psi = hl_atan2(along, ahead);
     if (!(r > sine)) return false;
-    double reach = asin(sine / r);
+    double reach = hl_asin(sine / r);
     if (psi - reach <= -HL_PI / 2 || psi + reach >= HL_PI / 2) return false;
-    low[i] = tan(psi - reach);
-    high[i] = tan(psi + reach);
+    low[i] = hl_tan(psi - reach);
+    high[i] = hl_tan(psi + reach);
   }
   return true;
 }
@@ -147,7 +149,7 @@ static void cut(const double by_low[2], const double by_high[2], double low[2], 
 void hl_lit_region(const view *view, const light_source *source, double low[2], double high[2]) {
   double lit_low[2], lit_high[2];
   if (source->sectors != NULL) {
-    double reach = tan(acos(source->sectors->least));
+    double reach = hl_tan(hl_acos(source->sectors->least));
     cut((double[2]){-reach, -reach}, (double[2]){reach, reach}, low, high);
   }
   if (source->shadows != HL_SHADOWS_HARD)

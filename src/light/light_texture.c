@@ -4,6 +4,7 @@
 
 #include "core/context.h"
 #include "core/memory.h"
+#include "elementary/elementary.h"
 #include "scene/light/light_kind.h"
 #include "view/view.h"
 
@@ -60,7 +61,7 @@ static double box_below(double x) { return fmin(fmax((x + 1) / 2, 0), 1); }
 static double disk_below(double x) {
   if (x <= -1) return 0;
   if (x >= 1) return 1;
-  return 0.5 + (x * sqrt(1 - x * x) + asin(x)) / HL_PI;
+  return 0.5 + (x * sqrt(1 - x * x) + hl_asin(x)) / HL_PI;
 }
 
 /* A convolution along one axis. Pixel i of the result is a weighted mean of the image; the middle of its
@@ -233,9 +234,9 @@ static hl_status make_levels(hl_context *context, const light_source *source, co
   size_t floats = 0;
   while (texture->level_count < TEXTURE_LEVELS) {
     int l = texture->level_count++;
-    plans[l] = plan_level(texture, deviation, half_widths, first * pow(2, 0.5 * l));
+    plans[l] = plan_level(texture, deviation, half_widths, first * hl_pow(2, 0.5 * l));
     floats += (size_t)plans[l].axis[0].count * (size_t)plans[l].axis[1].count * 3;
-    if (first * pow(2, 0.5 * l) >= reach) break;
+    if (first * hl_pow(2, 0.5 * l) >= reach) break;
   }
   texture->first = (float)(1 / (first * first));
   for (int axis = 0; axis < 2; axis++) texture->edge[axis] = (float)(sqrt(12) * deviation[axis]);

@@ -5,6 +5,7 @@
 
 #include "core/memory.h"
 #include "core/vector.h"
+#include "elementary/elementary.h"
 #include "light/light_caps.h"
 #include "scene/light/light_kind.h"
 
@@ -20,8 +21,8 @@ typedef struct ring_places {
 static void place_rings(ring_places *rings) {
   for (int i = 0; i < RING_COUNT; i++) {
     double turn = (i + 0.5) * HL_PI / RING_COUNT;
-    rings->cosine[i] = cos(turn);
-    rings->sine[i] = sin(turn);
+    rings->cosine[i] = hl_cos(turn);
+    rings->sine[i] = hl_sin(turn);
   }
 }
 
@@ -43,14 +44,14 @@ static double cosine_of(double g, double s) { return fmin(fmax((1 + g * g - s * 
  * The mean is therefore the integral of f dx times (1 - g^2) / (g (1 - c)). Where f is not constant, x
  * goes from m - h to m + h, and x = m + h cos(u) removes the square roots at both ends. */
 static double mean_over_cap(double g, double c, double towards, const ring_places *rings) {
-  double turn = acos(towards), half = acos(c), sine = sin(turn);
+  double turn = hl_acos(towards), half = hl_acos(c), sine = hl_sin(turn);
   double nearest = fabs(turn - half), farthest = fmin(turn + half, 2 * HL_PI - turn - half);
-  double low = 1 / s_of(g, cos(farthest)), high = 1 / s_of(g, cos(nearest)), sum = 0;
+  double low = 1 / s_of(g, hl_cos(farthest)), high = 1 / s_of(g, hl_cos(nearest)), sum = 0;
   for (int i = 0; i < RING_COUNT; i++) {
     double x = (low + high) / 2 + (high - low) / 2 * rings->cosine[i];
     double ring = cosine_of(g, 1 / x), across = sqrt(fmax(1 - ring * ring, 0)) * sine;
     double edge = across > 0 ? (c - ring * towards) / across : c > ring * towards ? 1 : -1;
-    sum += rings->sine[i] * acos(fmin(fmax(edge, -1), 1)) / HL_PI;
+    sum += rings->sine[i] * hl_acos(fmin(fmax(edge, -1), 1)) / HL_PI;
   }
   sum *= (high - low) / 2 * HL_PI / RING_COUNT;
   /* Adds the rings around the cap's middle that lie completely within the cap. */
@@ -161,7 +162,7 @@ typedef struct phase_job {
 /* Fills the rows of caps. The row of each cap size is stored in two places: as the numbers [0] of its own row
  * of the table, and as the numbers [1] of the row before. */
 static void fill_caps(const phase_job *job, const phase_table *table, size_t row) {
-  double g = table->g, part = (double)row / (PHASE_CAPS - 1), s = (1 - g) * pow((1 + g) / (1 - g), part);
+  double g = table->g, part = (double)row / (PHASE_CAPS - 1), s = (1 - g) * hl_pow((1 + g) / (1 - g), part);
   float(*to)[2] = table->caps[row];
   fill_row(g, row > 0 ? cosine_of(g, s) : 1, &job->rings, &to[0][0], 2);
   for (int i = 0; i < PHASE_COLUMNS; i++) {
@@ -184,12 +185,13 @@ static void fill_row_of_table(void *data, size_t index, int worker) {
   }
   const hl_light *light = &scene->lights[row];
   if (hl_light_kind(light)->parallel && hl_light_shape(light).is_wide)
-    fill_row(table->g, cos(light->angular_diameter_deg * HL_PI / 360), &job->rings, table->parallel[row], 1);
+    fill_row(table->g, hl_cos(light->angular_diameter_deg * HL_PI / 360), &job->rings, table->parallel[row],
+             1);
 }
 
 static void add_table(const hl_scene_description *scene, double anisotropy, phase_tables *tables) {
   if (hl_phase_table(tables, anisotropy) != NULL) return;
-  double g = fabs(anisotropy), range = 2 * log2((1 + g) / (1 - g));
+  double g = fabs(anisotropy), range = 2 * hl_log2((1 + g) / (1 - g));
   float *numbers = tables->numbers + tables->count * table_size(scene);
   tables->tables[tables->count++] = (phase_table){
       .g = g,

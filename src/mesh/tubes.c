@@ -6,6 +6,7 @@
 
 #include "core/memory.h"
 #include "core/vector.h"
+#include "elementary/elementary.h"
 #include "mesh/mesh.h"
 
 enum { SIDES = 12 };
@@ -38,7 +39,7 @@ static void add_ring(tube *tube, vec3 centre, const piece *piece, vec3 middle, d
   double across = vec3_dot(piece->along, middle);
   for (int k = 0; k < SIDES; k++) {
     double angle = 2 * HL_PI * k / SIDES;
-    vec3 out = vec3_add(vec3_scale(piece->u, cos(angle)), vec3_scale(piece->v, sin(angle)));
+    vec3 out = vec3_add(vec3_scale(piece->u, hl_cos(angle)), vec3_scale(piece->v, hl_sin(angle)));
     double shift = across > SHARP ? -vec3_dot(out, middle) / across : 0;
     vec3 at = vec3_add(out, vec3_scale(piece->along, shift));
     add_vertex(tube, vec3_add(centre, vec3_scale(at, radius)), out);

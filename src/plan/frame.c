@@ -1,6 +1,7 @@
 /* plan/frame.c - sets the eye's view, the lights and the bounds of the content in a frame. */
 #include "plan/frame.h"
 
+#include "elementary/elementary.h"
 #include "grid/relevant.h"
 
 static vec3 camera_up(const hl_camera *camera, vec3 forward) {
@@ -15,7 +16,7 @@ hl_status hl_frame_eye(const hl_camera *camera, int width, int height, view *eye
   vec3 right = vec3_normalise(vec3_cross(forward, camera_up(camera, forward)));
   vec3 up = vec3_cross(right, forward);
   eye->perspective = camera->type == HL_CAMERA_PERSPECTIVE;
-  double half_height = eye->perspective ? tan(camera->fovy_deg * HL_PI / 360) : camera->height / 2;
+  double half_height = eye->perspective ? hl_tan(camera->fovy_deg * HL_PI / 360) : camera->height / 2;
   double half_width = half_height * width / height;
   eye->width = width;
   eye->height = height;

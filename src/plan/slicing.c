@@ -3,6 +3,7 @@
 #include "plan/slicing.h"
 
 #include "core/sheet_constants.h"
+#include "elementary/elementary.h"
 #include "scene/light/light_kind.h"
 
 /* The cosine of 60 degrees. Lights share a sweep only if the eye's direction and the direction of each light
@@ -58,8 +59,8 @@ static const double FLATTEST = 0.2, FLATTEST_ALONE = 0.35;
  * are the rays from the centre of a near light, or the rays from the whole disk of a soft parallel light. */
 static bool rays_cross(const frame *frame, const light_source *source, vec3 h, double least) {
   if (source->parallel) {
-    double off = acos(fmin(fmax(vec3_dot(source->direction, h), -1), 1));
-    return source->shadows != HL_SHADOWS_SOFT || off + atan(source->shape.radius) < acos(least);
+    double off = hl_acos(fmin(fmax(vec3_dot(source->direction, h), -1), 1));
+    return source->shadows != HL_SHADOWS_SOFT || off + hl_atan(source->shape.radius) < hl_acos(least);
   }
   for (int i = 0; i < frame->content.point_count; i++) {
     vec3 way = vec3_subtract(frame->content.points[i], source->position);
@@ -145,7 +146,7 @@ static double widest_ray(const frame *frame) {
                 &way);
     least = fmin(least, vec3_dot(vec3_normalise(way), frame->eye_direction));
   }
-  return acos(fmax(least, -1));
+  return hl_acos(fmax(least, -1));
 }
 
 void hl_frame_set_up_lights(frame *frame, const framed_scene *framed) {

@@ -9,6 +9,7 @@
 
 #include "bricks/bricks.h"
 #include "core/memory.h"
+#include "elementary/elementary.h"
 #include "reference/reference.h"
 #include "scene/label/draw_labels.h"
 #include "volume/store/gathered.h"
@@ -61,7 +62,7 @@ static void gaussian(double t, double weight[4]) {
   double sum = 0;
   for (int tap = 0; tap < 4; tap++) {
     double d = t + 1 - tap;
-    weight[tap] = fabs(d) < 2 ? exp(-2 * d * d) : 0;
+    weight[tap] = fabs(d) < 2 ? hl_exp(-2 * d * d) : 0;
     sum += weight[tap];
   }
   for (int tap = 0; tap < 4; tap++) weight[tap] /= sum;
@@ -193,7 +194,7 @@ double hl_reference_extinction(const reference_volume *volume, double value, vec
   double opacity = hl_transfer_function_opacity(function, value);
   if (!(opacity > 0)) return 0;
   double extinction = hl_has_plane(function) ? hl_reference_plane_sum(volume, value, point).extinction
-                                             : -log1p(-fmin(opacity, 0.9999)) / function->unit_distance;
+                                             : -hl_log1p(-fmin(opacity, 0.9999)) / function->unit_distance;
   extinction *= hl_reference_mask_factor(volume, point);
   if (function->gradient_opacity_count == 0) return extinction;
   return extinction *

@@ -8,6 +8,7 @@
 #include <string.h>
 
 #include "core/memory.h"
+#include "elementary/elementary.h"
 #include "reference/reference.h"
 #include "scene/light/light_kind.h"
 
@@ -86,8 +87,8 @@ static double spread(size_t i, double step) {
  * golden angle (Vogel, "A better way to construct the sunflower head", 1979). */
 static void sunflower(size_t i, size_t n, double *u, double *v) {
   double angle = (double)i * HL_PI * (3 - sqrt(5)), radius = sqrt(((double)i + 0.5) / (double)n);
-  *u = radius * cos(angle);
-  *v = radius * sin(angle);
+  *u = radius * hl_cos(angle);
+  *v = radius * hl_sin(angle);
 }
 
 static vec3 point_of_disk(vec3 centre, vec3 normal, double radius, size_t i, size_t n) {
@@ -162,7 +163,7 @@ static void fill_points(reference_light *light) {
     light->points[0] = light->directional ? light->towards : light->centre;
     /* A directional light's points are directions: unit vectors to the points of a disk at the distance 1. */
   } else if (light->directional) {
-    double radius = tan(described->angular_diameter_deg * HL_PI / 360);
+    double radius = hl_tan(described->angular_diameter_deg * HL_PI / 360);
     for (size_t i = 0; i < n; i++)
       light->points[i] = vec3_normalise(point_of_disk(light->towards, light->towards, radius, i, n));
   } else if (described->type == HL_LIGHT_RECT) {
@@ -241,7 +242,7 @@ hl_status hl_reference_light_create(const reference *all, const hl_light *light,
   for (int c = 0; c < 3; c++) made->color[c] = light->color[c] * light->intensity;
   made->least_distance = HL_LEAST_LIGHT_DISTANCE * hl_scene_frame_space(all->scene).unit;
   if (light->texture.pixels != NULL) made->texture = &light->texture;
-  made->cap = made->directional ? cos(light->angular_diameter_deg * HL_PI / 360) : 1;
+  made->cap = made->directional ? hl_cos(light->angular_diameter_deg * HL_PI / 360) : 1;
   if (made->directional) made->towards = vec3_scale(vec3_normalise(vec3_of(light->direction)), -1);
   else made->centre = hl_light_shape(light).centre;
   if (light->emission.pixels != NULL) {
@@ -304,8 +305,8 @@ double hl_reference_light_phase(const reference_light *light, double g, vec3 to_
  * the falloff angle. */
 static double spot_brightness(const hl_light *light, vec3 towards) {
   double cosine = -vec3_dot(towards, vec3_normalise(vec3_of(light->direction)));
-  double outer = cos(light->opening_angle_deg * HL_PI / 360);
-  double full = cos((light->opening_angle_deg / 2 - light->falloff_angle_deg) * HL_PI / 180);
+  double outer = hl_cos(light->opening_angle_deg * HL_PI / 360);
+  double full = hl_cos((light->opening_angle_deg / 2 - light->falloff_angle_deg) * HL_PI / 180);
   if (cosine <= outer) return 0;
   if (cosine >= full) return 1;
   double x = (cosine - outer) / (full - outer);

@@ -8,6 +8,7 @@
 #include <stdlib.h>
 
 #include "core/memory.h"
+#include "elementary/elementary.h"
 #include "reference/reference.h"
 
 /* A light counts as dark if the optical depth to it is greater than this in all channels: exp(-18) is
@@ -31,7 +32,7 @@ void hl_reference_transmittance(const reference *all, const reference_ray *ray, 
     if (fmin(depth[0], fmin(depth[1], depth[2])) > DARK_DEPTH) break;
   }
   hl_reference_surfaces_passing(all, ray, passing);
-  for (int c = 0; c < 3; c++) passing[c] *= exp(-depth[c]);
+  for (int c = 0; c < 3; c++) passing[c] *= hl_exp(-depth[c]);
 }
 
 /* ---- where surfaces begin ---- */
@@ -41,7 +42,7 @@ void hl_reference_transmittance(const reference *all, const reference_ray *ray, 
 static double extinction_at(const reference_volume *volume, double value) {
   if (value < volume->transparent_below) return 0;
   double opacity = hl_transfer_function_opacity(&volume->described->transfer_function, value);
-  return -log1p(-fmin(opacity, 1 - 1e-12));
+  return -hl_log1p(-fmin(opacity, 1 - 1e-12));
 }
 
 static double value_of_foot(const reference_volume *volume, int index) {
@@ -127,7 +128,7 @@ typedef struct kept_light {
 /* Raises a kept fraction towards 1 where matter belongs to the skin of a cut face, whose own matter does not
  * shade it: returns kept to the power 1 - skin. Because skin is in the exponent, the product over all steps
  * does not depend on the steps' length. */
-static double kept_in_skin(double kept, double skin) { return skin > 0 ? pow(kept, 1 - skin) : kept; }
+static double kept_in_skin(double kept, double skin) { return skin > 0 ? hl_pow(kept, 1 - skin) : kept; }
 
 /* Finds the fractions of the light taken by a surface that still count as taken by this surface after one
  * step. from, to: the volume's values at the step's ends, in the direction of the light. skin: the fraction
@@ -140,7 +141,7 @@ static kept_light kept_of_step(const reference_volume *volume, double from, doub
          left = fmin(depth_to_here / fmax(depth_from, 1e-300), 1);
   double even = length - fabs(to - from) / volume->surface_gradient;
   bool same = foot_from == foot_to, enters = (to - from) * deep > 0;
-  left = pow(left, 16) * exp(-fmax(even, 0) / volume->smallest_edge);
+  left = hl_pow(left, 16) * hl_exp(-fmax(even, 0) / volume->smallest_edge);
   if (!(extinction_at(volume, to) > 0)) skin = 0;
   if (same) return (kept_light){kept_in_skin(left, skin), kept_in_skin(left, skin), false};
   if (skin == 1) return (kept_light){1, 1, false};
@@ -187,7 +188,7 @@ static void settle(light_factors *all, pending_layer *layer) {
 static void add_step(light_factors *all, pending_layer *layer, const double depth[3], kept_light kept) {
   if (layer->any && kept.before == 0) settle(all, layer);
   for (int c = 0; c < 3; c++) {
-    double passing = exp(-depth[c]), taken = 1 - passing;
+    double passing = hl_exp(-depth[c]), taken = 1 - passing;
     if (layer->any) {
       all->light[c] *= passing;
       all->kept_light[c] = all->kept_light[c] * passing + all->kept_taken * kept.within * taken;

@@ -7,6 +7,7 @@
  * light that was scattered at least twice. Light that was scattered once is integrated in shade.c. Meshes and
  * isosurfaces on a path absorb their part of the light and scatter none. Random numbers depend on the pixel
  * and the path alone. Paths treat the volumes' extinction as equal in all channels. */
+#include "elementary/elementary.h"
 #include "reference/reference.h"
 
 /* A path has at least SURE_TURNS turns. After these turns it ends with some probability at each collision,
@@ -53,7 +54,7 @@ static void choose_volume(const march *walk, double total, uint64_t *random, col
 static bool fly(const reference *all, reference_role role, const reference_ray *ray, reference_worker *worker,
                 uint64_t *random, collision *met) {
   march walk;
-  double left = -log1p(-uniform(random));
+  double left = -hl_log1p(-uniform(random));
   hl_reference_march_begin(all, role, ray, worker->eye, &walk);
   while (hl_reference_march_next(&walk)) {
     double total = 0;
@@ -96,8 +97,8 @@ static vec3 turn(vec3 way, double g, uint64_t *random) {
   }
   double sine = sqrt(fmax(1 - cosine * cosine, 0));
   vec3 u = vec3_perpendicular(way), v = vec3_cross(way, u);
-  return vec3_normalise(vec3_add(
-      vec3_scale(way, cosine), vec3_add(vec3_scale(u, sine * cos(angle)), vec3_scale(v, sine * sin(angle)))));
+  return vec3_normalise(vec3_add(vec3_scale(way, cosine), vec3_add(vec3_scale(u, sine * hl_cos(angle)),
+                                                                   vec3_scale(v, sine * hl_sin(angle)))));
 }
 
 /* Adds the light that goes from the scene's lights to a collision and is scattered there into the path. A

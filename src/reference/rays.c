@@ -3,6 +3,7 @@
  * In: the scene and the boxes of its volumes' visible bricks. Out: the number of rays along each side of a
  * pixel. Where voxels are smaller than pixels, the renderer averages over a pixel's area (docs/decisions.md).
  * A reference with a single ray through the pixel's centre would make another picture. */
+#include "elementary/elementary.h"
 #include "reference/reference.h"
 
 /* SURFACE_RAYS: the number of rays along each side of a pixel in scenes with meshes, so that the meshes'
@@ -63,7 +64,7 @@ static void add_volume(const reference_volume *volume, vec3 position, vec3 forwa
  * perspective picture is 2 tan(fovy / 2). */
 static double pixel_edge(const hl_scene_description *scene) {
   bool orthographic = scene->camera.type == HL_CAMERA_ORTHOGRAPHIC;
-  return (orthographic ? scene->camera.height : 2 * tan(scene->camera.fovy_deg * HL_PI / 360)) /
+  return (orthographic ? scene->camera.height : 2 * hl_tan(scene->camera.fovy_deg * HL_PI / 360)) /
          scene->height;
 }
 

@@ -10,6 +10,7 @@
 #include "core/context.h"
 #include "core/door.h"
 #include "core/memory.h"
+#include "elementary/elementary.h"
 #include "reference/reference.h"
 #include "scene/check/check.h"
 
@@ -53,7 +54,7 @@ static eye_rays eye_rays_of(const hl_scene_description *scene) {
                   .orthographic = camera->type == HL_CAMERA_ORTHOGRAPHIC};
   eye.forward = vec3_normalise(vec3_subtract(vec3_of(camera->target), eye.position));
   vec3 right = vec3_normalise(vec3_cross(eye.forward, vec3_of(camera->up)));
-  double half_height = eye.orthographic ? camera->height / 2 : tan(camera->fovy_deg * HL_PI / 360);
+  double half_height = eye.orthographic ? camera->height / 2 : hl_tan(camera->fovy_deg * HL_PI / 360);
   eye.up = vec3_scale(vec3_cross(right, eye.forward), half_height);
   eye.right = vec3_scale(right, half_height * scene->width / scene->height);
   return eye;
@@ -111,7 +112,7 @@ static double composite(const reference *all, const march *walk, double length, 
   sample(all, walk, point, vec3_scale(direction, -1), worker);
   double extinction = worker->sample.weight;
   if (extinction <= 0) return 0;
-  double opacity = (1 - worker->ray.weight) * -expm1(-extinction * length);
+  double opacity = (1 - worker->ray.weight) * -hl_expm1(-extinction * length);
   hl_reference_parts_add(&worker->ray, &worker->sample, opacity / extinction, all->scene->light_count);
   return extinction;
 }
@@ -119,7 +120,7 @@ static double composite(const reference *all, const march *walk, double length, 
 /* The distance at which a ray's alpha reaches FIRST_OPACITY, in a step that begins at the distance `start`
  * with the alpha `before`. Derived: (1 - A) exp(-sigma t) = 1 - FIRST_OPACITY. */
 static double first_within(double before, double extinction, double start) {
-  return start + log((1 - before) / (1 - FIRST_OPACITY)) / extinction;
+  return start + hl_ln((1 - before) / (1 - FIRST_OPACITY)) / extinction;
 }
 
 /* Marches along a part of a camera ray. Every step is cut into pieces that each add at most most_opacity to

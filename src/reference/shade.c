@@ -12,6 +12,7 @@
  * more and more a surface. */
 #include <string.h>
 
+#include "elementary/elementary.h"
 #include "reference/reference.h"
 
 /* Finds the fraction of a light that reaches a sample. This fraction takes by far the most time of all that a
@@ -79,7 +80,7 @@ typedef struct surface {
 /* The phase function p = (1 - g^2) / (1 + g^2 - 2 g cos)^(3/2). cos = -E.L is the cosine of the angle by
  * which light is turned. For g = 0, p is 1 in all directions. */
 double hl_reference_phase(double g, vec3 to_eye, vec3 towards) {
-  return (1 - g * g) / pow(1 + g * g + 2 * g * vec3_dot(to_eye, towards), 1.5);
+  return (1 - g * g) / hl_pow(1 + g * g + 2 * g * vec3_dot(to_eye, towards), 1.5);
 }
 
 /* Adds the fraction of a light that reaches a sample to the light's shadow layer. If the sample is on a
@@ -108,7 +109,7 @@ static void shade_light(const reference *all, const reference_sample *at, const 
   if (cosine > 0) {
     /* the direction of mirror reflection: R = 2 (N.L) N - L */
     vec3 reflected = vec3_subtract(vec3_scale(here->normal, 2 * cosine), arrived->towards);
-    gloss = material->specular * pow(fmax(vec3_dot(at->to_eye, reflected), 0), material->shininess);
+    gloss = material->specular * hl_pow(fmax(vec3_dot(at->to_eye, reflected), 0), material->shininess);
   }
   double surface = here->amount * material->diffuse * fmax(cosine, 0);
   double medium = (1 - here->amount) * hl_reference_light_phase(&all->lights[light],

@@ -1,5 +1,6 @@
 /* reference/shade_surface.c - finds the light that a point of a mesh or of an isosurface sends to the eye;
  * eqs. (3) and (4). */
+#include "elementary/elementary.h"
 #include "mesh/mesh.h"
 #include "reference/reference.h"
 
@@ -69,7 +70,7 @@ static void add_light(const reference *all, size_t light, const reference_surfac
     for (int c = 0; c < 3; c++) part->shadow[c] *= at->behind[c];
   if (cosine <= 0) return;
   vec3 reflected = vec3_subtract(vec3_scale(at->normal, 2 * cosine), arrived.towards);
-  double gloss = material->specular * pow(fmax(vec3_dot(at->to_eye, reflected), 0), material->shininess);
+  double gloss = material->specular * hl_pow(fmax(vec3_dot(at->to_eye, reflected), 0), material->shininess);
   for (int c = 0; c < 3; c++)
     part->picture[c] = (at->color[c] * material->diffuse * cosine + gloss) * arrived.incoming[c] * reach[c];
 }

@@ -7,6 +7,7 @@
  * light in the cell. The cell's cosine is taken with the mean of its directions. This is the exact mean of
  * the cosine, unless a part of the cell is below the surface's horizon. */
 #include "core/memory.h"
+#include "elementary/elementary.h"
 #include "reference/reference.h"
 
 /* An image is sampled PIXEL_SAMPLES times along each side of its pixels, but no more than MOST_SAMPLES times
@@ -22,8 +23,8 @@ typedef struct sky_ring {
 
 static vec3 direction_of(const sky_axes *axes, double height, double turn) {
   double side = sqrt(fmax(1 - height * height, 0));
-  vec3 level = vec3_add(vec3_scale(axes->middle, side * cos(2 * HL_PI * turn)),
-                        vec3_scale(axes->right, side * sin(2 * HL_PI * turn)));
+  vec3 level = vec3_add(vec3_scale(axes->middle, side * hl_cos(2 * HL_PI * turn)),
+                        vec3_scale(axes->right, side * hl_sin(2 * HL_PI * turn)));
   return vec3_add(level, vec3_scale(axes->up, height));
 }
 
@@ -57,7 +58,7 @@ static void find_means(const hl_sky *sky, const sky_axes *axes, const sky_ring *
 /* The number of cells in ring i. Rings are `angle` high, and cells are about as wide as high. */
 static size_t cells_in_ring(size_t i, double angle) {
   double middle = ((double)i + 0.5) * angle;
-  return (size_t)fmax(floor(2 * HL_PI * sin(middle) / angle + 0.5), 3);
+  return (size_t)fmax(floor(2 * HL_PI * hl_sin(middle) / angle + 0.5), 3);
 }
 
 hl_status hl_reference_sky_create(reference *all, int cell_count, hl_error *error) {

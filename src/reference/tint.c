@@ -1,12 +1,13 @@
 /* reference/tint.c - finds the colour of a volume's own voxels at a point. It is the trilinear mean of the
  * voxels' linear colours times their weights, divided by the trilinear mean of the weights. The mask's colour
  * is applied afterwards. */
+#include "elementary/elementary.h"
 #include "reference/reference.h"
 
 /* The linear value, from 0 to 1, of an 8-bit sRGB code (IEC 61966-2-1). */
 static double linear_of(unsigned char code) {
   double encoded = code / 255.0;
-  return encoded <= 0.04045 ? encoded / 12.92 : pow((encoded + 0.055) / 1.055, 2.4);
+  return encoded <= 0.04045 ? encoded / 12.92 : hl_pow((encoded + 0.055) / 1.055, 2.4);
 }
 
 /* Adds the colour of one voxel to a weighted sum. color: four bytes; the last byte is the voxel's weight. */

@@ -1,5 +1,6 @@
 /* scatter/sky.c - finds the sky's light that enters the grid at both ends of each of its lines. */
 #include "scene/light/sky.h"
+#include "elementary/elementary.h"
 
 #include <math.h>
 
@@ -36,8 +37,8 @@ static void add_bands(const hl_sky *sky, int bands, sky_sums *sums) {
   for (int i = 0; i < 2 * bands * bands; i++) {
     double height = 1 - (i / (2 * bands) + 0.5) * 2 / bands, turn = HL_PI * (i % (2 * bands) + 0.5) / bands;
     double side = sqrt(fmax(1 - height * height, 0)), radiance[3];
-    vec3 level = vec3_add(vec3_scale(axes.middle, side * cos(turn)),
-                          vec3_scale(axes.right, side * sin(turn)));
+    vec3 level = vec3_add(vec3_scale(axes.middle, side * hl_cos(turn)),
+                          vec3_scale(axes.right, side * hl_sin(turn)));
     vec3 from = vec3_add(level, vec3_scale(axes.up, height));
     int d = nearest_direction(sums, from);
     hl_sky_radiance(sky, &axes, from, radiance);

@@ -7,6 +7,7 @@
 #include <string.h>
 
 #include "core/vector.h"
+#include "elementary/elementary.h"
 #include "text/plain.h"
 
 _Static_assert(sizeof(hl_shadows) == sizeof(int), "fields of enumerators are read as int");
@@ -83,8 +84,8 @@ const char *hl_setting_choice_name(const hl_setting *setting, int value) {
 
 /* Writes a limit as a person would: 16384, 0.01, 1e6, 1e15. */
 static int write_limit(char *text, size_t size, double limit) {
-  const double exponent = round(log10(fabs(limit)));
-  if (fabs(limit) >= 1e5 && fabs(limit) == pow(10, exponent))
+  const double exponent = round(hl_log10(fabs(limit)));
+  if (fabs(limit) >= 1e5 && fabs(limit) == hl_pow(10, exponent))
     return hl_plain_print(text, size, "%s1e%.0f", limit < 0 ? "-" : "", exponent);
   return hl_plain_print(text, size, "%.9g", limit);
 }

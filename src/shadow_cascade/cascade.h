@@ -48,6 +48,7 @@
 #define HL_SHADOW_CASCADE_CASCADE_H
 
 #include "core/pool.h"
+#include "elementary/elementary.h"
 #include "light/light_emission.h"
 #include "light/light_extent.h"
 #include "shadow/shadow_method.h"
@@ -238,8 +239,8 @@ static inline double hl_cascade_omega(const soft_cascade *cascade, double height
 static inline double hl_cascade_chunks_on(const soft_cascade *cascade, double omega, double chunks) {
   if (!(cascade->shrink > 0)) return omega + cascade->chunk * chunks;
   if (omega < cascade->evened) {
-    double shrinking = log(cascade->evened / omega) / log(1 - cascade->shrink);
-    if (chunks <= shrinking) return omega * pow(1 - cascade->shrink, chunks);
+    double shrinking = hl_ln(cascade->evened / omega) / hl_ln(1 - cascade->shrink);
+    if (chunks <= shrinking) return omega * hl_pow(1 - cascade->shrink, chunks);
     omega = cascade->evened;
     chunks -= shrinking;
   }

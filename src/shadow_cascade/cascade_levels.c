@@ -2,6 +2,7 @@
  */
 #include <string.h>
 
+#include "elementary/elementary.h"
 #include "shadow_cascade/cascade_passes.h"
 
 /* Limits of a sweep's chunks. The thickness of chunks is measured in omega, in pixels. Chunks are so thick
@@ -31,18 +32,18 @@ static double divide(soft_cascade *cascade, double start, double end, bool withi
    * an edge are then 0.024 instead of 0.026. */
   bool even = cascade->emission == NULL;
   if (cascade->parallel || !even || cascade->chunk <= thick) return length / cascade->chunk;
-  cascade->shrink = 1 - pow(end / start, 1 / most);
+  cascade->shrink = 1 - hl_pow(end / start, 1 / most);
   cascade->chunk = cascade->shrink * -start;
   cascade->shortest_chunk = cascade->shrink * -end;
   if (!within || cascade->shortest_chunk >= thick) return most;
   cascade->shortest_chunk = thick;
   cascade->evened = -thick / cascade->shrink;
-  return log(cascade->evened / start) / log(1 - cascade->shrink) + (end - cascade->evened) / thick;
+  return hl_ln(cascade->evened / start) / hl_ln(1 - cascade->shrink) + (end - cascade->evened) / thick;
 }
 
 /* The least number of chunks between a receiver and a level's groups. It follows from the numbers of groups
  * that the levels keep: three on level 0, two on level 1, five on every other level. */
-static double chunks_before(int level) { return level < 2 ? 3 * level : 4 * (pow(2, level - 1) - 1); }
+static double chunks_before(int level) { return level < 2 ? 3 * level : 4 * (hl_pow(2, level - 1) - 1); }
 
 /* The scale of a level: the edge of its pixels, in pixels of the buffer. It is chosen so that the narrowest
  * penumbra on the level is at least one and a half of the level's pixels wide. Resampling blurs, too, and its
@@ -185,7 +186,7 @@ static void plan_levels(soft_cascade *cascade, const light_shadow *shadow) {
   double chunks = divide(cascade, start, end, shadow->setup.source->sectors != NULL);
   /* derived: level j > 1 is first used after 5 * 2^(j-1) - 4 chunks, because each level keeps five groups;
    * levels 0 and 1 together also keep five */
-  int levels = 2 + (int)floor(log2(fmax(chunks + 7, 5) / 5));
+  int levels = 2 + (int)floor(hl_log2(fmax(chunks + 7, 5) / 5));
   cascade->level_count = levels < CASCADE_LEVELS ? levels : CASCADE_LEVELS;
   for (int i = 0; i < cascade->level_count; i++) plan_level(cascade, i, tiles_x, tiles_y);
   cascade->reads = (cascade_reads){.tiles_x = tiles_x, .tiles_y = tiles_y};

@@ -6,8 +6,12 @@
  * the new surface. A density is expressed by the distance at which the edge of a solid has this density.
  *
  * Noise, turbulence, bias and gain use only arithmetic that gives the same bits on every machine
- * (elementary.h). */
-#include "shape/elementary.h"
+ * (elementary/elementary.h). */
+#include <math.h>
+#include <stdint.h>
+#include <string.h>
+
+#include "elementary/elementary.h"
 #include "shape/shape.h"
 
 /* ---- noise ---- */
@@ -82,7 +86,7 @@ double hl_turbulence(const hl_noise *noise, vec3 p, int octaves) {
 
 double hl_bias(double bias, double t) {
   if (bias == 0.5 || t <= 0 || t >= 1) return t;
-  return hl_exp_negative(hl_log(t) * hl_log(bias) / -HL_LN2);
+  return hl_exp(hl_ln(t) * hl_ln(bias) / -HL_LN2);
 }
 
 double hl_gain(double gain, double t) {

@@ -3,7 +3,7 @@
  * psi_nlm = e^(-rho / 2) rho^l L_(n-l-1)^(2l+1)(rho) Y_lm, rho = 2 r / (n a): hydrogen's bound states with
  * the real spherical harmonics, cosines for m >= 0 and sines for m < 0. The Bohr radius is a = radius / (n (2
  * n + 4)), so that outside the radius the magnitude is at most about a hundredth of its maximum. */
-#include "shape/elementary.h"
+#include "elementary/elementary.h"
 #include "shape/shape.h"
 
 /* The associated Laguerre polynomial L_k^alpha(x) of the order k. It is computed by the recurrence k L_k = (2
@@ -50,6 +50,6 @@ double hl_orbital_at(const hl_shape *shape, vec3 p) {
   double rho = 2 * r * (2 * n + 4) / shape->radius, power = 1;
   vec3 direction = r > 0 ? vec3_scale(p, 1 / r) : (vec3){0, 0, 1};
   for (int k = 0; k < l; k++) power *= rho;
-  return hl_exp_negative(-rho / 2) * power * laguerre(n - l - 1, 2 * l + 1, rho) *
+  return hl_exp(-rho / 2) * power * laguerre(n - l - 1, 2 * l + 1, rho) *
          legendre_over_sine(l, m < 0 ? -m : m, direction.z) * around_axis(m, direction.x, direction.y);
 }

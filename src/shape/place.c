@@ -1,7 +1,7 @@
 /* shape/place.c - places shapes: finds their frames, the box around them, and the grid that holds them. */
 #include <math.h>
 
-#include "shape/elementary.h"
+#include "elementary/elementary.h"
 #include "shape/shape.h"
 
 void hl_shape_defaults(hl_shape *shape) {

@@ -5,6 +5,7 @@
  * treated as perpendicular, even if they are not. In large volumes only every n-th voxel along each axis is
  * counted. */
 #include "plane_histogram.h"
+#include "elementary/elementary.h"
 
 #include <math.h>
 #include <stdlib.h>
@@ -91,7 +92,7 @@ static void put_counts(FILE *out, const sampling *of) {
 void put_plane_histogram(FILE *out, const hl_volume *volume, const hl_volume_info *info) {
   const size_t *n = info->dimensions;
   double voxels = (double)n[0] * (double)n[1] * (double)n[2];
-  sampling of = {volume, info, (size_t)ceil(cbrt(fmax(voxels / SAMPLES, 1))), NULL, 0};
+  sampling of = {volume, info, (size_t)ceil(hl_cbrt(fmax(voxels / SAMPLES, 1))), NULL, 0};
   size_t room = 1;
   for (int axis = 0; axis < 3; axis++) room *= (n[axis] + of.step - 1) / of.step;
   of.samples = malloc(room * sizeof *of.samples);

@@ -2,6 +2,7 @@
 #include "surface/primitive_fragments.h"
 
 #include "core/memory.h"
+#include "elementary/elementary.h"
 #include "mesh/mesh.h"
 #include "surface/primitive_raster.h"
 
@@ -52,7 +53,7 @@ void hl_add_to_slabs(const fragment_work *work, fragment_worker *worker, fragmen
     cover_pixel(worker, &f, start);
     if (join_latest(worker, &f, first, last)) return;
   }
-  if (last > first && f.opacity < 1) f.opacity = 1 - powf(1 - f.opacity, 1.0f / (float)(last - first + 1));
+  if (last > first && f.opacity < 1) f.opacity = (float)(1 - hl_pow(1 - f.opacity, 1.0 / (last - first + 1)));
   for (int32_t slab = first; slab <= last; slab++) {
     f.slab = slab;
     f.height = (float)(start + (slab - first) * work->source->sheets->spacing);

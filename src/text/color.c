@@ -7,6 +7,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "elementary/elementary.h"
 #include "text/color.h"
 #include "text/plain.h"
 
@@ -166,7 +167,7 @@ static const struct {
 
 static double linear_of(unsigned byte) {
   double encoded = byte / 255.0;
-  return encoded <= 0.04045 ? encoded / 12.92 : pow((encoded + 0.055) / 1.055, 2.4);
+  return encoded <= 0.04045 ? encoded / 12.92 : hl_pow((encoded + 0.055) / 1.055, 2.4);
 }
 
 static bool decode(unsigned rgb, double color[3]) {

@@ -4,6 +4,8 @@
 #include <math.h>
 #include <string.h>
 
+#include "elementary/elementary.h"
+
 /* The units of length, from the longest to the shortest. "\u00b5" is the micro sign, "\u03bc" the Greek
  * letter. */
 static const hl_unit units[] = {
@@ -41,7 +43,7 @@ const hl_unit *hl_unit_for(double metres) {
 
 double hl_round_length(double most) {
   static const double steps[] = {5, 2, 1};
-  double power = pow(10, floor(log10(most)));
+  double power = hl_pow(10, floor(hl_log10(most)));
   for (int s = 0; s < 3; s++)
     if (steps[s] * power <= most * (1 + 1e-9)) return steps[s] * power;
   return power;

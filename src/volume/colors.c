@@ -6,6 +6,7 @@
 
 #include "core/error.h"
 #include "core/memory.h"
+#include "elementary/elementary.h"
 
 /* VOXELS_MOST: the greatest number of voxels with colours, as the bytes of the colours are numbered in 32
  * bits. */
@@ -92,7 +93,7 @@ hl_status hl_volume_adopt_colors(hl_context *context, const hl_color_source *sou
 
 /* Decodes sRGB (IEC 61966-2-1). */
 static double decode(double code) {
-  return code <= 0.04045 ? code / 12.92 : pow((code + 0.055) / 1.055, 2.4);
+  return code <= 0.04045 ? code / 12.92 : hl_pow((code + 0.055) / 1.055, 2.4);
 }
 
 void hl_volume_color(const hl_volume *volume, size_t i, size_t j, size_t k, double color[3]) {

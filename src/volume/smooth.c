@@ -7,6 +7,7 @@
 
 #include "core/context.h"
 #include "core/memory.h"
+#include "elementary/elementary.h"
 
 /* The weights of a Gaussian, exp(-d^2 / (2 sigma^2)), at whole distances d up to three standard deviations.
  * The weights of both sides add up to 1. */
@@ -20,7 +21,7 @@ static gaussian make_gaussian(double sigma) {
   gaussian made = {.radius = (int)fmin(ceil(3 * sigma), LONGEST)};
   double weight[LONGEST + 1], sum = 0;
   for (int d = 0; d <= made.radius; d++) {
-    weight[d] = exp(-0.5 * d * d / (sigma * sigma));
+    weight[d] = hl_exp(-0.5 * d * d / (sigma * sigma));
     sum += d == 0 ? weight[d] : 2 * weight[d];
   }
   for (int d = 0; d <= made.radius; d++) made.weight[d] = (float)(weight[d] / sum);

@@ -4,7 +4,6 @@
 
 #include "core/memory.h"
 #include "scene_parts.h"
-#include "shape/elementary.h"
 #include "shape/shape.h"
 
 static hl_volume *make(hl_context *context, const char *text, int size, int threads) {
@@ -262,23 +261,6 @@ static void orbitals_are_orthogonal(void **state) {
   hl_context_destroy(context);
 }
 
-static void elementary_functions_are_right(void **state) {
-  (void)state;
-  uint32_t seed = 4;
-  for (int n = 0; n < 20000; n++) {
-    double x = -700 * random_number(&seed), t = pow(10, 600 * random_number(&seed) - 300), s, c;
-    assert_true(fabs(hl_exp_negative(x) / exp(x) - 1) < 1e-13);
-    assert_true(fabs(hl_log(t) - log(t)) <= 1e-15 * fabs(log(t)) + 1e-15);
-    double angle = 2000 * (random_number(&seed) - 0.5);
-    hl_sine_cosine(angle, &s, &c);
-    assert_true(fabs(s - sin(angle * HL_PI / 180)) < 1e-14 && fabs(c - cos(angle * HL_PI / 180)) < 1e-14);
-  }
-  double s, c;
-  hl_sine_cosine(-270, &s, &c);
-  assert_true(s == 1 && c == 0);
-  assert_true(hl_exp_negative(-1e9) == 0 && hl_exp_negative(0) == 1 && hl_log(1) == 0);
-}
-
 static void noise_is_perlins(void **state) {
   (void)state;
   hl_noise noise, other;
@@ -437,19 +419,12 @@ static void limits_and_cancelling_are_kept(void **state) {
 
 int main(void) {
   const struct CMUnitTest tests[] = {
-      cmocka_unit_test(distances_are_euclidean),
-      cmocka_unit_test(bounds_hold),
-      cmocka_unit_test(a_sphere_faces_outwards),
-      cmocka_unit_test(a_tilted_box_is_flat),
-      cmocka_unit_test(the_grid_is_empty_at_its_faces),
-      cmocka_unit_test(threads_do_not_matter),
-      cmocka_unit_test(a_seed_gives_the_same_bytes),
-      cmocka_unit_test(orbitals_are_hydrogens),
-      cmocka_unit_test(orbitals_are_orthogonal),
-      cmocka_unit_test(elementary_functions_are_right),
-      cmocka_unit_test(noise_is_perlins),
-      cmocka_unit_test(bias_and_gain_are_perlins),
-      cmocka_unit_test(limits_and_cancelling_are_kept),
+      cmocka_unit_test(distances_are_euclidean),        cmocka_unit_test(bounds_hold),
+      cmocka_unit_test(a_sphere_faces_outwards),        cmocka_unit_test(a_tilted_box_is_flat),
+      cmocka_unit_test(the_grid_is_empty_at_its_faces), cmocka_unit_test(threads_do_not_matter),
+      cmocka_unit_test(a_seed_gives_the_same_bytes),    cmocka_unit_test(orbitals_are_hydrogens),
+      cmocka_unit_test(orbitals_are_orthogonal),        cmocka_unit_test(noise_is_perlins),
+      cmocka_unit_test(bias_and_gain_are_perlins),      cmocka_unit_test(limits_and_cancelling_are_kept),
   };
   return cmocka_run_group_tests(tests, NULL, NULL);
 }

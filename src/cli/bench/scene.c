@@ -5,6 +5,7 @@
 #include <string.h>
 
 #include "bench.h"
+#include "elementary/elementary.h"
 
 static const double turn = 2 * 3.14159265358979323846;
 
@@ -12,7 +13,7 @@ enum { SUBLIGHTS_SIDE = 4 };
 
 /* Returns the vector v turned about a unit axis (Rodrigues' formula). */
 static void rotate(double v[3], const double axis[3], double angle_rad) {
-  double c = cos(angle_rad), s = sin(angle_rad), dot = v[0] * axis[0] + v[1] * axis[1] + v[2] * axis[2],
+  double c = hl_cos(angle_rad), s = hl_sin(angle_rad), dot = v[0] * axis[0] + v[1] * axis[1] + v[2] * axis[2],
          turned[3];
   for (int i = 0; i < 3; i++) {
     int j = (i + 1) % 3, k = (i + 2) % 3;
@@ -43,7 +44,7 @@ static void turn_light(hl_light *light, const double target_in_world[3], const d
 
 /* Lights swing 30 degrees to either side, so that each light stays on its side of the volume, as seen from
  * the camera. */
-static double light_angle(double at) { return turn / 12 * sin(turn * at); }
+static double light_angle(double at) { return turn / 12 * hl_sin(turn * at); }
 
 static void set_shadows(hl_scene_description *description, hl_light *lights, enum bench_setting setting) {
   static const hl_soft_method methods[SETTING_COUNT] = {[SETTING_PAPER] = HL_SOFT_PAPER,
@@ -74,7 +75,7 @@ static hl_opacity_point *fade(const hl_transfer_function *function, double at) {
   hl_opacity_point *points = malloc((function->opacity_count + 1) * sizeof *points);
   for (size_t i = 0; points != NULL && i < function->opacity_count; i++)
     points[i] = (hl_opacity_point){function->opacity[i].value,
-                                   function->opacity[i].opacity * (0.875 + 0.125 * cos(turn * at))};
+                                   function->opacity[i].opacity * (0.875 + 0.125 * hl_cos(turn * at))};
   return points;
 }
 
@@ -127,10 +128,10 @@ static void fill_built_in(unsigned char *voxels) {
   double centre[BALLS][3], radius[BALLS];
   for (int i = 0; i < BALLS; i++) {
     double t = turn * i / BALLS;
-    centre[i][0] = BUILT_IN_SIDE * (0.5 + 0.13 * (sin(t) + 2 * sin(2 * t)));
-    centre[i][1] = BUILT_IN_SIDE * (0.5 + 0.13 * (cos(t) - 2 * cos(2 * t)));
-    centre[i][2] = BUILT_IN_SIDE * (0.5 - 0.3 * sin(3 * t));
-    radius[i] = BUILT_IN_SIDE * (0.05 + 0.02 * sin(5 * t));
+    centre[i][0] = BUILT_IN_SIDE * (0.5 + 0.13 * (hl_sin(t) + 2 * hl_sin(2 * t)));
+    centre[i][1] = BUILT_IN_SIDE * (0.5 + 0.13 * (hl_cos(t) - 2 * hl_cos(2 * t)));
+    centre[i][2] = BUILT_IN_SIDE * (0.5 - 0.3 * hl_sin(3 * t));
+    radius[i] = BUILT_IN_SIDE * (0.05 + 0.02 * hl_sin(5 * t));
   }
   for (size_t at = 0; at < (size_t)BUILT_IN_SIDE * BUILT_IN_SIDE * BUILT_IN_SIDE; at++) {
     double p[3] = {(double)(at % BUILT_IN_SIDE), (double)(at / BUILT_IN_SIDE % BUILT_IN_SIDE),

@@ -11,6 +11,7 @@
 
 #include "cli/commands.h"
 #include "cli/frames.h"
+#include "elementary/elementary.h"
 #include "panels.h"
 
 enum {
@@ -133,7 +134,7 @@ static void aim_at(hl_camera *camera, const double at[2], double aspect) {
   cross(right, forward, up);
   const bool flat = camera->type == HL_CAMERA_ORTHOGRAPHIC;
   const double height = flat ? camera->height
-                             : 2 * length_of(forward) * tan(camera->fovy_deg * acos(-1) / 360);
+                             : 2 * length_of(forward) * hl_tan(camera->fovy_deg * HL_PI / 360);
   const double x = (at[0] - 0.5) * aspect * height / length_of(right);
   const double y = (0.5 - at[1]) * height / length_of(up);
   for (int n = 0; n < 3; n++) {
@@ -151,8 +152,8 @@ static int magnify(figure_job *job, figure_panel *inset) {
   const hl_scene_description *shown = hl_scene_describe(outer->scene);
   description.camera = shown->camera;
   aim_at(&description.camera, inset->inset.at, (double)shown->width / shown->height);
-  const double degree = acos(-1) / 180, half = tan(description.camera.fovy_deg * degree / 2);
-  description.camera.fovy_deg = 2 / degree * atan(half / inset->inset.zoom);
+  const double degree = HL_PI / 180, half = hl_tan(description.camera.fovy_deg * degree / 2);
+  description.camera.fovy_deg = 2 / degree * hl_atan(half / inset->inset.zoom);
   description.camera.height /= inset->inset.zoom;
   return replace_scene(job, inset, &description);
 }

@@ -1,6 +1,7 @@
 /* cli/info/volume.c - prints the properties of a volume as text and as JSON: its arrays, channels, labels,
  * range and histogram. */
 #include "volume.h"
+#include "elementary/elementary.h"
 
 #include <inttypes.h>
 #include <math.h>
@@ -296,7 +297,7 @@ static void print_histogram(const hl_volume_info *info) {
   printf("  histogram   (bars are logarithmic)\n");
   for (int i = 0; i < BARS; i++) {
     static const char bar[] = "########################################";
-    int length = (int)lround(LONGEST * log1p((double)count[i]) / log1p((double)most));
+    int length = (int)lround(LONGEST * hl_log1p((double)count[i]) / hl_log1p((double)most));
     printf("  %11.5g  %-*.*s %12" PRIu64 " %7.3f %%\n", info->range[0] + i * step, LONGEST, length, bar,
            count[i], 100 * (double)count[i] / (double)total);
   }

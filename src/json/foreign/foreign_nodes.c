@@ -7,6 +7,7 @@
 #include <math.h>
 
 #include "core/memory.h"
+#include "elementary/elementary.h"
 #include "scene/scene.h"
 
 #define PIECES 16 /* number of straight pieces that a curved segment becomes */
@@ -19,7 +20,7 @@ static double ease(double t, const hl_foreign_node *n) {
   if (n->sharpness > 0.99) return t < 0.5 ? 0 : 1;
   if (n->sharpness < 0.01) return t;
   double power = 1 + 10 * n->sharpness;
-  t = t < 0.5 ? 0.5 * pow(2 * t, power) : 1 - 0.5 * pow(2 * (1 - t), power);
+  t = t < 0.5 ? 0.5 * hl_pow(2 * t, power) : 1 - 0.5 * hl_pow(2 * (1 - t), power);
   /* slope of the Hermite curve at both of its ends */
   double slope = 1 - n->sharpness, t2 = t * t, t3 = t2 * t;
   return (3 * t2 - 2 * t3) + slope * (2 * t3 - 3 * t2 + t);

@@ -20,6 +20,7 @@
 #include "core/file.h"
 #include "core/memory.h"
 #include "core/vector.h"
+#include "elementary/elementary.h"
 #include "json/foreign/paraview_state.h"
 #include "scene/scene.h"
 #include "volume/io/text.h"
@@ -261,14 +262,14 @@ static fit fit_to(const state *made, const hl_volume *volume) {
 /* Writes Halflight's boxes that together stand for one box of ParaView's. Returns the number of Halflight's
  * boxes. */
 static size_t write_terms(const double numbers[BOX_NUMBERS], const fit *f, hl_function_box *to) {
-  double alpha = fmin(fmax(numbers[7], 0), most_alpha), left = -log1p(-alpha), power = 1;
+  double alpha = fmin(fmax(numbers[7], 0), most_alpha), left = -hl_log1p(-alpha), power = 1;
   size_t made = 0;
   for (int k = 1; k <= TERMS && left > 0; k++) {
     power *= alpha;
     double term = k == TERMS || power / k < 1e-4 ? left : power / k;
     left -= term;
     hl_function_box *box = &to[made++];
-    *box = (hl_function_box){.opacity = -expm1(-term), .sigma = deviation / sqrt(k)};
+    *box = (hl_function_box){.opacity = -hl_expm1(-term), .sigma = deviation / sqrt(k)};
     for (int a = 0; a < 2; a++) {
       box->low[a] = (numbers[a] - f->from[a]) * f->factor[a] + f->to[a];
       box->high[a] = box->low[a] + numbers[2 + a] * f->factor[a];

@@ -11,6 +11,7 @@
 
 #include "core/memory.h"
 #include "core/vector.h"
+#include "elementary/elementary.h"
 
 /* ---- weights ---- */
 
@@ -25,7 +26,7 @@ static double weight_up_to(double low, double high, double edge, double x) {
 
 /* The integral of a Gaussian's weight along an axis, from its middle to x. */
 static double gaussian_up_to(double middle, double deviation, double x) {
-  return deviation * sqrt(HL_PI / 2) * erf((x - middle) / (deviation * sqrt(2)));
+  return deviation * sqrt(HL_PI / 2) * hl_erf((x - middle) / (deviation * sqrt(2)));
 }
 
 /* The mean of a box's Gaussian along one axis, over the part from `from` to `to`. */
@@ -33,7 +34,7 @@ static double gaussian_along(const hl_function_box *box, int axis, double from, 
   double low = box->low[axis], high = box->high[axis], middle = (low + high) / 2,
          deviation = box->sigma * (high - low), begin = fmax(from, low), end = fmin(to, high);
   if (begin > end || !(deviation > 0)) return 0;
-  if (!(to > from)) return exp(-(from - middle) * (from - middle) / (2 * deviation * deviation));
+  if (!(to > from)) return hl_exp(-(from - middle) * (from - middle) / (2 * deviation * deviation));
   return (gaussian_up_to(middle, deviation, end) - gaussian_up_to(middle, deviation, begin)) / (to - from);
 }
 
@@ -73,7 +74,7 @@ static double weight_in_polygon(const hl_function_polygon *polygon, const double
 
 /* ---- sums ---- */
 
-static double extinction_of(double opacity, double unit) { return -log1p(-fmin(opacity, 0.9999)) / unit; }
+static double extinction_of(double opacity, double unit) { return -hl_log1p(-fmin(opacity, 0.9999)) / unit; }
 
 static void add(plane_sum *sum, double extinction, const double color[3]) {
   sum->extinction += extinction;
@@ -211,7 +212,7 @@ static column column_between(const hl_function_plane *plane, double from, double
     const hl_function_box *box = &plane->boxes[b];
     double middle = fmin(fmax((box->low[0] + box->high[0]) / 2, from), to);
     double weight = weight_along(box, 0, middle, middle);
-    if (weight > 0) note(&found, 1 - pow(1 - box->opacity, weight), box->color);
+    if (weight > 0) note(&found, 1 - hl_pow(1 - box->opacity, weight), box->color);
   }
   for (size_t p = 0; p < plane->polygon_count; p++) {
     const hl_function_polygon *polygon = &plane->polygons[p];

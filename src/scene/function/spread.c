@@ -9,6 +9,7 @@
 
 #include "core/door.h"
 #include "core/memory.h"
+#include "elementary/elementary.h"
 #include "scene/function/transfer_function.h"
 
 /* The number of pieces into which the range is divided. With d = ln(high / low) / PIECES, a straight piece
@@ -114,10 +115,10 @@ static hl_status spread_rows(hl_context *context, rows *r, const double old[2], 
     return HL_OK;
   }
   divide_rows(r, old);
-  double length = log(range[1] / range[0]);
+  double length = hl_ln(range[1] / range[0]);
   for (size_t n = 0; n < r->made; n++) {
     double *value = &r->to[n * r->width];
-    *value = *value <= 0 ? range[0] : *value >= 1 ? range[1] : range[0] * exp(*value * length);
+    *value = *value <= 0 ? range[0] : *value >= 1 ? range[1] : range[0] * hl_exp(*value * length);
   }
   return HL_OK;
 }
@@ -126,11 +127,11 @@ hl_range_scale hl_transfer_function_scale(const hl_transfer_function *function) 
   HL_DOOR;
   const size_t count = function != NULL ? function->color_count : 0;
   if (count < PIECES + 1 || !(function->color[0].value > 0)) return HL_RANGE_LINEAR;
-  const double low = function->color[0].value, length = log(function->color[count - 1].value / low);
+  const double low = function->color[0].value, length = hl_ln(function->color[count - 1].value / low);
   size_t p = 0;
   for (int piece = 1; piece < PIECES; piece++) {
-    while (p + 1 < count && log(function->color[p].value / low) * PIECES < (piece - 1e-6) * length) p++;
-    if (log(function->color[p].value / low) * PIECES > (piece + 1e-6) * length) return HL_RANGE_LINEAR;
+    while (p + 1 < count && hl_ln(function->color[p].value / low) * PIECES < (piece - 1e-6) * length) p++;
+    if (hl_ln(function->color[p].value / low) * PIECES > (piece + 1e-6) * length) return HL_RANGE_LINEAR;
   }
   return length > 0 ? HL_RANGE_LOG : HL_RANGE_LINEAR;
 }

@@ -5,6 +5,7 @@
 #include <string.h>
 
 #include "core/door.h"
+#include "elementary/elementary.h"
 #include "volume/volume.h"
 
 /* In degrees. If a view's elevation is steeper than this angle, the direction that is up in the view is too
@@ -36,9 +37,9 @@ void hl_light_direction_beside(double azimuth_deg, double elevation_deg, double 
   HL_DOOR;
   if (direction == NULL) return;
   double azimuth = azimuth_deg * HL_PI / 180, elevation = elevation_deg * HL_PI / 180;
-  direction[0] = -cos(elevation) * sin(azimuth);
-  direction[1] = -sin(elevation);
-  direction[2] = -cos(elevation) * cos(azimuth);
+  direction[0] = -hl_cos(elevation) * hl_sin(azimuth);
+  direction[1] = -hl_sin(elevation);
+  direction[2] = -hl_cos(elevation) * hl_cos(azimuth);
 }
 
 void hl_light_direction(const hl_camera *camera, double azimuth_deg, double elevation_deg,
@@ -105,12 +106,12 @@ void hl_view_axes(const hl_view *view, vec3 *right, vec3 *up, vec3 *forward) {
   double azimuth = view->azimuth_deg * HL_PI / 180, elevation = view->elevation_deg * HL_PI / 180,
          roll = view->roll_deg * HL_PI / 180;
   vec3 top = vec3_of(view->up), aside = right_of_front(view), ahead = vec3_scale(vec3_of(view->front), -1);
-  vec3 horizon = vec3_add(vec3_scale(ahead, cos(azimuth)), vec3_scale(aside, -sin(azimuth)));
-  vec3 level = vec3_add(vec3_scale(aside, cos(azimuth)), vec3_scale(ahead, sin(azimuth)));
-  vec3 upward = vec3_add(vec3_scale(horizon, sin(elevation)), vec3_scale(top, cos(elevation)));
-  *forward = vec3_add(vec3_scale(horizon, cos(elevation)), vec3_scale(top, -sin(elevation)));
-  *right = vec3_add(vec3_scale(level, cos(roll)), vec3_scale(upward, sin(roll)));
-  *up = vec3_add(vec3_scale(upward, cos(roll)), vec3_scale(level, -sin(roll)));
+  vec3 horizon = vec3_add(vec3_scale(ahead, hl_cos(azimuth)), vec3_scale(aside, -hl_sin(azimuth)));
+  vec3 level = vec3_add(vec3_scale(aside, hl_cos(azimuth)), vec3_scale(ahead, hl_sin(azimuth)));
+  vec3 upward = vec3_add(vec3_scale(horizon, hl_sin(elevation)), vec3_scale(top, hl_cos(elevation)));
+  *forward = vec3_add(vec3_scale(horizon, hl_cos(elevation)), vec3_scale(top, -hl_sin(elevation)));
+  *right = vec3_add(vec3_scale(level, hl_cos(roll)), vec3_scale(upward, hl_sin(roll)));
+  *up = vec3_add(vec3_scale(upward, hl_cos(roll)), vec3_scale(level, -hl_sin(roll)));
 }
 
 void hl_camera_place(const hl_view *view, vec3 target, double distance, hl_camera *camera) {
@@ -169,8 +170,9 @@ hl_status hl_view_of_camera(const hl_scene_description *description, hl_view *vi
   hl_view_about(description, upright_of(camera), view);
   vec3 eye = vec3_subtract(vec3_of(camera->position), vec3_of(camera->target));
   double across = vec3_dot(eye, right_of_front(view)), near = vec3_dot(eye, vec3_of(view->front));
-  view->elevation_deg = rounded(atan2(vec3_dot(eye, vec3_of(view->up)), hypot(across, near)) * 180 / HL_PI);
-  view->azimuth_deg = rounded(atan2(across, near) * 180 / HL_PI);
+  view->elevation_deg = rounded(hl_atan2(vec3_dot(eye, vec3_of(view->up)), hl_hypot(across, near)) * 180 /
+                                HL_PI);
+  view->azimuth_deg = rounded(hl_atan2(across, near) * 180 / HL_PI);
   return HL_OK;
 }
 
@@ -219,7 +221,7 @@ hl_status hl_camera_join(const hl_camera *cameras, size_t count, double aspect, 
   if (joined == NULL || !can_join(cameras, count, aspect)) return HL_ERROR_ARGUMENT;
   const hl_camera *first = &cameras[0];
   const bool perspective = first->type == HL_CAMERA_PERSPECTIVE;
-  const double tangent = perspective ? tan(first->fovy_deg * HL_PI / 360) : 0;
+  const double tangent = perspective ? hl_tan(first->fovy_deg * HL_PI / 360) : 0;
   const borders none = {INFINITY, -INFINITY};
   borders across = none, along = none, own_across = none, own_along = none;
   double depth = INFINITY;

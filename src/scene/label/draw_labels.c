@@ -5,6 +5,7 @@
 #include <string.h>
 
 #include "core/memory.h"
+#include "elementary/elementary.h"
 #include "label/mask.h"
 #include "label/shelf.h"
 #include "label/solids.h"
@@ -96,8 +97,8 @@ static void set_function(const hl_label *label, hl_scene_volume *drawn, drawn_po
       {SKIN_FROM, 0}, {SKIN_FROM, label->opacity}, {SKIN_TO, label->opacity}, {SKIN_TO, 0}};
   memcpy(points->opacity, skin, sizeof skin);
   function->opacity_count = POINTS;
-  double edge = cbrt(vec3_length(mat3_column(placed, 0)) * vec3_length(mat3_column(placed, 1)) *
-                     vec3_length(mat3_column(placed, 2)));
+  double edge = hl_cbrt(vec3_length(mat3_column(placed, 0)) * vec3_length(mat3_column(placed, 1)) *
+                        vec3_length(mat3_column(placed, 2)));
   function->unit_distance = (SKIN_TO - SKIN_FROM) / drawn->volume->surface_slope * edge;
 }
 

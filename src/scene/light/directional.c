@@ -1,5 +1,6 @@
 /* scene/light/directional.c - implements a light that is infinitely far away. Its points are directions: a
  * disk around the direction in which the light travels. */
+#include "elementary/elementary.h"
 #include "scene/light/light_kind.h"
 
 static hl_status check_falloff(const hl_checker *check, const hl_light *light) {
@@ -17,7 +18,7 @@ static hl_status reaches(const hl_checker *check, const hl_light *light, const h
 static light_shape shape_of(const hl_light *light) {
   bool wide = light->angular_diameter_deg > 0;
   return (light_shape){.direction = vec3_of(light->direction),
-                       .radius = tan(light->angular_diameter_deg * HL_PI / 360),
+                       .radius = hl_tan(light->angular_diameter_deg * HL_PI / 360),
                        .is_wide = wide,
                        .has_surface = wide};
 }

@@ -2,6 +2,8 @@
  * these points. */
 #include "scene/light/light_shape.h"
 
+#include "elementary/elementary.h"
+
 /* the outer product a b' of two vectors, a matrix */
 mat3 hl_outer(vec3 a, vec3 b) { return (mat3){{vec3_scale(b, a.x), vec3_scale(b, a.y), vec3_scale(b, a.z)}}; }
 
@@ -95,8 +97,8 @@ static void square_to_disk(double a, double b, double *x, double *y) {
   }
   bool wide = fabs(a) > fabs(b);
   double radius = wide ? a : b, angle = wide ? HL_PI / 4 * b / a : HL_PI / 2 - HL_PI / 4 * a / b;
-  *x = radius * cos(angle);
-  *y = radius * sin(angle);
+  *x = radius * hl_cos(angle);
+  *y = radius * hl_sin(angle);
 }
 
 vec3 hl_disk_point(vec3 normal, double radius, double a, double b) {

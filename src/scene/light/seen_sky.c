@@ -8,6 +8,7 @@
 #include "core/door.h"
 #include "core/error.h"
 #include "core/vector.h"
+#include "elementary/elementary.h"
 #include "scene/geometry/camera.h"
 #include "scene/light/sky.h"
 #include "scene/scene.h"
@@ -23,7 +24,7 @@ typedef struct eye {
 static eye eye_of(const hl_scene_description *scene) {
   eye e = {.across = 0, .down = 0};
   hl_camera_basis(&scene->camera, &e.right, &e.up, &e.forward);
-  if (scene->camera.type == HL_CAMERA_PERSPECTIVE) e.down = tan(scene->camera.fovy_deg * HL_PI / 360);
+  if (scene->camera.type == HL_CAMERA_PERSPECTIVE) e.down = hl_tan(scene->camera.fovy_deg * HL_PI / 360);
   e.across = e.down * scene->width / scene->height;
   return e;
 }

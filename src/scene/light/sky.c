@@ -1,6 +1,8 @@
 /* scene/light/sky.c - checks skies, and finds their radiance from a direction. */
 #include "scene/light/sky.h"
 
+#include "elementary/elementary.h"
+
 hl_status hl_sky_check(const hl_sky *sky, hl_error *error) {
   hl_checker check = {error, "/sky"};
   hl_status status = hl_check_key(&check, HL_SETTINGS_SKY, "type", sky);
@@ -20,7 +22,7 @@ sky_axes hl_sky_axes(const hl_sky *sky) {
   vec3 from = fabs(up.x) < ALONG_X ? (vec3){1, 0, 0} : (vec3){0, 1, 0};
   vec3 right = vec3_normalise(vec3_subtract(from, vec3_scale(up, vec3_dot(from, up))));
   vec3 middle = vec3_cross(up, right);
-  double angle = sky->rotation_deg * HL_PI / 180, c = cos(angle), s = sin(angle);
+  double angle = sky->rotation_deg * HL_PI / 180, c = hl_cos(angle), s = hl_sin(angle);
   return (sky_axes){.right = vec3_add(vec3_scale(right, c), vec3_scale(middle, s)),
                     .middle = vec3_subtract(vec3_scale(middle, c), vec3_scale(right, s)),
                     .up = up};
@@ -42,7 +44,7 @@ static double neighbours(double position, int count, bool around, size_t pixel[2
 
 static void image_radiance(const hl_sky *sky, double right, double middle, double up, double radiance[3]) {
   size_t column[2], row[2];
-  double u = 0.5 + atan2(right, middle) / (2 * HL_PI), v = acos(fmin(fmax(up, -1), 1)) / HL_PI;
+  double u = 0.5 + hl_atan2(right, middle) / (2 * HL_PI), v = hl_acos(fmin(fmax(up, -1), 1)) / HL_PI;
   double x = neighbours(u * sky->width, sky->width, true, column),
          y = neighbours(v * sky->height, sky->height, false, row);
   for (int c = 0; c < 3; c++) radiance[c] = 0;

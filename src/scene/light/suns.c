@@ -14,6 +14,7 @@
 #include <string.h>
 
 #include "core/memory.h"
+#include "elementary/elementary.h"
 #include "scene/light/sky.h"
 
 /* WIDEST: the greatest half angle of a sun. FARTHEST: the greatest angle from a sun's middle at which light
@@ -58,9 +59,9 @@ static void add_piece(double from, double to, double last, double foot, double t
   for (int i = 0; i < 5 && to > from; i++) {
     double a = (from + to) / 2 + (to - from) / 2 * NODES[i];
     double part = (to - from) / 2 * WEIGHTS[i] * (foot == top ? 1 : (a - foot) / (top - foot));
-    sum->area += part * sin(a);
-    sum->across += part * sin(a) * sin(a);
-    sum->along += part * sin(a) * cos(a);
+    sum->area += part * hl_sin(a);
+    sum->across += part * hl_sin(a) * hl_sin(a);
+    sum->along += part * hl_sin(a) * hl_cos(a);
   }
 }
 
@@ -102,8 +103,8 @@ typedef struct search {
 static float brightness_of(const float *pixel) { return pixel[0] + pixel[1] + pixel[2]; }
 
 static vec3 direction_of(const search *all, int row, int column) {
-  double angle = (row + 0.5) * HL_PI / all->sky->height, across = sin(angle);
-  return (vec3){across * all->columns[column][0], across * all->columns[column][1], cos(angle)};
+  double angle = (row + 0.5) * HL_PI / all->sky->height, across = hl_sin(angle);
+  return (vec3){across * all->columns[column][0], across * all->columns[column][1], hl_cos(angle)};
 }
 
 static size_t place_of(const search *all, int row, int column) {
@@ -124,7 +125,7 @@ static vec3 moment_of(const search *all, int row, int column) {
 
 static bool is_left_out(const search *all, vec3 direction) {
   for (int i = 0; i < all->left_out_count; i++)
-    if (vec3_dot(direction, all->left_out[i].middle) > cos(all->left_out[i].radius)) return true;
+    if (vec3_dot(direction, all->left_out[i].middle) > hl_cos(all->left_out[i].radius)) return true;
   return false;
 }
 
@@ -142,7 +143,7 @@ static void find_row_peak(search *all, int row) {
 
 /* Finds the rows of the image that a cap may touch. */
 static void rows_of_cap(const search *all, const cap *of, int *first, int *end) {
-  double angle = acos(fmin(fmax(of->middle.z, -1), 1)), rows = all->sky->height / HL_PI;
+  double angle = hl_acos(fmin(fmax(of->middle.z, -1), 1)), rows = all->sky->height / HL_PI;
   *first = (int)fmax(floor((angle - of->radius) * rows - 1), 0);
   *end = (int)fmin(ceil((angle + of->radius) * rows + 1), all->sky->height);
 }
@@ -159,10 +160,10 @@ typedef void visit_pixel(const search *all, int row, int column, void *data);
  * middle be at the angle b to up, and a direction at the angle a to up, turned about up by t from the middle.
  * The cosine between the two is sin a sin b cos t + cos a cos b. */
 static int columns_of_cap(const search *all, const cap *of, int row) {
-  double a = (row + 0.5) * HL_PI / all->sky->height, b = acos(fmin(fmax(of->middle.z, -1), 1));
-  double least = (cos(of->radius) - cos(a) * cos(b)) / fmax(sin(a) * sin(b), 1e-12);
+  double a = (row + 0.5) * HL_PI / all->sky->height, b = hl_acos(fmin(fmax(of->middle.z, -1), 1));
+  double least = (hl_cos(of->radius) - hl_cos(a) * hl_cos(b)) / fmax(hl_sin(a) * hl_sin(b), 1e-12);
   if (least > 1) return 0;
-  double turn = least < -1 ? HL_PI : acos(least);
+  double turn = least < -1 ? HL_PI : hl_acos(least);
   return (int)fmin(ceil(turn / (2 * HL_PI) * all->sky->width + 1), all->sky->width / 2 + 1.0);
 }
 
@@ -171,8 +172,8 @@ static int columns_of_cap(const search *all, const cap *of, int row) {
 static void visit_cap(const search *all, const cap *of, double nearest, visit_pixel *visit, void *data) {
   int first, end, width = all->sky->width;
   rows_of_cap(all, of, &first, &end);
-  double least = cos(of->radius), most = nearest < 0 ? 2 : cos(nearest);
-  int middle = (int)((0.5 + atan2(of->middle.x, of->middle.y) / (2 * HL_PI)) * width);
+  double least = hl_cos(of->radius), most = nearest < 0 ? 2 : hl_cos(nearest);
+  int middle = (int)((0.5 + hl_atan2(of->middle.x, of->middle.y) / (2 * HL_PI)) * width);
   for (int row = first; row < end; row++) {
     int reach = columns_of_cap(all, of, row), low = middle - reach, high = middle + reach + 1;
     if (high - low > width) low = 0, high = width;
@@ -290,7 +291,7 @@ static spot find_spot(const search *all, int row, int column) {
 static sky_sun sun_of_spot(const spot *of) {
   sky_sun sun = {.towards = vec3_normalise(of->moment), .straight = vec3_length(of->moment) / of->brightness};
   memcpy(sun.irradiance, of->irradiance, sizeof sun.irradiance);
-  sun.half_angle = acos(fmin(fmax(2 * sun.straight - 1, -1), 1));
+  sun.half_angle = hl_acos(fmin(fmax(2 * sun.straight - 1, -1), 1));
   return sun;
 }
 
@@ -352,11 +353,11 @@ static void set_up(search *all) {
   double turn = 2 * HL_PI / sky->width, solid_angle = 0;
   all->wide = turn;
   /* the integral of (1 - |t| / turn) cos t over t from -turn to turn (derived) */
-  all->bend = 2 * (1 - cos(turn)) / turn;
+  all->bend = 2 * (1 - hl_cos(turn)) / turn;
   for (int column = 0; column < sky->width; column++) {
     double angle = (column + 0.5 - 0.5 * sky->width) * turn;
-    all->columns[column][0] = sin(angle);
-    all->columns[column][1] = cos(angle);
+    all->columns[column][0] = hl_sin(angle);
+    all->columns[column][1] = hl_cos(angle);
   }
   for (int row = 0; row < sky->height; row++) {
     double sum = 0;

@@ -9,6 +9,7 @@
 #include <string.h>
 
 #include "core/memory.h"
+#include "elementary/elementary.h"
 #include "volume/formats/format.h"
 #include "volume/io/text.h"
 
@@ -148,8 +149,8 @@ static hl_status read_stack(const mrc_header *header, const char *path, hl_paylo
  * as 90. */
 static void turn(double degrees, double *cosine, double *sine) {
   bool right = degrees == 90 || degrees == 0 || !isfinite(degrees);
-  *cosine = right ? 0 : cos(degrees * (HL_PI / 180));
-  *sine = right ? 1 : sin(degrees * (HL_PI / 180));
+  *cosine = right ? 0 : hl_cos(degrees * (HL_PI / 180));
+  *sine = right ? 1 : hl_sin(degrees * (HL_PI / 180));
 }
 
 /* Finds the steps, one interval long, along the cell's axes a, b, c. The cell's angles are alpha (between b

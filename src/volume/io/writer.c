@@ -12,6 +12,7 @@
 #include <string.h>
 
 #include "core/error.h"
+#include "elementary/elementary.h"
 #include "text/plain.h"
 #include "volume/convert.h"
 #include "volume/io/text.h"
@@ -248,7 +249,7 @@ static bool is_cell(const hl_volume_description *grid) {
 
 static double degrees_between(const double a[3], const double b[3]) {
   double cosine = vec3_dot(vec3_of(a), vec3_of(b)) / (vec3_length(vec3_of(a)) * vec3_length(vec3_of(b)));
-  return cosine == 0 ? 90 : acos(cosine) * 180 / acos(-1);
+  return cosine == 0 ? 90 : hl_acos(cosine) * 180 / HL_PI;
 }
 
 static hl_status make_mrc(const char *path, const hl_volume_description *grid, hl_written_header *header,

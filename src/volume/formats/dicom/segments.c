@@ -6,6 +6,7 @@
 #include <string.h>
 
 #include "core/memory.h"
+#include "elementary/elementary.h"
 #include "volume/io/text.h"
 
 enum {
@@ -63,7 +64,7 @@ static double cube_or_line(double t) {
 }
 
 static double encode_srgb(double linear) { /* the curve of IEC 61966-2-1 */
-  double code = linear <= 0.0031308 ? 12.92 * linear : 1.055 * pow(linear, 1 / 2.4) - 0.055;
+  double code = linear <= 0.0031308 ? 12.92 * linear : 1.055 * hl_pow(linear, 1 / 2.4) - 0.055;
   return code <= 0 ? 0 : code >= 1 ? 1 : code;
 }
 

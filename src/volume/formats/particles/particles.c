@@ -12,6 +12,7 @@
 #include "core/door.h"
 #include "core/memory.h"
 #include "core/vector.h"
+#include "elementary/elementary.h"
 #include "particles/particles.h"
 #include "volume/formats/particles/difference.h"
 #include "volume/in_bricks.h"
@@ -166,7 +167,7 @@ static void take_logarithms(void *data, size_t index, int worker) {
   const conversion *c = data;
   (void)worker;
   for (size_t n = index * NUMBERS_AT_ONCE; n < (index + 1) * NUMBERS_AT_ONCE && n < c->count; n++)
-    c->field[n] = (float)log10((double)(c->field[n] > c->least ? c->field[n] : c->least));
+    c->field[n] = (float)hl_log10((double)(c->field[n] > c->least ? c->field[n] : c->least));
 }
 
 static void divide(void *data, size_t index, int worker) {
@@ -188,7 +189,7 @@ static void convert(const making *m, hl_particle_field *field, const hl_particle
     c.count = hl_particle_field_floats(field, level);
     hl_pool_run(m->pool, c.count / NUMBERS_AT_ONCE + 1, density != NULL ? divide : take_logarithms, &c);
   }
-  field->outside = density != NULL ? c.outside : (float)log10((double)c.least);
+  field->outside = density != NULL ? c.outside : (float)hl_log10((double)c.least);
 }
 
 /* Converts sums of kernels as convert() converts the field. densities: for a mean, the sums of the masses;
@@ -198,7 +199,7 @@ static void convert_truth(const making *m, const double *densities, hl_particle_
   for (size_t q = 0; q < truth->probes.count; q++) {
     double *value = &truth->values[q];
     if (densities != NULL) *value /= densities[q];
-    if (m->d->quantity == HL_PARTICLES_LOG_DENSITY) *value = log10(fmax(*value, least));
+    if (m->d->quantity == HL_PARTICLES_LOG_DENSITY) *value = hl_log10(fmax(*value, least));
   }
 }
 
@@ -265,7 +266,7 @@ static hl_status plan_bricks(const making *m, hl_particle_plan *plan) {
     hl_particle_plan_release(m->context, plan);
     if (!sparse || m->d->spacing > 0) return HL_OK;
     limits.spacing = fmax(fmax(lattice.spacing[0], lattice.spacing[1]), lattice.spacing[2]) *
-                     fmax(cbrt(bytes / most), 1.05);
+                     fmax(hl_cbrt(bytes / most), 1.05);
   }
 }
 
