@@ -19,6 +19,7 @@
 #include "scene/geometry/cut.h"
 #include "scene/label/draw_labels.h"
 #include "scene/scene.h"
+#include "volume/smooth.h"
 #include "volume/store/gathered.h"
 
 #define LIGHT_AZIMUTH   -40 /* key light from the upper left, degrees from the line of sight */
@@ -96,6 +97,16 @@ static bool has_room(const hl_volume *volume, uint64_t bytes) {
   if (hl_volume_is_in_memory(volume))
     taken = 2 * (uint64_t)hl_volume_voxel_count(volume) * hl_storage_bytes(volume->storage);
   return limit == 0 || limit >= bytes + taken;
+}
+
+/* Returns true if the memory limit leaves room to smooth the volume, and to draw a volume of a float for each
+ * voxel. While the volume is smoothed, no renderer has a copy of it. Its tables, such as the bounds of
+ * bricks, take less than a sixteenth of its voxels' bytes and a megabyte. */
+static bool has_room_to_smooth(const hl_volume *volume) {
+  const uint64_t limit = volume->context->options.memory_limit, count = hl_volume_voxel_count(volume),
+                 voxels = count * hl_storage_bytes(volume->storage), tables = voxels / 16 + (1 << 20);
+  return has_room(volume, count * sizeof(float)) &&
+         (limit == 0 || limit >= voxels + tables + hl_volume_convolve_bytes(volume));
 }
 
 void hl_scene_choose_sky(double strength, hl_scene_description *description) {
@@ -284,15 +295,14 @@ static hl_status make_scene_of(hl_context *context, hl_volume *volume, const cha
 }
 
 /* Makes the scene of the volume. If the volume's voxels would show as stairs, terraces or grain, the scene is
- * made of a smoothed volume (smoothing.h), provided that there is memory for a float for each voxel. */
+ * made of a smoothed volume (smoothing.h), provided that there is memory for this. */
 static hl_status make_scene(hl_context *context, hl_volume *volume, const char *file, const hl_look *style,
                             hl_scene **scene, hl_error *error) {
   hl_data_analysis analysis;
   double sigma = 0;
   hl_volume *smoothed = NULL;
   hl_status status = hl_data_analyse(volume, &analysis, error);
-  if (status == HL_OK && has_room(volume, (uint64_t)hl_volume_voxel_count(volume) * sizeof(float)))
-    sigma = hl_smoothing_for(volume, file, &analysis);
+  if (status == HL_OK && has_room_to_smooth(volume)) sigma = hl_smoothing_for(volume, file, &analysis);
   if (status == HL_OK && sigma > 0) status = hl_volume_smooth(volume, sigma, &smoothed, error);
   if (status == HL_OK)
     status = make_scene_of(context, smoothed != NULL ? smoothed : volume, file, style, scene, error);

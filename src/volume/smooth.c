@@ -152,16 +152,28 @@ static hl_status adopt(const hl_volume *volume, float *values, hl_volume **smoot
   return status;
 }
 
+/* The number of floats of scratch memory for the longest lines that are convolved at once. */
+static size_t line_length(const hl_volume *volume) {
+  const size_t *n = volume->dimension;
+  return n[0] * (n[1] > n[2] ? n[1] : n[2]) + 2 * LONGEST;
+}
+
+uint64_t hl_volume_convolve_bytes(const hl_volume *volume) {
+  const uint64_t count = hl_volume_voxel_count(volume), values = count * sizeof(float),
+                 finite = volume->nonfinite_count > 0 ? values : 0,
+                 line = (uint64_t)line_length(volume) * sizeof(float),
+                 shorter = volume->storage != HL_STORAGE_F32 ? count * sizeof(uint16_t) : 0;
+  return values + (finite + line > shorter ? finite + line : shorter);
+}
+
 hl_status hl_volume_convolve(const hl_volume *volume, double sigma, hl_volume **smoothed, hl_error *error) {
   hl_context *context = volume->context;
   const gaussian kernel = make_gaussian(sigma);
-  const size_t count = hl_volume_voxel_count(volume), row = volume->dimension[0],
-               most = volume->dimension[1] > volume->dimension[2] ? volume->dimension[1]
-                                                                  : volume->dimension[2];
+  const size_t count = hl_volume_voxel_count(volume);
   const bool holes = volume->nonfinite_count > 0;
   float *values = hl_allocate(context, count, sizeof *values);
   float *finite = holes ? hl_allocate(context, count, sizeof *finite) : NULL;
-  float *line = hl_allocate(context, row * most + 2 * LONGEST, sizeof *line);
+  float *line = hl_allocate(context, line_length(volume), sizeof *line);
   bool whole = values != NULL && line != NULL && (!holes || finite != NULL);
   hl_status status = whole ? HL_OK : hl_fail_memory(error, count * sizeof *values, "smoothed voxels");
   if (whole) {

@@ -10,4 +10,7 @@
  * *smoothed is owned by the caller. */
 hl_status hl_volume_convolve(const hl_volume *volume, double sigma, hl_volume **smoothed, hl_error *error);
 
+/* The greatest number of bytes that hl_volume_convolve() holds beside the volume, for any sigma. */
+uint64_t hl_volume_convolve_bytes(const hl_volume *volume);
+
 #endif

@@ -251,6 +251,40 @@ static void bare_scenes_are_smoothed(void **state) {
   hl_volume_release(volume);
 }
 
+/* A bare scene under any memory limit is smoothed if memory has room for it, and otherwise shows the voxels
+ * as they are. */
+static void smoothing_keeps_to_the_memory_limit(void **state) {
+  (void)state;
+  enum { SIDE = 128, VOXELS = SIDE * SIDE * SIDE };
+  fill(true, 0, 40);
+  uint8_t *bytes = malloc(VOXELS);
+  assert_non_null(bytes);
+  for (int v = 0; v < VOXELS; v++)
+    bytes[v] = (uint8_t)values[at(v % SIDE / 4, v / SIDE % SIDE / 4, v / SIDE / SIDE / 4)];
+  bool was_smoothed = false;
+  for (size_t limit = 10u << 20; limit <= 20u << 20; limit += 1u << 19) {
+    hl_context_options options;
+    hl_context *own = NULL;
+    hl_scene *scene = NULL;
+    hl_error error = {0};
+    hl_context_options_defaults(&options);
+    options.memory_limit = limit;
+    assert_int_equal(hl_context_create(&options, &own, NULL), HL_OK);
+    hl_volume_description d = describe_voxels(SIDE, SIDE, SIDE, HL_VOXEL_U8, bytes);
+    hl_volume *volume = create_volume(own, &d);
+    if (hl_scene_for_volume(own, volume, "head.nii", &scene, &error) != HL_OK)
+      fail_msg("a limit of %zu bytes: %s", limit, error.message);
+    const bool is_smoothed = hl_volume_smoothing(hl_scene_describe(scene)->volumes[0].volume) > 0;
+    assert_true(is_smoothed || !was_smoothed);
+    assert_true(is_smoothed ? limit > 7 * VOXELS : limit < 9 * VOXELS);
+    was_smoothed = is_smoothed;
+    hl_scene_release(scene);
+    hl_volume_release(volume);
+    hl_context_destroy(own);
+  }
+  free(bytes);
+}
+
 static void what_has_no_mean_is_refused(void **state) {
   (void)state;
   hl_error error = {0};
@@ -393,6 +427,7 @@ int main(void) {
       cmocka_unit_test(thin_matter_is_left),
       cmocka_unit_test(grain_is_smoothed_and_objects_stay_what_they_are),
       cmocka_unit_test(bare_scenes_are_smoothed),
+      cmocka_unit_test(smoothing_keeps_to_the_memory_limit),
       cmocka_unit_test(what_has_no_mean_is_refused),
       cmocka_unit_test(unsmoothed_voxels_are_kept),
       cmocka_unit_test(unsmoothed_voxels_are_let_go),
