@@ -162,7 +162,7 @@ def listening(report: Report | None) -> Iterator[None]:
         _calls.reports.pop()
 
 
-def call(function: Any, *arguments: Any, path: str | None = None) -> None:
+def call(function: Any, *arguments: Any, path: str | None = None, warns: bool = True) -> None:
     """Call `function(*arguments, error)`, and raise the error that it reports.
 
     Parameters
@@ -172,6 +172,8 @@ def call(function: Any, *arguments: Any, path: str | None = None) -> None:
     path : str, optional
         The file that is read: where it is missing, the exception is FileNotFoundError. Or the URL of a store, for whose
         files the server is asked.
+    warns : bool
+        Whether the library's warnings are passed on: not where they would be about a file that the caller does not know of.
     """
     error = ffi.new("hl_error *")
     lib.python_call_begin(bool(_calls.reports) and _calls.reports[-1] is not None)
@@ -184,7 +186,7 @@ def call(function: Any, *arguments: Any, path: str | None = None) -> None:
         lib.python_call_end()
     if _calls.messages:
         messages, _calls.messages = _calls.messages, []
-        for message in messages:
+        for message in messages if warns else []:
             warn(message)
     if status != lib.HL_OK:
         raise _exception(status, error, path)

@@ -118,7 +118,7 @@ def voxels_of(handle: Any) -> np.ndarray[Any, Any]:
     """The voxels of an hl_volume, [z][y][x] of its index axes, in the type that holds its values; by way of a NIfTI file."""
     with tempfile.TemporaryDirectory(prefix="halflight-", dir=memory.current()[1]) as folder:
         path = os.path.join(folder, "voxels.nii")
-        call(lib.hl_volume_save, context, handle, os.fsencode(path))
+        call(lib.hl_volume_save, context, handle, os.fsencode(path), warns=False)
         with open(path, "rb") as file:
             header = file.read(352)
             sizes = np.frombuffer(header, "<i2", 8, 40)

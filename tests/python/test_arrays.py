@@ -1,5 +1,6 @@
 """Arrays: any type, order, stride and byte order; no copies where none is needed; lifetimes."""
 import gc
+import warnings
 import weakref
 
 import numpy as np
@@ -177,3 +178,11 @@ def test_place():
     assert info.direction.tolist() == [[0, -1, 0], [1, 0, 0], [0, 0, 1]]
     info = halflight.info(array.T, axes="xyz", affine=[[0, -2, 0, 7], [1, 0, 0, 8], [0, 0, 3, 9], [0, 0, 0, 1]])
     assert info.dimensions == (4, 3, 2) and info.origin.tolist() == [7, 8, 9]
+
+
+def test_arrays_of_a_file_come_without_a_word(tmp_path, blob):
+    """The file between the library and the array is nobody's business."""
+    halflight.Volume(blob).save(tmp_path / "a.nrrd")
+    with warnings.catch_warnings():
+        warnings.simplefilter("error")
+        assert np.array_equal(np.asarray(halflight.Volume(tmp_path / "a.nrrd")), blob)
