@@ -273,8 +273,8 @@ static int convert_mesh(cli_host *host, const cli_value *values, const char *in,
   double started = hl_clock_seconds();
   hl_mesh *mesh = NULL;
   hl_error error = {0};
-  int exit_code = hl_mesh_reads_name(host->context, in) ? load_mesh(host, values, in, &mesh)
-                                                        : make_surface(host, values, in, out, &mesh);
+  int exit_code = is_mesh_file(host->context, in) ? load_mesh(host, values, in, &mesh)
+                                                  : make_surface(host, values, in, out, &mesh);
   if (exit_code == EXIT_CODE_OK) exit_code = read_files_protect(&host->read, out, in);
   if (exit_code == EXIT_CODE_OK) {
     hl_status status = hl_mesh_save(host->context, mesh, out, &error);

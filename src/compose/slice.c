@@ -12,7 +12,7 @@
 #include "guess/analysis.h"
 #include "scene/geometry/camera.h"
 #include "text/plain.h"
-#include "volume/volume.h"
+#include "volume/in_bricks.h"
 
 /* The distance of a slice's sheets, in voxel edges. The values that are seen are those of the first sheets
  * behind the plane. */
@@ -93,6 +93,13 @@ static bool shows_labels(const hl_scene_description *description, const hl_asked
          hl_count_values(description) < description->volume_count;
 }
 
+static bool shows_levels(const hl_scene_description *description) {
+  bool found = false;
+  for (size_t v = 0; v < description->volume_count; v++)
+    found |= hl_volume_has_levels(description->volumes[v].volume);
+  return found;
+}
+
 hl_status hl_expand_slice(const hl_scene_description *description, hl_asked *asked, char *plane,
                           hl_error *error) {
   hl_asked *planes = &asked[HL_ASK_CUT_PLANE], *spacing = &asked[HL_ASK_SHEET_SPACING];
@@ -109,7 +116,8 @@ hl_status hl_expand_slice(const hl_scene_description *description, hl_asked *ask
   asked[HL_ASK_WHOLE].given = true;
   choose(&asked[HL_ASK_SHADING], HL_SHADING_FLAT);
   if (!spacing->given) *spacing = (hl_asked){.given = true, .number = {SHEET_SPACING}};
-  if (!shows_labels(description, asked)) choose(&asked[HL_ASK_KERNEL], HL_KERNEL_LINEAR);
+  if (!shows_labels(description, asked) && !shows_levels(description))
+    choose(&asked[HL_ASK_KERNEL], HL_KERNEL_LINEAR);
   return HL_OK;
 }
 

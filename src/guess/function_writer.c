@@ -321,7 +321,7 @@ void hl_add_colormap(hl_function_writer *w, const char *name, double from, doubl
   for (int step = 0; step <= 32; step++) {
     double t = step / 32.0, color[3];
     hl_colormap_evaluate(name, start + t * (end - start), color);
-    hl_add_color(w, from + t * (to - from), color);
+    hl_add_color(w, step < 32 ? from + t * (to - from) : to, color); /* not beyond the end by rounding */
   }
 }
 

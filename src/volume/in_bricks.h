@@ -17,6 +17,12 @@
 hl_status hl_volume_take_bricks(hl_context *context, hl_bricks *bricks, const hl_volume_description *grid,
                                 const char *subject, hl_volume **volume, hl_error *error);
 
+/* Returns whether a volume is a field at several levels. Such a field is a sum of B-splines, and other
+ * kernels cannot show it. */
+static inline bool hl_volume_has_levels(const hl_volume *volume) {
+  return volume->bricks != NULL && volume->bricks->levels > 1;
+}
+
 /* Stores the greatest difference between a new volume's field and its source, for
  * hl_volume_get_field_error(). kind, source: static. */
 void hl_volume_set_field_error(hl_volume *volume, double value, const char *kind, const char *source);

@@ -1,6 +1,7 @@
 """Adaptive grids: constants and linear fields are exact, mass is kept, and broken files are refused in words."""
 from __future__ import annotations
 
+import subprocess
 from dataclasses import astuple
 from pathlib import Path
 from typing import Any
@@ -139,3 +140,17 @@ def test_overlapping_amr_of_vtk(tmp_path: Path, ratio: int) -> None:
     (tmp_path / "a.vthb").write_text((tmp_path / "a.vthb").read_text().replace("box_1_0.vti", "../box_1_0.vti"))
     with pytest.raises((hl.InputError, OSError)):
         hl.Volume(tmp_path / "a.vthb")
+
+
+def test_slices(tmp_path: Path, program: str) -> None:
+    """A slice of a field at levels is the slice of the voxels that the field has."""
+    levels_of_blob, voxels = open_plotfile(tmp_path / "plt", blob), means(blob, 64, (0, 0, 0), (64,) * 3)
+    look: dict[str, Any] = {"slice": "z=0.5", "size": (48, 48), "clim": (1, 2)}
+    pictures = [np.asarray(hl.render(levels_of_blob, **look))]
+    pictures.append(np.asarray(hl.render(hl.Volume(voxels.astype(np.float32), spacing=1 / 64, origin=(1 / 128,) * 3), **look)))
+    words = [program, "render", str(tmp_path / "plt"), "--slice", "z=0.5", "--size", "48x48", "--range", "1,2", "-o", str(tmp_path / "a.npy")]
+    subprocess.run(words, check=True, capture_output=True)
+    pictures.append(np.load(tmp_path / "a.npy"))
+    assert pictures[0].shape == pictures[2].shape and pictures[1][..., 0].max() > 0.5
+    for picture in (pictures[0], pictures[2]):
+        assert np.abs(picture - pictures[1]).max() < 0.02

@@ -1,5 +1,6 @@
 /* tests/unit/scene_ranges.c - percentiles of volumes, and functions spread over ranges evenly and by
  * logarithms. */
+#include "guess/function_writer.h"
 #include "scene/function/transfer_function.h"
 #include "scene_parts.h"
 
@@ -203,11 +204,26 @@ static void range_of_one_value(void **state) {
   hl_context_destroy(context);
 }
 
+/* Two parts of a colour map that meet in a number give rising points, however the numbers are rounded. */
+static void parts_of_a_colormap_meet(void **state) {
+  (void)state;
+  const hl_data_analysis analysis = {.background = 0, .direction = 1};
+  for (int n = 1; n < 10000; n++) {
+    hl_function_writer writer = {.analysis = &analysis, .direction = 1};
+    const double begin = n / 7919.0, middle = 3 * begin + n / 6007.0;
+    hl_add_colormap(&writer, "plasma", begin, middle, 0.2, 0.8);
+    hl_add_colormap(&writer, "plasma", middle, 2 * middle, 0.8, 0.95);
+    for (size_t c = 1; c < writer.color_count; c++)
+      assert_true(writer.color[c].value >= writer.color[c - 1].value);
+  }
+}
+
 int main(void) {
   const struct CMUnitTest tests[] = {
       cmocka_unit_test(percentiles_of_a_ramp),         cmocka_unit_test(only_finite_voxels_count),
       cmocka_unit_test(clear_surroundings_stay_clear), cmocka_unit_test(range_of_one_value),
       cmocka_unit_test(colormap_by_logarithms),        cmocka_unit_test(points_by_logarithms),
+      cmocka_unit_test(parts_of_a_colormap_meet),
   };
   return cmocka_run_group_tests_name("scene_ranges", tests, NULL, NULL);
 }

@@ -9,12 +9,12 @@
 #include <stdio.h>
 #include <string.h>
 
-#include "bricks/bricks.h"
 #include "core/vector.h"
 #include "scene/geometry/placement.h"
 #include "scene/light/light_kind.h"
 #include "scene/light/sky.h"
 #include "scene/marks.h"
+#include "volume/in_bricks.h"
 
 static hl_status check_camera(const hl_camera *camera, hl_error *error) {
   hl_checker check = {error, "/camera"};
@@ -114,7 +114,7 @@ static hl_status check_second(const hl_scene_description *d, size_t v, hl_error 
 static hl_status check_bricks(const hl_scene_description *d, size_t v, hl_error *error) {
   const hl_kernel kernel = d->render.kernel;
   if (d->volumes[v].volume->bricks == NULL) return HL_OK;
-  if (d->volumes[v].volume->bricks->levels > 1 && kernel != HL_KERNEL_BSPLINE &&
+  if (hl_volume_has_levels(d->volumes[v].volume) && kernel != HL_KERNEL_BSPLINE &&
       kernel != HL_KERNEL_INTERPOLATING)
     return hl_fail(error, HL_ERROR_UNSUPPORTED,
                    "/render/kernel: volume %zu is a field at levels, made of B-splines: use \"bspline\" or "
