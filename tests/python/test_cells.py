@@ -195,6 +195,15 @@ def test_the_program_tells_the_bound(tmp_path: Path, program: str) -> None:
     assert f"field       differs from {bound.source} by {bound.value:.2g} at most" in shown
 
 
+def test_surfaces_of_fields_are_written(tmp_path: Path, program: str) -> None:
+    """Cells are a volume, of which `convert` writes the surface where the field has a value."""
+    places, cells, types = mesh("tetrahedra", 21)
+    path = write_cells(tmp_path / "a.vtu", places, cells, types, {"f": 1 - np.linalg.norm(places - 0.5, axis=1)})
+    subprocess.run([program, "convert", path, tmp_path / "a.stl", "--iso", "0.7"], check=True, capture_output=True)
+    told = json.loads(subprocess.run([program, "info", tmp_path / "a.stl", "--json"], check=True, capture_output=True, text=True).stdout)
+    np.testing.assert_allclose(told["volume"], 4 / 3 * np.pi * 0.3**3, rtol=0.04)
+
+
 def test_surfaces_stay_meshes(tmp_path: Path, program: str) -> None:
     places, quads = lattice(2), np.array([[0, 1, 3, 2]])
     path = write_cells(tmp_path / "a.vtu", places, quads, np.array([9], np.uint8), {"f": values_at(linear, places)})
