@@ -69,7 +69,12 @@ static const char *known_but_unsupported(const unsigned char *bytes, size_t leng
       {0, "\x89PNG", 4, "a picture, not a volume: give a folder of numbered ones"},
       {0, "\xff\xd8\xff", 3, "a JPEG picture, not a volume: give a folder of numbered ones"},
       {0, "\x76\x2f\x31\x01", 4, "an OpenEXR picture, not a volume: `halflight convert` makes a .png of it"},
-      {0, "\x89HDF", 4, "an HDF5 file (MINC, NeXus, Imaris, ...): " EXPORT "h5py.File(path)[\"name\"])"},
+      {0, "\x89HDF", 4,
+       "an HDF5 file (MINC, NeXus, Imaris, ...): " EXPORT "h5py.File(path)[\"name\"]). Python's "
+       "halflight.open_snapshot(path) opens particles, and halflight.open_amr(path, name) opens adaptive "
+       "grids"},
+      {0, "InitialCycleNumber", 18,
+       "the parameters of Enzo: give it to Python's halflight.open_amr(path, \"Density\")"},
       {0, "CDF\001", 4, "a NetCDF file (MINC, ...): " EXPORT "xarray.open_dataset(path)[\"name\"])"},
       {0, "CDF\002", 4, "a NetCDF file (MINC, ...): " EXPORT "xarray.open_dataset(path)[\"name\"])"},
       {0, "CDF\005", 4, "a NetCDF file: " EXPORT "xarray.open_dataset(path)[\"name\"])"},
@@ -98,6 +103,23 @@ static const char *known_but_unsupported(const unsigned char *bytes, size_t leng
   return NULL;
 }
 
+/* Finds advice for a file of simulations that Python opens by other packages. Returns null for all other
+ * files. */
+static const char *known_by_name(const char *path) {
+#define PYVISTA(read) "give it to Python's halflight.render(" read ", array=\"name\")"
+  static const char *const names[][2] = {
+      {".foam", "a case of OpenFOAM: " PYVISTA("pyvista.OpenFOAMReader(path).read()")},
+      {".case", "a case of EnSight: " PYVISTA("pyvista.get_reader(path).read()")},
+      {".encas", "a case of EnSight: " PYVISTA("pyvista.get_reader(path).read()")},
+      {".ex2", "an Exodus file: " PYVISTA("pyvista.read(path)")},
+      {".exo", "an Exodus file: " PYVISTA("pyvista.read(path)")},
+  };
+#undef PYVISTA
+  for (size_t n = 0; n < sizeof names / sizeof *names; n++)
+    if (hl_text_ends(path, names[n][0])) return names[n][1];
+  return NULL;
+}
+
 static void list_formats(char *text, size_t size) {
   size_t used = 0;
   for (int n = 0; hl_formats[n] != NULL && used < size; n++)
@@ -114,7 +136,8 @@ static bool is_mesh_name(const char *path) {
 
 static hl_status fail_unknown(const hl_stream *stream, const unsigned char *bytes, size_t length,
                               hl_error *error) {
-  const char *path = stream->path, *advice = known_but_unsupported(bytes, length);
+  const char *path = stream->path, *advice = known_by_name(path);
+  if (advice == NULL) advice = known_but_unsupported(bytes, length);
   if (advice != NULL) return hl_fail(error, HL_ERROR_UNSUPPORTED, "%s: %s", path, advice);
   if (stream->cut_short)
     return hl_fail(error, HL_ERROR_INPUT,

@@ -81,12 +81,14 @@ FOREIGN = {"a.mnc": (b"\x89HDF\r\n\x1a\n", "HDF5"), "b.mnc": (b"CDF\x01", "NetCD
            "k.lif": (b"p\0\0\0\x10\0\0\0\x2a", "LIF"), "l.oib": (b"\xd0\xcf\x11\xe0\xa1\xb1\x1a\xe1", "compound file"),
            "m.am": (b"# AmiraMesh BINARY-LITTLE-ENDIAN 2.1\n", "Amira"), "n.am": (b"# Avizo BINARY", "Avizo"), "o.fits": (b"SIMPLE  =  T", "FITS"),
            "p.mat": (b"MATLAB 5.0 MAT-file", "MATLAB"), "q.v": (b"MATRIX72v\0", "ECAT"), "r.PAR": (b"# === DATA DESCRIPTION FILE ===", "PAR file"),
-           "s.pvm": (b"PVM3\n", "PVM"), "t.pvm": (b"DDS v3d\n", "PVM"), "v.jpg": (b"\xff\xd8\xff\xe0", "JPEG picture")}
+           "s.pvm": (b"PVM3\n", "PVM"), "t.pvm": (b"DDS v3d\n", "PVM"), "v.jpg": (b"\xff\xd8\xff\xe0", "JPEG picture"),
+           "w.foam": (b"", "OpenFOAM"), "x.case": (b"FORMAT\ntype: ensight gold\n", "EnSight"), "y.ex2": (b"CDF\x01", "Exodus"),
+           "DD0010": (b"InitialCycleNumber  = 10\n", "Enzo")}
 
 
 def foreign():
     for name, (begin, title) in FOREIGN.items():
-        (root / name).write_bytes(begin.ljust(600, b"\0"))
+        (root / name).write_bytes(begin.ljust(600, b"\0") if begin else b"")
         code, out, said = run("info", name)
         check(f"{name} is refused by its name", code == 4, (code, said))
         if title in ("HDF5", "NetCDF"):
