@@ -138,7 +138,7 @@ typedef struct hl_volume_load_options {
   size_t struct_size; /* set by hl_volume_load_options_defaults() */
   const char *array;  /* the name of the array that is read, for a file with several arrays; null stands for
                        * the array that the file calls active, else the first scalar array, else the first
-                       * array */
+                       * array. Arrays that the file calls numbers of its points or cells come last */
   int component;      /* the component that is read: its number, from 0, or an HL_COMPONENT_ value; default
                        * HL_COMPONENT_DEFAULT. In a file with a series of volumes over time, each volume of
                        * the series counts as a component */

@@ -22,6 +22,7 @@ typedef struct hl_array_entry {
   size_t components;
   hl_voxel_type type; /* 0 for a type that cannot be read */
   bool of_cells;
+  bool is_id; /* whether the file says that the array numbers its points or cells */
 } hl_array_entry;
 
 /* The numbers of time steps, channels and resolutions of a file, each at least 1, and the indices of the ones

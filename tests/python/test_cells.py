@@ -93,6 +93,18 @@ def test_values_of_cells(tmp_path: Path) -> None:
     np.testing.assert_allclose(inner(np.asarray(volume), 4), inner(truth, 4), atol=3e-6)
 
 
+def test_numbers_of_points_are_not_taken(tmp_path: Path) -> None:
+    """An array that the file calls the ids of its points is shown only where there is no other one."""
+    places, cells, types = mesh("hexahedra", 3)
+    path = write_cells(tmp_path / "a.vtu", places, cells, types, {"number": np.arange(float(len(places)))}, {"f": np.linspace(1, 2, len(cells))})
+    for attribute, chosen in (("", "number"), ('GlobalIds="number"', "f"), ('PedigreeIds="number"', "f")):
+        told = tmp_path / "b.vtu"
+        told.write_text(path.read_text().replace("<PointData>", f"<PointData {attribute}>"))
+        assert [array.name for array in hl.info(hl.Volume(told)).arrays if array.chosen] == [chosen]
+    told.write_text(re.sub("<CellData>.*</CellData>", "", told.read_text(), flags=re.DOTALL))
+    assert hl.info(hl.Volume(told)).range[1] > 20
+
+
 def test_outside_of_cells_is_nothing(tmp_path: Path) -> None:
     places, cells, types = mesh("hexahedra", 9)
     kept = cells[places[cells].mean(axis=1)[:, 0] < 0.5]

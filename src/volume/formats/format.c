@@ -23,7 +23,8 @@ hl_status hl_arrays_add(hl_load_request *request, const char *name, size_t compo
   if (request->more) return HL_OK;
   char *copy = hl_copy_text(request->context, name);
   if (copy == NULL) return hl_fail_memory(error, strlen(name) + 1, "the name of an array");
-  request->arrays[request->array_count++] = (hl_array_entry){copy, components, type, of_cells};
+  request->arrays[request->array_count++] = (hl_array_entry){
+      .name = copy, .components = components, .type = type, .of_cells = of_cells};
   return HL_OK;
 }
 
@@ -68,13 +69,17 @@ static bool is_ghost(const hl_array_entry *array) {
   return hl_text_is_one_of(array->name, "vtkGhostType|vtkGhostLevels|vtkValidPointMask");
 }
 
+/* Numbers of points and cells are a volume only if the file has nothing else. */
 static size_t choose_default(const hl_load_request *request) {
   for (int cells = 0; cells < 2; cells++)
     for (size_t n = 0; n < request->array_count; n++) {
       const hl_array_entry *array = &request->arrays[n];
-      if (array->of_cells == (cells == 1) && array->components == 1 && array->type != 0 && !is_ghost(array))
+      if (array->of_cells == (cells == 1) && array->components == 1 && array->type != 0 && !is_ghost(array) &&
+          !array->is_id)
         return n;
     }
+  for (size_t n = 0; n < request->array_count; n++)
+    if (request->arrays[n].type != 0 && !is_ghost(&request->arrays[n]) && !request->arrays[n].is_id) return n;
   for (size_t n = 0; n < request->array_count; n++)
     if (request->arrays[n].type != 0 && !is_ghost(&request->arrays[n])) return n;
   return 0;

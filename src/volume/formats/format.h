@@ -57,7 +57,8 @@ hl_status hl_arrays_add(hl_load_request *request, const char *name, size_t compo
 
 /* Sets request->chosen to the array that the caller has named. If the caller has named none, the choice is
  * the array `active` (-1 if there is none), else the first array of one component at points, else the first
- * one at cells, else the first array. The list must not be empty. */
+ * one at cells, else the first array. Arrays of numbers of points or cells come last. The list must not be
+ * empty. */
 hl_status hl_arrays_choose(hl_load_request *request, const char *path, int active, hl_error *error);
 
 /* Chooses the component to read, and stores it in the payload, whose `components` and `block` must be set.

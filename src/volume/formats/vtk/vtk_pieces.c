@@ -86,6 +86,7 @@ static hl_status read_array_tag(hl_vtk_pieces *file, const hl_xml_tag *tag, hl_e
   if (status != HL_OK) return status;
   hl_vtk_xml_copy_name(made.name, hl_xml_attribute(tag, "Name"));
   made.is_active = made.name[0] != 0 && strcmp(made.name, file->active) == 0;
+  for (int n = 0; n < 2; n++) made.is_id |= made.name[0] != 0 && strcmp(made.name, file->ids[n]) == 0;
   file->arrays[file->array_count++] = made;
   piece->array_count++;
   return HL_OK;
@@ -105,6 +106,8 @@ static hl_status read_tag(void *data, const hl_xml_tag *tag, hl_error *error) {
     if (strcmp(tag->name, section_names[n]) == 0) {
       file->section = tag->is_start && !tag->is_end ? (hl_vtk_section)n : HL_VTK_NO_SECTION;
       hl_vtk_xml_copy_name(file->active, hl_xml_attribute(tag, "Scalars"));
+      hl_vtk_xml_copy_name(file->ids[0], hl_xml_attribute(tag, "GlobalIds"));
+      hl_vtk_xml_copy_name(file->ids[1], hl_xml_attribute(tag, "PedigreeIds"));
       return HL_OK;
     }
   if (!tag->is_start) return HL_OK;

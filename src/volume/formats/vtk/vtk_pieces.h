@@ -20,6 +20,7 @@ typedef struct hl_vtk_piece_array {
   char name[HL_VTK_NAME_BYTES];
   size_t components; /* at least 1 */
   bool is_active;    /* whether the array is the active scalars of its section */
+  bool is_id;        /* whether the array numbers the points or cells of its section */
 } hl_vtk_piece_array;
 
 typedef struct hl_vtk_piece {
@@ -39,6 +40,7 @@ typedef struct hl_vtk_pieces {
   size_t piece_count, piece_room, array_count, array_room;
   hl_vtk_section section;
   char active[HL_VTK_NAME_BYTES]; /* the section's active scalars */
+  char ids[2][HL_VTK_NAME_BYTES]; /* the section's arrays of numbers of points or cells */
   bool in_piece;
 } hl_vtk_pieces;
 

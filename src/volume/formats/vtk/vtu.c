@@ -37,6 +37,7 @@ static hl_status list_arrays(grid_file *file, hl_error *error) {
     if (array->section != HL_VTK_POINT_DATA && !of_cells) continue;
     hl_vtk_xml_find_type(array->array.type, &type);
     status = hl_arrays_add(file->request, array->name, array->components, type, of_cells, error);
+    if (file->request->array_count > index) file->request->arrays[index].is_id = array->is_id;
     if (status == HL_OK && array->is_active && (file->chosen_active < 0 || !of_cells) &&
         array->components == 1)
       file->chosen_active = (int)index;
