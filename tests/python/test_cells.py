@@ -194,15 +194,17 @@ def test_the_program_tells_the_bound(tmp_path: Path, program: str) -> None:
     assert found is not None and float(found[1]) == float(f"{bound.value:.2g}")
     picture = tmp_path / "a.png"
     run = subprocess.run([program, "render", path, "-o", picture, "--size", "32x32", "--json"], check=True, capture_output=True, text=True)
-    assert json.loads(run.stdout)["field_errors"] == [{"volume": 0} | told] == json.loads(Image.open(picture).text["halflight:field_errors"])
+    drawn = json.loads(run.stdout)["field_errors"]
+    assert 0 < drawn[0]["opacity"] <= 1  # of the transfer function
+    assert drawn == [{"volume": 0, "opacity": drawn[0]["opacity"]} | told] == json.loads(Image.open(picture).text["halflight:field_errors"])
     run = subprocess.run([program, "info", picture], check=True, capture_output=True, text=True)
     assert f"field       a.vtu: differs from {bound.source} by {bound.value:.2g} at most" in run.stdout
     run = subprocess.run([program, "info", picture, "--json"], check=True, capture_output=True, text=True)
-    assert json.loads(run.stdout)["picture"]["field_errors"] == [{"volume": 0} | told]
+    assert json.loads(run.stdout)["picture"]["field_errors"] == drawn
     subprocess.run([program, "render", path, "-o", picture, "--size", "32x32", "--no-metadata"], check=True, capture_output=True)
     assert "halflight:field_errors" not in Image.open(picture).text
     hl.render(path, size=(32, 32)).save(picture)
-    assert json.loads(Image.open(picture).text["halflight:field_errors"]) == [{"volume": 0} | told]
+    assert json.loads(Image.open(picture).text["halflight:field_errors"]) == drawn
     shown = subprocess.run([program, "info", path], check=True, capture_output=True, text=True).stdout
     assert f"field       differs from {bound.source} by {bound.value:.2g} at most" in shown
 

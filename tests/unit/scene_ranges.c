@@ -218,12 +218,42 @@ static void parts_of_a_colormap_meet(void **state) {
   }
 }
 
+/* Closed forms of a peak and of a step, and of a function of many points the greatest difference that is
+ * found by trying. */
+static void opacities_of_near_values(void **state) {
+  (void)state;
+  static const hl_opacity_point peak[] = {{0, 0}, {1, 0.8}, {3, 0}}, step[] = {{2, 0.1}, {2, 0.7}};
+  hl_transfer_function function = {.opacity = peak, .opacity_count = 3};
+  assert_near(hl_transfer_function_opacity_change(&function, 0), 0, 0);
+  assert_near(hl_transfer_function_opacity_change(&function, 0.25), 0.2, 1e-12);
+  assert_near(hl_transfer_function_opacity_change(&function, 5), 0.8, 1e-12);
+  assert_true(isnan(hl_transfer_function_opacity_change(&function, NAN)));
+  function = (hl_transfer_function){.opacity = step, .opacity_count = 2};
+  assert_near(hl_transfer_function_opacity_change(&function, 1e-9), 0.6, 1e-12);
+  enum { POINTS = 12, TRIALS = 2000 };
+  hl_opacity_point many[POINTS];
+  for (unsigned n = 0; n < POINTS; n++)
+    many[n] = (hl_opacity_point){n + mixed(n) / (double)COUNT, mixed(3 * n + 1) / (double)COUNT};
+  function = (hl_transfer_function){.opacity = many, .opacity_count = POINTS};
+  for (double reach = 0.05; reach < 8; reach *= 1.7) {
+    double most = 0;
+    for (int a = 0; a < TRIALS; a++)
+      for (int b = -20; b <= 20; b++) {
+        const double value = POINTS * (double)a / TRIALS, other = value + reach * b / 20;
+        most = fmax(most, fabs(hl_transfer_function_opacity(&function, value) -
+                               hl_transfer_function_opacity(&function, other)));
+      }
+    const double found = hl_transfer_function_opacity_change(&function, reach);
+    assert_true(most <= found + 1e-12 && most > 0.97 * found);
+  }
+}
+
 int main(void) {
   const struct CMUnitTest tests[] = {
       cmocka_unit_test(percentiles_of_a_ramp),         cmocka_unit_test(only_finite_voxels_count),
       cmocka_unit_test(clear_surroundings_stay_clear), cmocka_unit_test(range_of_one_value),
       cmocka_unit_test(colormap_by_logarithms),        cmocka_unit_test(points_by_logarithms),
-      cmocka_unit_test(parts_of_a_colormap_meet),
+      cmocka_unit_test(parts_of_a_colormap_meet),      cmocka_unit_test(opacities_of_near_values),
   };
   return cmocka_run_group_tests_name("scene_ranges", tests, NULL, NULL);
 }

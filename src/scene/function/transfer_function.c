@@ -39,6 +39,23 @@ double hl_transfer_function_opacity(const hl_transfer_function *function, double
   return opacity_between(function->opacity, function->opacity_count, value);
 }
 
+/* Derived: the difference of two opacities is linear in both values, as long as both stay between the same
+ * points. So it is greatest where both values are points, or where one is a point and the other lies `reach`
+ * beside it. */
+double hl_transfer_function_opacity_change(const hl_transfer_function *function, double reach) {
+  const hl_opacity_point *points = function->opacity;
+  double most = 0;
+  if (!(reach > 0)) return reach == 0 ? 0 : NAN;
+  for (size_t n = 0; n < function->opacity_count; n++) {
+    const double value = points[n].value, opacity = points[n].opacity;
+    for (int side = -1; side <= 1; side += 2)
+      most = fmax(most, fabs(hl_transfer_function_opacity(function, value + side * reach) - opacity));
+    for (size_t other = n; other-- > 0 && points[other].value >= value - reach;)
+      most = fmax(most, fabs(points[other].opacity - opacity));
+  }
+  return most;
+}
+
 double hl_transfer_function_gradient_opacity(const hl_transfer_function *function, double gradient) {
   if (function->gradient_opacity_count == 0) return 1;
   return opacity_between(function->gradient_opacity, function->gradient_opacity_count, gradient);

@@ -17,6 +17,10 @@ double hl_transfer_function_opacity(const hl_transfer_function *function, double
 double hl_transfer_function_gradient_opacity(const hl_transfer_function *function, double gradient);
 void hl_transfer_function_color(const hl_transfer_function *function, double value, double color[3]);
 
+/* The greatest difference between the opacities of two values that are at most `reach` apart; reach: 0 or
+ * more, or NAN, which gives NAN. */
+double hl_transfer_function_opacity_change(const hl_transfer_function *function, double reach);
+
 /* Returns whether some value from `low` to `high` has an opacity above zero. */
 int hl_transfer_function_visible(const hl_transfer_function *function, double low, double high);
 
