@@ -5,16 +5,15 @@
 
 enum { CELL = 2 }; /* length of a cell's edge in voxels */
 
-/* LEVEL_SUMS: the number of planes with sums over faces. LEVEL_BLENDED: the number of planes that are
- * blurred. They are the planes with sums, and HL_LEVEL_THIN. */
-enum { LEVEL_SUMS = HL_LEVEL_FALL + 1, LEVEL_BLENDED = HL_LEVEL_THIN + 1 };
+enum { LEVEL_OF_FACES = HL_LEVEL_FALL + 1 }; /* the number of planes with sums over faces */
 
 /* The filter that blurs cells, [1 2 1] / 4, so that there are no steps from cell to cell. */
 static const label_filter BLUR = {2, {0.5f, 0.25f, 0}};
 
 /* The weight of an imaginary face that is added, at every voxel, to the sums over the faces of the label's
  * border. On this imaginary face the field has the values that it should have, so that the face asks for no
- * correction. The imaginary face decides the result for a voxel that lies far from any border. */
+ * correction. The imaginary face decides the result for a voxel that lies far from any border. An imaginary
+ * voxel of the same weight, which is not thin, is added to the sums over voxels. */
 static const float FAINT = 1e-3f;
 
 /* The least fall of the field across the border's faces. A smaller fall counts as this one, so that the field
@@ -23,10 +22,6 @@ static const float LEAST_FALL = 0.04f;
 
 /* Limits of a field's values, which must fit the bytes that store them (occupancy.c). */
 static const float LEAST = -0.5f, GREATEST = 1.49f;
-
-/* A label is at least three voxels thick if the field's values nearby reach THICK. It is thin if they stay
- * below THIN. */
-static const float THIN = 0.46f, THICK = 0.5f;
 
 /* The distance by which the border of thin things is moved outwards, in voxels. */
 static const float GROWTH = 0.25f;
@@ -47,17 +42,20 @@ static float *plane_of(const label_levels *levels, int plane) {
 
 /* ---- the border ---- */
 
-/* A row of voxels, and the four rows beside it. At the field's ends the row itself takes the place of a
- * missing row. */
+/* A row of voxels, and the rows around it. At the field's ends the row itself takes the place of a missing
+ * row. The members are indices of the rows' first voxels. */
 typedef struct border_row {
-  size_t at, beside[4]; /* indices of the first voxels of the row and of the four rows beside it */
+  size_t at, beside[4]; /* the row; the rows before and after it along y, before and after it along z */
+  size_t across[2][2];  /* [before, after along z][before, after along y] */
 } border_row;
 
 static border_row row_at(const label_field *field, size_t y, size_t z) {
   const size_t nx = field->size[0], slice = nx * field->size[1], at = z * slice + y * nx;
+  const size_t before = y > 0 ? nx : 0, after = y + 1 < field->size[1] ? nx : 0;
+  const size_t above = z > 0 ? slice : 0, below = z + 1 < field->size[2] ? slice : 0;
   return (border_row){at,
-                      {y > 0 ? at - nx : at, y + 1 < field->size[1] ? at + nx : at, z > 0 ? at - slice : at,
-                       z + 1 < field->size[2] ? at + slice : at}};
+                      {at - before, at + after, at - above, at + below},
+                      {{at - above - before, at - above + after}, {at + below - before, at + below + after}}};
 }
 
 /* Marks the voxels of a row that a face of the border touches. */
@@ -74,7 +72,7 @@ static void mark_border(const level_job *job, const border_row *row, unsigned ch
 
 /* Adds the faces of the label's border between a voxel and its neighbours to the sums. Each face is added
  * twice, once from each side. */
-static void add_faces(const level_job *job, const border_row *row, size_t x, float sums[LEVEL_SUMS]) {
+static void add_faces(const level_job *job, const border_row *row, size_t x, float sums[LEVEL_OF_FACES]) {
   const size_t at = row->at + x, nx = job->field->size[0];
   const size_t beside[6] = {row->beside[0] + x, row->beside[1] + x,  row->beside[2] + x,
                             row->beside[3] + x, x > 0 ? at - 1 : at, x + 1 < nx ? at + 1 : at};
@@ -88,14 +86,55 @@ static void add_faces(const level_job *job, const border_row *row, size_t x, flo
   }
 }
 
-/* Raises the greatest values of cells to the values of a row of voxels. */
-static void raise_most(const float *values, size_t count, float *most) {
-  for (size_t x = 0; x < count; x++)
-    if (values[x] > most[x / CELL]) most[x / CELL] = values[x];
+/* ---- thin parts ---- */
+
+/* Marks the voxels of a row that lie in a block of 2x2x2 voxels of which at least seven are the label's.
+ * Where no such block is, the label is one voxel thin. Derived: let (a, b, c) be a plane's normal, a >= b >=
+ * c >= 0. Seven corners of a cube of edge 1 lie between two such planes only if these are at least a + b
+ * apart, which is 1 or more. So a plate that is one voxel thin has no such block, whatever its orientation.
+ */
+static void mark_thick(const level_job *job, const border_row *row, unsigned char *squares,
+                       unsigned char *marks) {
+  enum { MOST_OF_BLOCK = 7 };
+  const size_t nx = job->field->size[0];
+  const unsigned char *own = job->inside + row->at;
+  memset(marks, 0, nx);
+  for (int n = 0; n < 4; n++) { /* the squares of four voxels across the row, on one side of it */
+    const unsigned char *b = job->inside + row->beside[n & 1], *c = job->inside + row->beside[2 + (n >> 1)],
+                        *d = job->inside + row->across[n >> 1][n & 1];
+    for (size_t x = 0; x < nx; x++) squares[x + 1] = (unsigned char)(own[x] + b[x] + c[x] + d[x]);
+    squares[0] = squares[1], squares[nx + 1] = squares[nx];
+    for (size_t x = 0; x < nx; x++)
+      marks[x] |= (squares[x] + squares[x + 1] >= MOST_OF_BLOCK) |
+                  (squares[x + 1] + squares[x + 2] >= MOST_OF_BLOCK);
+  }
+  for (size_t x = 0; x < nx; x++) marks[x] &= own[x];
 }
 
-/* Computes the sums over the border's faces in a slice of cells, and the greatest value of the field in each
- * cell. */
+/* ---- sums ---- */
+
+/* Adds a row of voxels to the sums of the row of cells that begins with cell `first`. marks: scratch memory,
+ * [2 * voxels of the row + 2]. */
+static void sum_row(const level_job *job, const border_row *row, unsigned char *marks, size_t first) {
+  const size_t nx = job->field->size[0];
+  const unsigned char *inside = job->inside + row->at;
+  mark_border(job, row, marks);
+  for (size_t x = 0; x < nx; x++) {
+    if (!marks[x]) continue;
+    float sums[LEVEL_OF_FACES] = {0};
+    add_faces(job, row, x, sums);
+    for (int s = 0; s < LEVEL_OF_FACES; s++) plane_of(job->levels, s)[first + x / CELL] += sums[s];
+  }
+  mark_thick(job, row, marks + nx, marks);
+  float *thin = plane_of(job->levels, HL_LEVEL_THIN) + first,
+        *all = plane_of(job->levels, HL_LEVEL_VOXELS) + first;
+  for (size_t x = 0; x < nx; x++) {
+    all[x / CELL] += inside[x];
+    thin[x / CELL] += (float)(inside[x] & !marks[x]);
+  }
+}
+
+/* Computes the sums over the border's faces and over the label's voxels in a slice of cells. */
 static void sum_cells(void *data, size_t cell_z, int worker) {
   const level_job *job = data;
   const label_field *field = job->field;
@@ -106,46 +145,7 @@ static void sum_cells(void *data, size_t cell_z, int worker) {
   for (size_t z = CELL * cell_z; z < CELL * (cell_z + 1) && z < field->size[2]; z++)
     for (size_t y = 0; y < field->size[1]; y++) {
       const border_row row = row_at(field, y, z);
-      raise_most(field->values + row.at, field->size[0],
-                 plane_of(job->levels, HL_LEVEL_MOST) + cell_z * plane + y / CELL * cells[0]);
-      mark_border(job, &row, marks);
-      for (size_t x = 0; x < field->size[0]; x++) {
-        if (!marks[x]) continue;
-        float sums[LEVEL_SUMS] = {0};
-        add_faces(job, &row, x, sums);
-        for (int s = 0; s < LEVEL_SUMS; s++)
-          plane_of(job->levels, s)[cell_z * plane + y / CELL * cells[0] + x / CELL] += sums[s];
-      }
-    }
-}
-
-/* The greatest value of the field in a cell and in the cells beside it. */
-static float most_around(const label_levels *levels, const size_t cell[3]) {
-  const float *most = plane_of(levels, HL_LEVEL_MOST);
-  size_t low[3], high[3];
-  float greatest = 0;
-  for (int a = 0; a < 3; a++) {
-    low[a] = cell[a] > 0 ? cell[a] - 1 : 0;
-    high[a] = cell[a] + 1 < levels->size[a] ? cell[a] + 1 : cell[a];
-  }
-  for (size_t z = low[2]; z <= high[2]; z++)
-    for (size_t y = low[1]; y <= high[1]; y++)
-      for (size_t x = low[0]; x <= high[0]; x++) {
-        const float here = most[(z * levels->size[1] + y) * levels->size[0] + x];
-        if (here > greatest) greatest = here;
-      }
-  return greatest;
-}
-
-static void find_thin(void *data, size_t z, int worker) {
-  (void)worker;
-  const level_job *job = data;
-  const size_t *cells = job->levels->size;
-  float *thin = plane_of(job->levels, HL_LEVEL_THIN) + z * cells[0] * cells[1];
-  for (size_t y = 0; y < cells[1]; y++)
-    for (size_t x = 0; x < cells[0]; x++, thin++) {
-      const float part = (THICK - most_around(job->levels, (size_t[3]){x, y, z})) / (THICK - THIN);
-      *thin = part < 0 ? 0 : part > 1 ? 1 : part;
+      sum_row(job, &row, marks, cell_z * plane + y / CELL * cells[0]);
     }
 }
 
@@ -166,11 +166,11 @@ static cells_around around(size_t at, size_t cells) {
 }
 
 /* Interpolates the cells' sums to a row of voxels, along y and z only. Interpolation along x comes later.
- * rows: [LEVEL_BLENDED][cells]. */
+ * rows: [HL_LEVEL_PLANES][cells]. */
 static void blend_rows(const label_levels *levels, size_t y, size_t z, float *rows) {
   const size_t *cells = levels->size;
   const cells_around j = around(y, cells[1]), k = around(z, cells[2]);
-  for (int s = 0; s < LEVEL_BLENDED; s++, rows += cells[0]) {
+  for (int s = 0; s < HL_LEVEL_PLANES; s++, rows += cells[0]) {
     const float *from = plane_of(levels, s), *a = from + (k.own * cells[1] + j.own) * cells[0],
                 *b = from + (k.own * cells[1] + j.other) * cells[0],
                 *c = from + (k.other * cells[1] + j.own) * cells[0],
@@ -180,11 +180,11 @@ static void blend_rows(const label_levels *levels, size_t y, size_t z, float *ro
   }
 }
 
-static float levelled(const float sums[LEVEL_BLENDED], float value) {
+static float levelled(const float sums[HL_LEVEL_PLANES], float value) {
   const float faces = sums[HL_LEVEL_FACES] + FAINT, middle = (sums[HL_LEVEL_VALUE] + FAINT * 0.5f) / faces,
               fall = (sums[HL_LEVEL_FALL] + FAINT * HL_LABEL_SLOPE) / faces;
   value = 0.5f + (value - middle) * (HL_LABEL_SLOPE / (fall > LEAST_FALL ? fall : LEAST_FALL)) +
-          GROWTH * HL_LABEL_SLOPE * sums[HL_LEVEL_THIN];
+          GROWTH * HL_LABEL_SLOPE * sums[HL_LEVEL_THIN] / (sums[HL_LEVEL_VOXELS] + FAINT);
   return value < LEAST ? LEAST : value > GREATEST ? GREATEST : value;
 }
 
@@ -198,8 +198,8 @@ static void level_slice(void *data, size_t z, int worker) {
     blend_rows(job->levels, y, z, rows);
     for (size_t x = 0; x < field->size[0]; x++) {
       const cells_around i = around(x, cells);
-      float sums[LEVEL_BLENDED];
-      for (int s = 0; s < LEVEL_BLENDED; s++) {
+      float sums[HL_LEVEL_PLANES];
+      for (int s = 0; s < HL_LEVEL_PLANES; s++) {
         const float *row = rows + (size_t)s * cells;
         sums[s] = OWN * row[i.own] + OTHER * row[i.other];
       }
@@ -212,8 +212,7 @@ void hl_label_level(hl_pool *pool, const unsigned char *inside, const label_fiel
                     const label_levels *levels) {
   level_job job = {inside, field, levels};
   hl_pool_run(pool, levels->size[2], sum_cells, &job);
-  hl_pool_run(pool, levels->size[2], find_thin, &job);
-  for (int p = 0; p < LEVEL_BLENDED; p++) {
+  for (int p = 0; p < HL_LEVEL_PLANES; p++) {
     label_field blurred = *field;
     blurred.values = plane_of(levels, p);
     memcpy(blurred.size, levels->size, sizeof blurred.size);
