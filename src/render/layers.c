@@ -51,13 +51,6 @@ void hl_layer_pixels_count(const hl_layers *wanted, const frame *frame, size_t t
   lay_out(frame, tiles, &pixels, layout);
 }
 
-/* Sets the first depth of all pixels to infinity, because no ray has met anything yet. */
-static void clear_first_depth(float *measures, size_t tiles) {
-  for (size_t block = 0; block < tiles * TILE_BLOCKS; block++)
-    for (int lane = 0; lane < BLOCK_PIXELS; lane++)
-      measures[(block * MEASURES + MEASURE_DEPTH_FIRST) * BLOCK_PIXELS + (size_t)lane] = INFINITY;
-}
-
 hl_status hl_layer_pixels_create(hl_context *context, hl_pool *pool, const hl_layers *wanted,
                                  const frame *frame, size_t tiles, layer_pixels *pixels, hl_error *error) {
   *pixels = (layer_pixels){.wanted = wanted, .light_count = (size_t)frame->light_count};
@@ -70,7 +63,6 @@ hl_status hl_layer_pixels_create(hl_context *context, hl_pool *pool, const hl_la
   pixels->memory = layout.base;
   if (pixels->memory == NULL) return hl_fail_memory(error, layout.bytes, "the layers");
   hl_pool_clear(pool, pixels->memory, layout.bytes);
-  if (pixels->measures != NULL) clear_first_depth(pixels->measures, tiles);
   return HL_OK;
 }
 
@@ -87,19 +79,13 @@ static const float *value_at(const layer_grid *grid, const float *pixels, int fl
   return pixels + hl_place_in_tiles(grid->tiles_x, floats, column, row) + (size_t)value * BLOCK_PIXELS;
 }
 
-/* The sum of one value over the pixels of the frame that make up one pixel of the picture; infinite values
- * are left out. *count is raised by the number of values added; count may be null. */
-static float sum_of(const layer_grid *grid, const float *pixels, int floats, int column, int row, int value,
-                    int *count) {
+/* The sum of one value over the pixels of the frame that make up one pixel of the picture. */
+static float sum_of(const layer_grid *grid, const float *pixels, int floats, int column, int row, int value) {
   int side = grid->oversampling;
   float sum = 0;
   for (int y = row * side; y < (row + 1) * side; y++)
-    for (int x = column * side; x < (column + 1) * side; x++) {
-      float one = *value_at(grid, pixels, floats, x, y, value);
-      if (!(one < INFINITY)) continue;
-      sum += one;
-      if (count != NULL) ++*count;
-    }
+    for (int x = column * side; x < (column + 1) * side; x++)
+      sum += *value_at(grid, pixels, floats, x, y, value);
   return sum;
 }
 
@@ -111,9 +97,9 @@ static void write_colors(const layer_grid *grid, int row, const float *pixels, b
   float area = (float)(grid->oversampling * grid->oversampling);
   to += 3 * (size_t)row * (size_t)grid->width;
   for (int column = 0; column < grid->width; column++) {
-    float alpha = divide ? sum_of(grid, pixels, COLORS, column, row, 3, NULL) : area;
+    float alpha = divide ? sum_of(grid, pixels, COLORS, column, row, 3) : area;
     for (int c = 0; c < 3; c++, to++) {
-      *to = (add ? *to : 0) + (alpha > 0 ? sum_of(grid, pixels, COLORS, column, row, c, NULL) / alpha : 0);
+      *to = (add ? *to : 0) + (alpha > 0 ? sum_of(grid, pixels, COLORS, column, row, c) / alpha : 0);
       /* Each sector of a light is divided by the alpha of its own sweep. So the sum over sectors may exceed
        * 1. */
       if (divide && *to > 1) *to = 1;
@@ -128,15 +114,26 @@ static void write_sky_shadow(const layer_grid *grid, int row, const layer_pixels
   to += 3 * (size_t)row * (size_t)grid->width;
   for (int column = 0; column < grid->width; column++)
     for (int c = 0; c < 3; c++, to++) {
-      float open = sum_of(grid, pixels->sky_open, COLORS, column, row, c, NULL),
-            reaching = sum_of(grid, pixels->sky_reaching, COLORS, column, row, c, NULL);
+      float open = sum_of(grid, pixels->sky_open, COLORS, column, row, c),
+            reaching = sum_of(grid, pixels->sky_reaching, COLORS, column, row, c);
       for (size_t i = 0; i < pixels->light_count; i++) {
         if (!pixels->lights[i].of_sky) continue;
-        open += sum_of(grid, pixels->lights[i].open, COLORS, column, row, c, NULL);
-        reaching += sum_of(grid, pixels->lights[i].reaching, COLORS, column, row, c, NULL);
+        open += sum_of(grid, pixels->lights[i].open, COLORS, column, row, c);
+        reaching += sum_of(grid, pixels->lights[i].reaching, COLORS, column, row, c);
       }
       *to = open > 0 ? reaching < open ? reaching / open : 1 : 0;
     }
+}
+
+/* Whether the alpha of one of the frame's pixels reaches FIRST_OPACITY. If not, its first depth and its
+ * object are those of a faint mesh, and do not count. */
+static bool is_seen(const layer_grid *grid, const float *pixels, int column, int row) {
+  return *value_at(grid, pixels, MEASURES, column, row, MEASURE_ALPHA) >= FIRST_OPACITY;
+}
+
+static float object_at(const layer_grid *grid, const float *pixels, int column, int row) {
+  return is_seen(grid, pixels, column, row) ? *value_at(grid, pixels, MEASURES, column, row, MEASURE_OBJECT)
+                                            : 0;
 }
 
 /* The object that most of the frame's pixels within one pixel of the picture show. Pixels that show no object
@@ -145,12 +142,10 @@ static float object_of(const layer_grid *grid, const float *pixels, int column, 
   int side = grid->oversampling, most = 0;
   float object = 0;
   for (int i = 0; i < side * side; i++) {
-    float one = *value_at(grid, pixels, MEASURES, column * side + i % side, row * side + i / side,
-                          MEASURE_OBJECT);
+    float one = object_at(grid, pixels, column * side + i % side, row * side + i / side);
     int count = 0;
     for (int k = 0; k < side * side; k++)
-      count += *value_at(grid, pixels, MEASURES, column * side + k % side, row * side + k / side,
-                         MEASURE_OBJECT) == one;
+      count += object_at(grid, pixels, column * side + k % side, row * side + k / side) == one;
     if (one == 0 || count < most || (count == most && one > object)) continue;
     most = count;
     object = one;
@@ -158,18 +153,29 @@ static float object_of(const layer_grid *grid, const float *pixels, int column, 
   return object;
 }
 
+/* The mean first depth of the frame's pixels within one pixel of the picture; infinite if none is seen. */
+static float first_of(const layer_grid *grid, const float *pixels, int column, int row) {
+  int side = grid->oversampling, count = 0;
+  float sum = 0;
+  for (int y = row * side; y < (row + 1) * side; y++)
+    for (int x = column * side; x < (column + 1) * side; x++) {
+      if (!is_seen(grid, pixels, x, y)) continue;
+      sum += *value_at(grid, pixels, MEASURES, x, y, MEASURE_DEPTH_FIRST);
+      count++;
+    }
+  return count > 0 ? sum / (float)count * grid->unit : INFINITY;
+}
+
 static void write_measures(const layer_grid *grid, int row, const float *pixels, const hl_layers *to) {
   for (int column = 0; column < grid->width; column++) {
     size_t at = (size_t)row * (size_t)grid->width + (size_t)column;
-    int hits = 0;
-    float first = sum_of(grid, pixels, MEASURES, column, row, MEASURE_DEPTH_FIRST, &hits);
-    float alpha = sum_of(grid, pixels, MEASURES, column, row, MEASURE_ALPHA, NULL);
-    float depth = sum_of(grid, pixels, MEASURES, column, row, MEASURE_DEPTH, NULL);
-    if (to->depth_first != NULL) to->depth_first[at] = hits > 0 ? first / (float)hits * grid->unit : INFINITY;
+    float alpha = sum_of(grid, pixels, MEASURES, column, row, MEASURE_ALPHA);
+    float depth = sum_of(grid, pixels, MEASURES, column, row, MEASURE_DEPTH);
+    if (to->depth_first != NULL) to->depth_first[at] = first_of(grid, pixels, column, row);
     if (to->depth_mean != NULL) to->depth_mean[at] = alpha > 0 ? depth / alpha * grid->unit : INFINITY;
     if (to->object != NULL) to->object[at] = object_of(grid, pixels, column, row);
     for (int c = 0; c < 3 && to->normal != NULL; c++) {
-      float normal = sum_of(grid, pixels, MEASURES, column, row, MEASURE_NORMAL + c, NULL);
+      float normal = sum_of(grid, pixels, MEASURES, column, row, MEASURE_NORMAL + c);
       to->normal[3 * at + (size_t)c] = alpha > 0 ? normal / alpha : 0;
     }
   }

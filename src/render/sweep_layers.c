@@ -1,6 +1,7 @@
 /* render/sweep_layers.c - see sweep_layers.h. */
 #include "render/sweep_layers.h"
 
+#include <math.h>
 #include <string.h>
 
 #include "core/memory.h"
@@ -201,18 +202,21 @@ static float depth_of_sample(const shade_job *job, const surface_samples *sample
 
 /* Measures the first depth of a pixel in which a mesh is seen. A mesh may have several fragments in the
  * pixel, which lie side by side or one behind another. The depth is the mean over the pixel's samples, each
- * with the depth of the first of these fragments that covers it. at: the pixel's measures; alpha: the pixel's
- * alpha before and after the fragment. */
+ * with the depth of the first of these fragments that covers it. Fragments of a faint mesh count before the
+ * pixel's alpha reaches FIRST_OPACITY, too: their samples are stored with a minus sign until then, and depth
+ * and object do not hold yet (layers.c leaves them out). at: the pixel's measures; alpha: the pixel's alpha
+ * before and after the fragment. */
 static void measure_first(const fragment *f, float depth, int object, float before, float after, float *at) {
-  float *first = at + MEASURE_DEPTH_FIRST * BLOCK_PIXELS, *covered = at + MEASURE_SAMPLES * BLOCK_PIXELS;
-  const unsigned known = (unsigned)*covered, met = f->samples & ~known;
-  if (before < FIRST_OPACITY ? after < FIRST_OPACITY
-                             : known == 0 || met == 0 || at[MEASURE_OBJECT * BLOCK_PIXELS] != (float)object)
-    return;
+  float *first = at + MEASURE_DEPTH_FIRST * BLOCK_PIXELS, *covered = at + MEASURE_SAMPLES * BLOCK_PIXELS,
+        *seen = at + MEASURE_OBJECT * BLOCK_PIXELS;
+  const bool open = before < FIRST_OPACITY;
+  if (!open && (*covered <= 0 || *seen != (float)object)) return;
+  if (*seen != (float)object) *covered = 0;
+  const unsigned known = (unsigned)fabsf(*covered), met = f->samples & ~known;
   const int count = __builtin_popcount(met), all = __builtin_popcount(met | known);
-  *first = known == 0 ? depth : *first + (depth - *first) * (float)count / (float)all;
-  *covered = (float)(known | met);
-  at[MEASURE_OBJECT * BLOCK_PIXELS] = (float)object;
+  if (met != 0) *first = known == 0 ? depth : *first + (depth - *first) * (float)count / (float)all;
+  *covered = after < FIRST_OPACITY ? -(float)(known | met) : (float)(known | met);
+  *seen = (float)object;
 }
 
 /* Measures depth, normal and object of a batch, in a sweep that goes from front to back. pixels: the tile's
