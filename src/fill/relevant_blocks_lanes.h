@@ -110,9 +110,10 @@ LANES_INLINE sides_of_cut sides_of_boxes(const run_cut *cut, const lanes_box *bo
   return (sides_of_cut){far<1.0f, near> 1.0f};
 }
 
-/* Clears in `visible` the blocks that cuts remove, and in `uncut` the blocks near a cut's face. */
+/* Clears in `visible` the blocks that cuts remove, and in `uncut` the blocks near a cut's face. Once no block
+ * is visible, the other cuts change nothing that counts. */
 LANES_INLINE void apply_cuts(const slab_run *run, const lanes_box *box, uint32_t *visible, uint32_t *uncut) {
-  for (int i = 0; i < run->cut_count; i++) {
+  for (int i = 0; i < run->cut_count && *visible != 0; i++) {
     sides_of_cut sides = sides_of_boxes(&run->cuts[i], box, run->beside);
     bool inside = run->cuts[i].shape->keep_inside;
     *visible &= ~lanes_bits(inside ? sides.outside : sides.within);

@@ -1,6 +1,8 @@
 /* render/view_sheets.c - see view_sheets.h. */
 #include "render/view_sheets.h"
 
+#include <math.h>
+
 #include "core/memory.h"
 
 enum { INTERVAL_FLOATS = 2 * TILE_PIXELS };
@@ -30,12 +32,19 @@ static size_t cuts_before(const view_sheets *sheets, int grid) {
   return count;
 }
 
-/* The greatest number of cuts that keep their outside, of any grid. */
+/* The number of a grid's cuts that keep their outside. */
+static size_t removed_of(const view_sheets *sheets, int grid) {
+  size_t count = 0;
+  for (size_t i = 0; i < cuts_of(sheets, grid); i++)
+    count += !sheets->content->grids[grid].cuts[i].keep_inside;
+  return count;
+}
+
+/* The greatest of these numbers, of any grid. */
 static size_t most_removed(const view_sheets *sheets) {
   size_t most = 0;
   for (int g = 0; g < sheets->content->volume_count; g++) {
-    size_t here = 0;
-    for (size_t i = 0; i < cuts_of(sheets, g); i++) here += !sheets->content->grids[g].cuts[i].keep_inside;
+    size_t here = removed_of(sheets, g);
     most = here > most ? here : most;
   }
   return most;
@@ -66,16 +75,41 @@ static void set_up_cuts(view_sheets *sheets) {
   }
 }
 
+/* The heights between which a cut removes something of any ray of a patch. The inner loop compares one pixel
+ * of each block, without branches, so that the compiler makes vectors of it. */
+static removed_range range_of(const float *from, const float *to) {
+  float low[BLOCK_PIXELS], high[BLOCK_PIXELS];
+  for (int p = 0; p < BLOCK_PIXELS; p++) {
+    low[p] = INFINITY;
+    high[p] = -INFINITY;
+  }
+  for (int at = 0; at < TILE_PIXELS; at += BLOCK_PIXELS)
+    for (int p = 0; p < BLOCK_PIXELS; p++) {
+      float begin = from[at + p], end = to[at + p];
+      int lower = (begin < end) & (begin < low[p]), higher = (begin < end) & (end > high[p]);
+      low[p] = lower ? begin : low[p];
+      high[p] = higher ? end : high[p];
+    }
+  removed_range range = {low[0], high[0]};
+  for (int p = 1; p < BLOCK_PIXELS; p++) {
+    range.low = low[p] < range.low ? low[p] : range.low;
+    range.high = high[p] > range.high ? high[p] : range.high;
+  }
+  return range;
+}
+
 /* Fills the part of a row of entries that belongs to cuts: shortens the ray's sections in the box to the
- * insides that cuts keep, and stores the sections that cuts remove. */
+ * insides that cuts keep, and stores the sections that cuts remove, and their ranges. */
 static void enter_cuts(const view_sheets *sheets, slab_place place, float *enter) {
   int grid = (int)sheets->occupancy.patch_grid[place.patch];
   size_t tiles_x = (size_t)sheets->occupancy.tiles_x, first = cuts_before(sheets, grid);
   int x = (int)(place.tile % tiles_x), y = (int)(place.tile / tiles_x);
   float *leave = enter + TILE_PIXELS, *removed = enter + (ptrdiff_t)2 * INTERVAL_FLOATS;
+  removed_range *range = sheets->removed_ranges + sheets->entry_of[place.patch] * sheets->most_removed;
   for (size_t i = first; i < first + cuts_of(sheets, grid); i++) {
     if (!sheets->cuts[i].shape->keep_inside) {
       sheets->content->hot->view->coverage(&sheets->cut_rays[i], x, y, removed, removed + TILE_PIXELS);
+      *range++ = range_of(removed, removed + TILE_PIXELS);
       removed += INTERVAL_FLOATS;
       continue;
     }
@@ -104,38 +138,49 @@ static float *entries_of(view_sheets *sheets, slab_place place) {
   return enter;
 }
 
-/* Subtracts a removed section of a ray from the ray's section in a slab. The result is one section: if a cut
- * removes the middle of the slab, the second part is moved so that it follows the first. */
-static void remove_section(float from, float to, float *enter, float *leave) {
-  if (!(from < to) || to <= *enter || from >= *leave) return;
-  if (from > *enter && to < *leave) *leave -= to - from;
-  else if (from > *enter) *leave = from;
-  else if (to < *leave) *enter = to;
-  else *leave = *enter;
+/* Subtracts sections that a cut removes from the sections of rays in a slab, for the pixels of a block. The
+ * result is one section for each ray: if a cut removes the middle of the slab, the second part is moved so
+ * that it follows the first. Sections that are empty stay as they are. from, to: where the removed sections
+ * begin and end. The loop has no branches, so that the compiler makes vectors of it. */
+static void remove_sections(const float *restrict from, const float *restrict to, float *restrict enter,
+                            float *restrict leave) {
+  for (int p = 0; p < BLOCK_PIXELS; p++) {
+    float begin = enter[p], end = leave[p], low = from[p], high = to[p];
+    int crosses = (begin < end) & (low < high) & (high > begin) & (low < end);
+    int first = low > begin,
+        last = high < end; /* whether the ray's first part stays; whether its last does */
+    float kept = first ? low : begin;
+    float moved = last ? (first ? end - (high - low) : end) : kept;
+    enter[p] = (crosses & !first & last) ? high : begin;
+    leave[p] = crosses ? moved : end;
+  }
 }
 
-/* The places where a patch's rays enter and leave the part of a slab that no cut removes. Null in the same
- * cases as for entries_of(). */
-static const float *entries_of_slab(view_sheets *sheets, slab_place place) {
+/* The places where a patch's rays enter and leave the part of a slab that no cut removes, in these blocks.
+ * Null in the same cases as for entries_of(). */
+static const float *entries_of_slab(view_sheets *sheets, slab_place place, uint32_t blocks) {
   float *enter = entries_of(sheets, place), *here = enter + INTERVAL_FLOATS,
         *removed = here + INTERVAL_FLOATS;
+  if (sheets->most_removed == 0) return enter;
   int grid = (int)sheets->occupancy.patch_grid[place.patch];
-  const cut_shape *cuts = sheets->content->grids[grid].cuts;
-  size_t count = 0;
-  for (size_t i = 0; i < cuts_of(sheets, grid); i++) count += !cuts[i].keep_inside;
+  const removed_range *ranges = sheets->removed_ranges + sheets->entry_of[place.patch] * sheets->most_removed;
+  size_t count = removed_of(sheets, grid);
   if (count == 0) return enter;
   const sheet_stack *stack = sheets->content->sheets;
   /* The ends of the slab are rounded as in covered(). So rays that nothing cuts get the same sums as in a
    * slab that nothing cuts. */
   float top = (float)(place.sheet * stack->spacing), bottom = top - (float)stack->spacing;
-  for (int p = 0; p < TILE_PIXELS; p++) {
-    float from = enter[p] > bottom ? enter[p] : bottom, to = enter[TILE_PIXELS + p];
-    to = to < top ? to : top;
-    for (size_t i = 0; i < count && from < to; i++)
-      remove_section(removed[i * INTERVAL_FLOATS + (size_t)p],
-                     removed[i * INTERVAL_FLOATS + TILE_PIXELS + (size_t)p], &from, &to);
-    here[p] = from;
-    here[TILE_PIXELS + p] = to;
+  for (uint32_t left = blocks; left != 0; left &= left - 1) {
+    size_t at = (size_t)__builtin_ctz(left) * BLOCK_PIXELS;
+    for (size_t p = at; p < at + BLOCK_PIXELS; p++) {
+      here[p] = enter[p] > bottom ? enter[p] : bottom;
+      here[TILE_PIXELS + p] = enter[TILE_PIXELS + p] < top ? enter[TILE_PIXELS + p] : top;
+    }
+    for (size_t i = 0; i < count; i++) {
+      const float *from = removed + i * INTERVAL_FLOATS + at;
+      if (ranges[i].low < top && ranges[i].high > bottom)
+        remove_sections(from, from + TILE_PIXELS, here + at, here + TILE_PIXELS + at);
+    }
   }
   return here;
 }
@@ -183,9 +228,12 @@ static void lay_out(view_sheets *sheets, hl_layout *layout) {
   sheets->entry_of = hl_layout_take(layout, patches, sizeof *sheets->entry_of);
   sheets->box_rays = hl_layout_take(layout, grids, sizeof *sheets->box_rays);
   size_t cuts = cuts_before(sheets, sheets->content->volume_count), removed = most_removed(sheets);
+  sheets->most_removed = removed;
   if (cuts > 0) sheets->cuts = hl_layout_take(layout, cuts, sizeof *sheets->cuts);
   if (cuts > 0) sheets->cut_rays = hl_layout_take(layout, cuts, sizeof *sheets->cut_rays);
   sheets->entry_floats = (removed == 0 ? 1 : 2 + removed) * INTERVAL_FLOATS;
+  if (removed > 0)
+    sheets->removed_ranges = hl_layout_take(layout, patches, removed * sizeof *sheets->removed_ranges);
   sheets->entries = hl_layout_take(layout, patches, sheets->entry_floats * sizeof *sheets->entries);
 }
 
@@ -457,7 +505,8 @@ patch_slab hl_patch_slab(view_sheets *sheets, slab_place place, uint32_t need, u
   if (more != 0) *pixels += fill_bundle(sheets, place, more, run);
   bool cut = sheets->content->grids[sheets->occupancy.patch_grid[patch]].cut;
   bool uncut = run->relevant.uncut >> slab & 1;
-  const float *enter = !cut ? NULL : uncut ? sheets->entries : entries_of_slab(sheets, place);
+  uint32_t blocks = run->shows[slab] & need;
+  const float *enter = !cut ? NULL : uncut ? sheets->entries : entries_of_slab(sheets, place, blocks);
   return (patch_slab){.before = density_on_sheet(sheets, patch, place.sheet - 1),
                       .current = density_on_sheet(sheets, patch, place.sheet),
                       .enter = enter,
@@ -465,5 +514,5 @@ patch_slab hl_patch_slab(view_sheets *sheets, slab_place place, uint32_t need, u
                       .uncut = uncut,
                       .run = run_of_grid(sheets, run->first, (int)sheets->occupancy.patch_grid[patch]),
                       .slab = slab,
-                      .blocks = run->shows[slab] & need};
+                      .blocks = blocks};
 }

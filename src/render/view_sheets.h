@@ -45,6 +45,11 @@ typedef struct slab_row {
   int32_t first, last;
 } slab_row;
 
+/* The heights between which a cut removes something of any ray of a patch; high <= low: nothing. */
+typedef struct removed_range {
+  float low, high;
+} removed_range;
+
 /* The last sheets of one view. */
 typedef struct view_sheets {
   const sheet_content *content;
@@ -79,6 +84,9 @@ typedef struct view_sheets {
    * If some cuts keep their outside, there are [2][256] more for the current slab, and [2][256] for each of
    * these cuts. */
   size_t entry_floats;
+  removed_range *removed_ranges; /* [patches][most_removed]; a row for each row of entries, with the ranges of
+                                  * the cuts that keep their outside; null if there are none */
+  size_t most_removed;           /* the greatest number of such cuts, of any grid */
   /* the next two arrays hold the cuts of all grids, one grid after the other; null if no cut counts in this
    * view */
   run_cut *cuts;

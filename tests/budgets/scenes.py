@@ -1,4 +1,5 @@
 """Small scenes whose frames are counted: one for each kind of work that a frame may have to do."""
+import math
 import struct
 
 SIDE = 40
@@ -35,6 +36,13 @@ def scene(volume=None, lights=(KEY,), render=None, **more):
             "render": {"sheet_spacing": 1, "shadows": "hard", "threads": 1, **(render or {})}, **more}
 
 
+def hull(count, radius):
+    """Planes all round the middle, which leave about a ball: what holds an object is cut away by such planes."""
+    heights = [(2 * i + 1) / count - 1 for i in range(count)]
+    normals = [[math.cos(2.4 * i) * math.sqrt(1 - h * h), math.sin(2.4 * i) * math.sqrt(1 - h * h), h] for i, h in enumerate(heights)]
+    return [{"type": "plane", "point": [SIDE / 2 + radius * n for n in normal], "normal": normal} for normal in normals]
+
+
 def soft(method):
     return {"shadows": "soft", "soft_method": method}
 
@@ -53,6 +61,7 @@ SCENES = {
     "mesh": scene(meshes=[{"file": "pyramid.stl", "color": [0.7, 0.7, 0.8], "opacity": 0.6}]),
     "labels": scene({"file": "labels.nrrd", "labels": True, "transfer_function": None}),
     "cut": scene({"cuts": [{"type": "plane", "point": [20, 20, 20], "normal": [0.6, 0.2, 0.7]}]}),
+    "hull": scene({"cuts": hull(24, 17)}),
     "two_numbers": scene({"transfer_function": {"second": "gradient", "boxes": [
         {"value": [60, 256], "second": [10, 90], "edge": [40, 10], "color": [0.8, 0.6, 0.4], "opacity": 0.9}]}}),
 }
