@@ -62,9 +62,9 @@ typedef enum hl_compose_flag {
 } hl_compose_flag;
 
 /* Makes a scene of a description and options. The options are applied in this fixed order, whatever their
- * order in the list is: label maps, looks and functions, cuts, camera, floor, lights, exposure, sky, ambient
- * light, settings. A bare label map is drawn by its values, and not by its labels, if one of these options
- * says how values are drawn: "tf", "colormap", "range", "threshold", "iso", "mask" and the maximum
+ * order in the list is: label maps, looks and functions, cuts, outline, camera, floor, lights, exposure, sky,
+ * ambient light, settings. A bare label map is drawn by its values, and not by its labels, if one of these
+ * options says how values are drawn: "tf", "colormap", "range", "threshold", "iso", "mask" and the maximum
  * projection. If a bare label map's file has further layers, the scene shows them, too. flags:
  * hl_compose_flag values, joined by |. The context's log names options that change nothing. *scene is owned
  * by the caller, who releases it. Errors name an option with two dashes, as on the program's command line:

@@ -25,6 +25,10 @@ static const struct {
     {"font-size", "font fontsize text-size letter-size"},
     {"axes", "axis orientation-axes triad orientation-marker"},
     {"annotate", "annotation text title caption"},
+    {"annotate A@0.03,0.05", "panel-label panel-letter letter"},
+    {"preset light-sweep", "light-sweep sweep light-turn"},
+    {"preset turntable", "turn-table rotation-film"},
+    {"shrink 2", "scale resize resample downsample downscale bin binning subsample reduce factor size"},
     {"place", "legend-position legend-loc legend-place location position corner corners anchor"},
     {"depth", "bits bit-depth color-depth"},
     {"background",
@@ -57,7 +61,7 @@ static const struct {
     {"slice",
      "slices section cross-section crosssection orthoslice mpr reslice reformat axial coronal sagittal "
      "plane-view"},
-    {"clip", "crop cut roi clipping slab extent subset box clip-box bbox"},
+    {"clip", "crop cut roi clipping slab extent subset clip-box bbox"},
     {"cut-plane", "cutplane clipping-plane clip-plane plane"},
     {"cut-box", "octant cut-away cutaway remove"},
     {"cut-sphere", "sphere hole"},
@@ -75,6 +79,7 @@ static const struct {
     {"whole", "keep-table show-table no-cut no-crop uncut"},
     {"device", "gpu cuda opencl backend use-gpu"},
     {"scattering", "multiple-scattering sss subsurface subsurface-scattering bounces albedo"},
+    {"outline", "box bounding-box bounds-box wireframe wire frame-box domain domain-outline show-bounds"},
     {"floor", "ground plate shadow-catcher table"},
     {"light",
      "light-direction light-dir light-position light-pos light-azimuth light-elevation sun key-light lamp "

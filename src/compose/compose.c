@@ -25,8 +25,8 @@ typedef struct scene_change {
   hl_scene_volume *channels; /* owned; the volumes, of which some may be translucent; null if none is */
   hl_light *lights;          /* owned; [description.light_count] */
   hl_scene_mesh *colored; /* owned; the scene's meshes if "colormap" gives some of them colours; else null */
-  hl_scene_mesh *meshes;  /* owned; the meshes, of which the last one is the floor; null if no floor is
-                           * added */
+  hl_scene_mesh *meshes;  /* owned; the meshes, of which the last ones are added; null if none is added */
+  size_t added;           /* the number of added meshes, which `meshes` owns */
   float *sky;             /* owned; the pixels of the image of "sky"; null if there is none */
 } scene_change;
 
@@ -56,29 +56,54 @@ static void tell_of_hidden_floor(const hl_composer *composer, const hl_scene_des
          pixels > -1 ? "looks along the floor" : "looks at the floor from below");
 }
 
+/* Adds a mesh, which the change owns afterwards, also after a failure. */
+static hl_status add_mesh(const hl_composer *composer, scene_change *change, const hl_scene_mesh *mesh) {
+  hl_scene_description *description = &change->description;
+  const size_t count = description->mesh_count;
+  hl_scene_mesh *meshes = hl_reallocate(composer->context, change->meshes, count + 1, sizeof *meshes);
+  if (meshes == NULL) {
+    hl_mesh_release(mesh->mesh);
+    return hl_fail_memory(composer->error, (count + 1) * sizeof *meshes, "the scene's meshes");
+  }
+  if (change->meshes == NULL && count > 0) memcpy(meshes, description->meshes, count * sizeof *meshes);
+  meshes[count] = *mesh;
+  description->meshes = change->meshes = meshes;
+  description->mesh_count = count + 1;
+  change->added++;
+  return HL_OK;
+}
+
+/* Applies "outline": adds the edges of the volumes' boxes. */
+static hl_status add_outline(const hl_composer *composer, scene_change *change) {
+  hl_scene_description *description = &change->description;
+  if (!composer->asked[HL_ASK_OUTLINE].given) return HL_OK;
+  if (description->volume_count == 0)
+    return hl_fail(composer->error, HL_ERROR_ARGUMENT,
+                   "--outline is the edges of a volume's box: the picture has no volume");
+  if (hl_is_maximum(composer, description))
+    return hl_fail(composer->error, HL_ERROR_ARGUMENT,
+                   "--outline is a mesh, and a maximum projection shows no meshes: leave it out, or give "
+                   "another look, as --look xray");
+  hl_scene_mesh outline;
+  hl_box_outline_defaults(&outline);
+  hl_status status = hl_make_box_outline(composer, description, &outline.mesh);
+  return status == HL_OK ? add_mesh(composer, change, &outline) : status;
+}
+
 /* Applies "floor": adds a floor, which is a mesh below everything that is seen. The camera must have been
  * placed before. */
 static hl_status add_floor(const hl_composer *composer, scene_change *change) {
   hl_scene_description *description = &change->description;
   if (!composer->asked[HL_ASK_FLOOR].given) return HL_OK;
-  size_t count = description->mesh_count;
-  hl_mesh *floor = NULL;
-  hl_status status = hl_scene_make_floor(composer->context, description, NULL, HL_FLOOR_SIZE, &floor,
+  hl_scene_mesh floor;
+  hl_scene_floor_defaults(&floor);
+  floor.name = "floor";
+  hl_status status = hl_scene_make_floor(composer->context, description, NULL, HL_FLOOR_SIZE, &floor.mesh,
                                          composer->error);
   if (status != HL_OK) return hl_blame_options(status);
-  change->meshes = hl_allocate_zeroed(composer->context, count + 1, sizeof *change->meshes);
-  if (change->meshes == NULL) {
-    hl_mesh_release(floor);
-    return hl_fail_memory(composer->error, (count + 1) * sizeof *change->meshes, "the scene's meshes");
-  }
-  if (count > 0) memcpy(change->meshes, description->meshes, count * sizeof *change->meshes);
-  hl_scene_floor_defaults(&change->meshes[count]);
-  change->meshes[count].name = "floor";
-  change->meshes[count].mesh = floor;
-  description->meshes = change->meshes;
-  description->mesh_count = count + 1;
-  tell_of_hidden_floor(composer, description, floor);
-  return HL_OK;
+  status = add_mesh(composer, change, &floor);
+  if (status == HL_OK) tell_of_hidden_floor(composer, description, floor.mesh);
+  return status;
 }
 
 /* Applies "colormap" NAME=COLOR to meshes: gives them their colours. */
@@ -134,11 +159,13 @@ static hl_status change_all(const hl_composer *composer, scene_change *change) {
   hl_scene_description *description = &change->description;
   /* volumes are changed before the camera is placed, because the camera frames their visible part */
   hl_status status = hl_compose_volumes(composer, description, &change->volumes);
-  bool seen = change->volumes.seen || (composer->flags & HL_COMPOSE_CHANGED) != 0;
+  bool seen = change->volumes.seen || composer->asked[HL_ASK_OUTLINE].given ||
+              (composer->flags & HL_COMPOSE_CHANGED) != 0;
   if (status == HL_OK) smooth_labels(composer, description);
+  if (status == HL_OK) status = color_meshes(composer, change);
+  if (status == HL_OK) status = add_outline(composer, change);
   if (status == HL_OK) status = hl_compose_camera(composer, seen, description);
   if (status == HL_OK) status = hl_see_through(composer, description, &change->channels);
-  if (status == HL_OK) status = color_meshes(composer, change);
   if (status == HL_OK) status = add_floor(composer, change);
   if (status == HL_OK) status = hl_compose_lights(composer, description, &change->lights);
   if (status == HL_OK) status = hl_compose_sky(composer, description, &change->sky);
@@ -158,7 +185,8 @@ static void change_release(hl_context *context, scene_change *change) {
   hl_changed_volumes_release(context, &change->volumes);
   hl_release(context, change->channels);
   hl_release(context, change->sky);
-  if (change->meshes != NULL) hl_mesh_release(change->meshes[change->description.mesh_count - 1].mesh);
+  for (size_t n = 1; n <= change->added; n++)
+    hl_mesh_release(change->meshes[change->description.mesh_count - n].mesh);
   hl_release(context, change->meshes);
   hl_release(context, change->colored);
   hl_release(context, change->lights);

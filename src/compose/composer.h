@@ -73,9 +73,12 @@ hl_status hl_see_through(const hl_composer *composer, hl_scene_description *scen
 /* Refuses values of "iso" that cannot be read. */
 hl_status hl_check_isosurfaces(const hl_asked *iso, hl_error *error);
 
+/* The number of surfaces that the values of "iso" ask for. */
+size_t hl_count_isosurfaces(const hl_asked *iso);
+
 /* Gives volume number `index` the surfaces of "iso". If no option sets the volume's transfer function, the
- * function becomes transparent; its points belong to the caller. surfaces: an array with room for all values
- * of "iso"; the volume borrows it. */
+ * function becomes transparent; its points belong to the caller. surfaces: an array with room for all
+ * surfaces of "iso"; the volume borrows it. */
 hl_status hl_compose_isosurfaces(const hl_composer *composer, size_t index, hl_scene_volume *volume,
                                  hl_isosurface *surfaces);
 
@@ -109,6 +112,17 @@ hl_status hl_compose_cuts(const hl_composer *composer, hl_scene_volume *volume, 
 /* Adds the options' cuts without a name to a scene's own cuts, which cut all volumes. Numbers without a unit
  * are fractions of the box around all volumes. cuts: an array with room for both; the scene borrows it. */
 hl_status hl_compose_scene_cuts(const hl_composer *composer, hl_scene_description *scene, hl_cut *cuts);
+
+/* ---- box_outline.c ---- */
+
+/* Makes the mesh of "outline": the edges of the boxes of all volumes as tubes. *mesh is owned by the
+ * caller. */
+hl_status hl_make_box_outline(const hl_composer *composer, const hl_scene_description *description,
+                              hl_mesh **mesh);
+
+/* Fills a mesh of a scene with the look of an outline: grey in any light, without shadows, and left whole by
+ * cuts. */
+void hl_box_outline_defaults(hl_scene_mesh *outline);
 
 /* ---- sky.c ---- */
 

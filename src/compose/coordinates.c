@@ -2,8 +2,10 @@
 #include "compose/coordinates.h"
 
 #include <math.h>
+#include <stdio.h>
 #include <string.h>
 
+#include "core/error.h"
 #include "text/plain.h"
 #include "text/units.h"
 
@@ -33,15 +35,54 @@ bool hl_read_coordinate(const char **text, hl_coordinate *coordinate) {
   return !coordinate->fraction || (coordinate->number >= 0 && coordinate->number <= 1);
 }
 
-bool hl_read_range(const char **text, hl_axis_range *range) {
-  range->axis = **text >= 'x' && **text <= 'z' ? **text - 'x' : -1;
-  if (range->axis < 0 || (*text)[1] != '=') return false;
+/* Reads LO:HI. */
+static bool read_ends(const char **text, hl_axis_range *range) {
   hl_coordinate *low = &range->ends[0], *high = &range->ends[1];
-  *text += 2;
   if (!hl_read_coordinate(text, low) || *(*text)++ != ':' || !hl_read_coordinate(text, high)) return false;
   bool comparable = low->given && high->given && low->fraction == high->fraction &&
                     low->metres == high->metres;
   return (low->given || high->given) && (!comparable || low->number < high->number);
+}
+
+static bool begins_with_axis(const char *text) { return *text >= 'x' && *text <= 'z' && text[1] == '='; }
+
+bool hl_read_range(const char **text, hl_axis_range *range) {
+  if (!begins_with_axis(*text)) return false;
+  range->axis = **text - 'x';
+  *text += 2;
+  return read_ends(text, range);
+}
+
+bool hl_range_is_given(const hl_axis_range *range) { return range->ends[0].given || range->ends[1].given; }
+
+bool hl_read_box(const char *text, hl_axis_range box[3]) {
+  const bool in_order = !begins_with_axis(text);
+  int count = 0;
+  memset(box, 0, 3 * sizeof *box);
+  do {
+    hl_axis_range range = {.axis = count};
+    if (count == 3 || !(in_order ? read_ends(&text, &range) : hl_read_range(&text, &range))) return false;
+    if (hl_range_is_given(&box[range.axis])) return false;
+    box[range.axis] = range;
+    count++;
+  } while (*text++ == ',');
+  return text[-1] == '\0' && (!in_order || count == 3);
+}
+
+hl_status hl_refuse_side(const char *option, const char *text, hl_error *error) {
+  static const char *const sides[3] = {"|left|right|lateral|medial|",
+                                       "|front|back|anterior|posterior|ventral|dorsal|",
+                                       "|top|bottom|upper|lower|superior|inferior|head|feet|"};
+  char word[16];
+  const int length = snprintf(word, sizeof word, "|%.*s|", (int)strcspn(text, "=:,-"), text);
+  int axis = 0;
+  while (axis < 3 && (length >= (int)sizeof word || strstr(sides[axis], word) == NULL)) axis++;
+  if (axis == 3) return HL_OK;
+  return hl_fail(
+      error, HL_ERROR_ARGUMENT,
+      "--%s: '%.200s' names a side: give an axis, as --%s %c=0.5: or --%s %c=:0.5 for the two halves "
+      "(of a body x goes from side to side, y from front to back and z along it)",
+      option, text, option, 'x' + axis, option, 'x' + axis);
 }
 
 double hl_metres_of_volume(const hl_volume *volume) {

@@ -38,4 +38,16 @@ typedef struct hl_axis_range {
 } hl_axis_range;
 bool hl_read_range(const char **text, hl_axis_range *range);
 
+/* Reads a box: ranges along axes, each axis at most once, joined by commas, as "x=0.5:,z=:40mm"; or three
+ * ranges without axes, which are those of x, y and z. A range that is not given has no ends. Returns false if
+ * the text is something else. */
+bool hl_read_box(const char *text, hl_axis_range box[3]);
+
+/* Returns whether a range has an end. */
+bool hl_range_is_given(const hl_axis_range *range);
+
+/* Refuses a value of an option that names a side of a body, as "left=0:0.5", where ranges along axes are
+ * wanted. Says nothing of other texts. */
+hl_status hl_refuse_side(const char *option, const char *text, hl_error *error);
+
 #endif

@@ -56,23 +56,13 @@ static bool read_axis_plane(const char *text, typed_cut *cut) {
   return true;
 }
 
-static bool read_box(const char *text, hl_axis_range box[3]) {
-  hl_axis_range range;
-  do {
-    if (!hl_read_range(&text, &range)) return false;
-    if (box[range.axis].ends[0].given || box[range.axis].ends[1].given) return false;
-    box[range.axis] = range;
-  } while (*text++ == ',');
-  return text[-1] == '\0';
-}
-
 static bool read_radius(const char *text, hl_coordinate *radius) {
   return hl_read_coordinate(&text, radius) && radius->given && radius->number > 0 && *text == '\0';
 }
 
 static bool read_cut(hl_cut_type type, const char *text, typed_cut *cut) {
   *cut = (typed_cut){0};
-  if (type == HL_CUT_BOX) return read_box(text, cut->box);
+  if (type == HL_CUT_BOX) return hl_read_box(text, cut->box);
   if (type == HL_CUT_PLANE && strchr(text, '=') != NULL) return read_axis_plane(text, cut);
   if (!read_point(&text, cut->point)) return false;
   return type == HL_CUT_PLANE ? read_normal(text, cut->normal) : read_radius(text, &cut->radius);
@@ -102,10 +92,13 @@ hl_status hl_check_cuts(const hl_asked *asked, hl_error *error) {
   for (int type = 0; type < CUT_TYPES; type++) {
     const hl_asked *value = &asked[option_of[type]];
     typed_cut cut;
-    for (int n = 0; n < value->count; n++)
-      if (read_named_cut((hl_cut_type)type, value->texts[n], &cut) == NULL)
-        return hl_fail(error, HL_ERROR_ARGUMENT, "--%s: '%.300s' is not %s",
-                       hl_option_rows[option_of[type]].name, value->texts[n], wanted[type]);
+    for (int n = 0; n < value->count; n++) {
+      const char *text = value->texts[n], *name = hl_option_rows[option_of[type]].name;
+      if (read_named_cut((hl_cut_type)type, text, &cut) != NULL) continue;
+      const hl_status status = type == HL_CUT_SPHERE ? HL_OK : hl_refuse_side(name, text, error);
+      if (status != HL_OK) return status;
+      return hl_fail(error, HL_ERROR_ARGUMENT, "--%s: '%.300s' is not %s", name, text, wanted[type]);
+    }
   }
   return HL_OK;
 }

@@ -1,5 +1,6 @@
-/* compose/isosurfaces.c - applies the option "iso" [NAME=]VALUE[:COLOR[:OPACITY]], which shows surfaces on
- * which a volume has one value. The surfaces replace the matter that the volume's transfer function shows. */
+/* compose/isosurfaces.c - applies the option "iso" [NAME=]VALUE[,VALUE...][:COLOR[:OPACITY]], which shows
+ * surfaces on which a volume has one value. In a list, the last value has the colour and the opacity. The
+ * surfaces replace the matter that the volume's transfer function shows. */
 #include <math.h>
 #include <string.h>
 
@@ -11,11 +12,14 @@
 
 enum { COLOR_BYTES = 64 };
 
-/* Reads VALUE[:COLOR[:OPACITY]]. Returns false if the text is something else. */
-static bool read_iso(const char *text, hl_isosurface *surface) {
+/* Reads the first surface of a text: VALUE[:COLOR[:OPACITY]], or VALUE before a comma. *text moves to the
+ * next surface, or to the text's end. Returns false if something else is there. */
+static bool read_iso(const char **text, hl_isosurface *surface) {
   char *rest, color[COLOR_BYTES];
-  surface->value = hl_plain_number(text, &rest);
-  if (rest == text || !isfinite(surface->value)) return false;
+  surface->value = hl_plain_number(*text, &rest);
+  if (rest == *text || !isfinite(surface->value)) return false;
+  *text = *rest == ',' ? rest + 1 : rest + strlen(rest);
+  if (*rest == ',') return **text != '\0';
   if (*rest == '\0') return true;
   if (*rest++ != ':') return false;
   size_t length = strcspn(rest, ":");
@@ -39,16 +43,29 @@ static const char *text_of_surface(const char *text) {
 hl_status hl_check_isosurfaces(const hl_asked *iso, hl_error *error) {
   hl_isosurface surface;
   hl_isosurface_defaults(&surface);
-  for (int n = 0; n < iso->count; n++)
-    if (!read_iso(text_of_surface(iso->texts[n]), &surface))
-      return hl_fail(
-          error, HL_ERROR_ARGUMENT,
-          "--iso: '%.300s' is not VALUE[:COLOR[:OPACITY]]: a value of the volume, a colour as "
-          "#rrggbb, linear "
-          "R,G,B or a CSS name, and an opacity from 0 to 1 (120:gold:0.3); give --iso once for each "
-          "surface",
-          iso->texts[n]);
+  for (int n = 0; n < iso->count; n++) {
+    const char *text = text_of_surface(iso->texts[n]);
+    do {
+      if (!read_iso(&text, &surface))
+        return hl_fail(error, HL_ERROR_ARGUMENT,
+                       "--iso: '%.300s' is not VALUE[:COLOR[:OPACITY]]: a value of the volume, a colour as "
+                       "#rrggbb, linear R,G,B or a CSS name, and an opacity from 0 to 1 (120:gold:0.3); "
+                       "surfaces of several colours are --iso 30:gold:0.3 --iso 90:skyblue",
+                       iso->texts[n]);
+    } while (*text != '\0');
+  }
   return HL_OK;
+}
+
+size_t hl_count_isosurfaces(const hl_asked *iso) {
+  size_t count = 0;
+  for (int n = 0; n < iso->count; n++) {
+    const char *text = text_of_surface(iso->texts[n]);
+    const size_t length = strcspn(text, ":"); /* the commas behind it are those of a colour */
+    count++;
+    for (size_t at = 0; at < length; at++) count += text[at] == ',';
+  }
+  return count;
 }
 
 static hl_status warn_of_range(const hl_composer *composer, const hl_scene_volume *volume, double value) {
@@ -60,6 +77,16 @@ static hl_status warn_of_range(const hl_composer *composer, const hl_scene_volum
            "--iso %.9g: the volume's values go from %.9g to %.9g: no surface is there", value, info.range[0],
            info.range[1]);
   return HL_OK;
+}
+
+/* Logs that opaque surfaces hide each other, where no surface of a volume lets another one be seen. */
+static void tell_of_hidden(const hl_composer *composer, const hl_isosurface *surfaces, size_t count) {
+  bool opaque = count > 1;
+  for (size_t n = 0; n < count; n++) opaque &= surfaces[n].opacity == 1;
+  if (opaque)
+    hl_log(composer->context, HL_LOG_INFO,
+           "the outer one of opaque surfaces hides the others: --iso %.9g::0.3 shows them through it",
+           surfaces[0].value);
 }
 
 /* Hides all matter of a volume, so that only its isosurfaces are seen. */
@@ -81,15 +108,18 @@ hl_status hl_compose_isosurfaces(const hl_composer *composer, size_t index, hl_s
   for (int n = 0; n < iso->count; n++) {
     const char *text;
     if (!hl_text_is_for(composer, iso->texts[n], volume, index, &text)) continue;
-    hl_isosurface *surface = &surfaces[count];
-    hl_isosurface_defaults(surface);
-    hl_surface_color(count, surface->color);
-    (void)read_iso(text, surface); /* hl_check_isosurfaces() has checked the text */
-    hl_status status = warn_of_range(composer, volume, surface->value);
-    if (status != HL_OK) return status;
-    count++;
+    do { /* hl_check_isosurfaces() has checked the text */
+      hl_isosurface *surface = &surfaces[count];
+      hl_isosurface_defaults(surface);
+      hl_surface_color(count, surface->color);
+      (void)read_iso(&text, surface);
+      hl_status status = warn_of_range(composer, volume, surface->value);
+      if (status != HL_OK) return status;
+      count++;
+    } while (*text != '\0');
   }
   if (count == 0) return HL_OK;
+  tell_of_hidden(composer, surfaces, count);
   volume->iso = surfaces;
   volume->iso_count = count;
   if (!composer->asked[HL_ASK_TF].given && !composer->asked[HL_ASK_LOOK].given)

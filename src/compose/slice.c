@@ -26,12 +26,27 @@ typedef struct slice_sight {
   hl_side side, other_side; /* the side of the volumes at which the eye stands, and the side opposite it */
 } slice_sight;
 
-/* Reads AXIS=AT. Returns the axis; -1 if the text is something else. */
-static int read_axis(const char *text) {
+/* A slice as it was typed. */
+typedef struct typed_slice {
+  int axis;        /* across the slice; -1 if the text is no slice */
+  bool is_of_body; /* whether a body's plane was named in place of an axis */
+  const char *at;  /* where the axis is cut, as a text: what was typed, or the middle */
+} typed_slice;
+
+/* Reads AXIS or AXIS=AT. AXIS is x, y or z, or one of a body's planes: all worlds whose space is known have x
+ * from side to side, y from front to back and z along the body. */
+static typed_slice read_slice(const char *text) {
+  static const char *const planes[3] = {"sagittal", "coronal", "axial"};
+  const size_t length = strcspn(text, "=");
+  typed_slice slice = {.axis = length == 1 && *text >= 'x' && *text <= 'z' ? *text - 'x' : -1, .at = "0.5"};
+  for (int axis = 0; axis < 3; axis++)
+    if (strlen(planes[axis]) == length && strncmp(planes[axis], text, length) == 0)
+      slice.axis = axis, slice.is_of_body = true;
+  if (text[length] == '\0') return slice;
   hl_coordinate at;
-  const int axis = *text >= 'x' && *text <= 'z' && text[1] == '=' ? *text - 'x' : -1;
-  text += 2;
-  return axis >= 0 && hl_read_coordinate(&text, &at) && at.given && *text == '\0' ? axis : -1;
+  const char *rest = slice.at = text + length + 1;
+  if (!hl_read_coordinate(&rest, &at) || !at.given || *rest != '\0') slice.axis = -1;
+  return slice;
 }
 
 /* Finds the sight of a slice across an axis. Where the world is a body's, the axes' letters say which of
@@ -48,24 +63,27 @@ static slice_sight find_sight(const hl_scene_description *description, int axis)
 /* The sight of the slice that is asked for; "view" may ask for the opposite side. */
 static slice_sight asked_sight(const hl_asked *asked, const hl_scene_description *description) {
   const hl_asked *view = &asked[HL_ASK_VIEW];
-  slice_sight sight = find_sight(description, read_axis(asked[HL_ASK_SLICE].text));
+  slice_sight sight = find_sight(description, read_slice(asked[HL_ASK_SLICE].text).axis);
   if (view->given && view->choice == (int)sight.other_side) sight.towards_eye = -sight.towards_eye;
   return sight;
 }
 
 hl_status hl_check_slice(const hl_asked *asked, hl_error *error) {
-  static const hl_ask excluded[] = {HL_ASK_LOOK, HL_ASK_THRESHOLD, HL_ASK_ISO, HL_ASK_UP, HL_ASK_FLOOR};
+  static const hl_ask excluded[] = {HL_ASK_LOOK, HL_ASK_THRESHOLD, HL_ASK_ISO,
+                                    HL_ASK_UP,   HL_ASK_FLOOR,     HL_ASK_OUTLINE};
   static const hl_side sides[3][2] = {
       {HL_SIDE_LEFT, HL_SIDE_RIGHT}, {HL_SIDE_FRONT, HL_SIDE_BACK}, {HL_SIDE_BOTTOM, HL_SIDE_TOP}};
   static const char *const names[3] = {"left or right", "front or back", "bottom or top"};
   const hl_asked *slice = &asked[HL_ASK_SLICE], *view = &asked[HL_ASK_VIEW];
   if (!slice->given) return HL_OK;
-  const int axis = read_axis(slice->text);
+  const int axis = read_slice(slice->text).axis;
   if (axis < 0)
-    return hl_fail(error, HL_ERROR_ARGUMENT,
-                   "--slice: '%.200s' is not AXIS=AT: a fraction from 0 to 1 (z=0.5), or a coordinate in the "
-                   "file's world with its unit (z=40mm; u is the file's own unit, whatever it is)",
-                   slice->text);
+    return hl_fail(
+        error, HL_ERROR_ARGUMENT,
+        "--slice: '%.200s' is not AXIS=AT: x, y, z, axial, coronal or sagittal, and a fraction from "
+        "0 to 1 (z=0.5), or a coordinate in the file's world with its unit (z=40mm; u is the file's "
+        "own unit, whatever it is)",
+        slice->text);
   for (size_t n = 0; n < sizeof excluded / sizeof *excluded; n++)
     if (asked[excluded[n]].given)
       return hl_fail(error, HL_ERROR_ARGUMENT, "--slice and --%s exclude each other: give one of them",
@@ -106,10 +124,17 @@ hl_status hl_expand_slice(const hl_scene_description *description, hl_asked *ask
   if (!asked[HL_ASK_SLICE].given) return HL_OK;
   if (planes->count == HL_ASK_MOST_TEXTS)
     return hl_fail(error, HL_ERROR_ARGUMENT, "--slice: there is no room for one more --cut-plane");
+  const typed_slice slice = read_slice(asked[HL_ASK_SLICE].text);
+  if (slice.is_of_body && hl_scene_space(description) == HL_SPACE_UNKNOWN)
+    return hl_fail(
+        error, HL_ERROR_ARGUMENT,
+        "--slice: '%.200s': the file does not tell the body's directions: give an axis, as --slice "
+        "%c=%.60s",
+        asked[HL_ASK_SLICE].text, 'x' + slice.axis, slice.at);
   const slice_sight sight = asked_sight(asked, description);
   /* "z=AT" cuts away what lies from AT on, and "z=:AT" what lies before it */
   snprintf(plane, HL_SLICE_TEXT, "%c=%s%.*s", 'x' + sight.axis, sight.towards_eye > 0 ? "" : ":",
-           HL_SLICE_TEXT - 4, asked[HL_ASK_SLICE].text + 2);
+           HL_SLICE_TEXT - 4, slice.at);
   planes->given = true;
   planes->text = planes->texts[planes->count++] = plane;
   asked[HL_ASK_ORTHO].given |= !asked[HL_ASK_FOVY].given;

@@ -1,5 +1,6 @@
 /* compose/slice.h - applies the option "slice" AXIS=AT: a plane through the volumes, seen straight on, on
- * which each value has its own grey or colour, without light. */
+ * which each value has its own grey or colour, without light. A body's plane (axial, coronal, sagittal) may
+ * stand for the axis across it; without AT the plane lies in the middle. */
 #ifndef HL_COMPOSE_SLICE_H
 #define HL_COMPOSE_SLICE_H
 
@@ -13,9 +14,10 @@ size_t hl_count_values(const hl_scene_description *description);
 /* Refuses a value of "slice" that is no plane, and options that exclude "slice". */
 hl_status hl_check_slice(const hl_asked *asked, hl_error *error);
 
-/* Adds the options that "slice" stands for: the plane, as "cut-plane"; "ortho", "whole" and "shading" flat.
- * The kernel becomes linear if no labels are shown, so that the values are those of the voxels. Options that
- * are given stay as they are. plane: [HL_SLICE_TEXT], the text of the plane, to which `asked` then points. */
+/* Refuses a body's plane where no file tells the body's directions. Adds the options that "slice" stands for:
+ * the plane, as "cut-plane"; "ortho", "whole" and "shading" flat. The kernel becomes linear if no labels are
+ * shown, so that the values are those of the voxels. Options that are given stay as they are. plane:
+ * [HL_SLICE_TEXT], the text of the plane, to which `asked` then points. */
 hl_status hl_expand_slice(const hl_scene_description *description, hl_asked *asked, char *plane,
                           hl_error *error);
 

@@ -46,7 +46,7 @@ static hl_status change_volume(const hl_composer *composer, const hl_scene_descr
   volume->transfer_function = changed->functions[index];
   hl_transfer_function_release(composer->context, &look);
   if (status != HL_OK || !iso) return status;
-  hl_isosurface *own = changed->surfaces + index * (size_t)asked[HL_ASK_ISO].count;
+  hl_isosurface *own = changed->surfaces + index * hl_count_isosurfaces(&asked[HL_ASK_ISO]);
   return hl_compose_isosurfaces(composer, index, volume, own);
 }
 
@@ -103,7 +103,7 @@ static void change_density(const hl_composer *composer, hl_scene_volume *volume)
 static hl_status make_room(const hl_composer *composer, const hl_scene_description *description,
                            hl_changed_volumes *changed) {
   hl_context *context = composer->context;
-  size_t count = description->volume_count, surfaces = (size_t)composer->asked[HL_ASK_ISO].count;
+  size_t count = description->volume_count, surfaces = hl_count_isosurfaces(&composer->asked[HL_ASK_ISO]);
   size_t own = description->cut_count, added = hl_count_cuts(composer->asked);
   for (size_t v = 0; v < count; v++) own += description->volumes[v].cut_count;
   changed->count = count;

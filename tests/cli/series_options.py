@@ -184,6 +184,7 @@ CASES = {
     "whole": ["--whole"],
     "shading": ["--shading none"],
     "floor": ["--floor", ".obj --floor", "wall.obj --floor"],
+    "outline": ["--outline", "wall.obj --outline --floor"],
     "labels": ["--labels map.nrrd", "wall.obj --labels map.nrrd"],
     "mask": ["--mask map.nrrd", "wall.obj --mask map.nrrd"],
     "label-table": ["--labels map.nrrd --label-table table.csv", "--mask map.nrrd --label-table table.csv",

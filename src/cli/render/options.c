@@ -124,11 +124,11 @@ const cli_option render_options[RENDER_OPTION_COUNT] = {
                       .help = "the scene's rulers, angles, lines, arrows and texts,\nwith what they measure"},
     [RENDER_ANNOTATE] = {.name = "annotate",
                          .kind = OPTION_TEXT,
-                         .argument = "TEXT@X,Y[,Z]",
-                         .help =
-                             "a text at fractions of the picture from its upper\nleft, or beside a point "
-                             "X,Y,Z of the world; in a\nseries and in a film %d is the picture's number, and "
-                             "%s\nthe name of a series' file; give the option again for more\ntexts",
+                         .argument = "TEXT[@X,Y[,Z]]",
+                         .help = "a text at fractions of the picture from its upper\nleft, or beside a point "
+                                 "X,Y,Z of the world, or at the\nupper left; in a "
+                                 "series and in a film %d is the picture's\nnumber, and "
+                                 "%s the name of a series' file; give the option\nagain for more texts",
                          .repeatable = true},
     [RENDER_PLACE] =
         {.name = "place",
@@ -305,7 +305,9 @@ const cli_option render_options[RENDER_OPTION_COUNT] = {
          .argument = "[NAME=]VALUE[:COLOR[:OPACITY]]",
          .help =
              "the surface on which the volume has this value; it\nreplaces the transfer function, or stands "
-             "beside it\nwith --tf or --look; give it again for more surfaces\n(--iso 80:skyblue:0.3)",
+             "beside it\nwith --tf or --look; give it again for more surfaces\n(--iso 80:skyblue:0.3), or "
+             "several values (30,90)",
+         .hint = ", as 80:skyblue:0.3, with a value of the volume",
          .repeatable = true},
     [RENDER_DENSITY] = {.name = "density",
                         .kind = OPTION_NUMBERS,
@@ -318,15 +320,21 @@ const cli_option render_options[RENDER_OPTION_COUNT] = {
                         .high = 1e9},
     [RENDER_SLICE] = {.name = "slice",
                       .kind = OPTION_TEXT,
-                      .argument = "AXIS=AT",
-                      .help = "a slice across x, y or z, as in radiology: its values in\ngrey, or as "
-                              "--colormap and --range say, with labels of\n--labels or --mask over them; AT: "
-                              "a fraction (z=0.5), or\na length (z=40mm; u: the file's own unit)"},
+                      .argument = "AXIS[=AT]",
+                      .help =
+                          "a slice across x, y or z, as in radiology: its values in\ngrey, or as "
+                          "--colormap and --range say, with labels of\n--labels or --mask over them; AXIS: "
+                          "also axial, coronal or\nsagittal; AT: "
+                          "a fraction (z=0.5; the middle if it is\nleft out), or a length (z=40mm; u: the "
+                          "file's own unit)",
+                      .hint = ", as z=0.5"},
     [RENDER_CLIP] = {.name = "clip",
                      .kind = OPTION_TEXT,
-                     .argument = "[NAME=]AXIS=LO:HI",
-                     .help = "keep a part along x, y or z: fractions\n(x=0:0.5), or lengths (x=10mm:40mm; u: "
-                             "the\nfile's own unit);\ngive it again for other axes; NAME= as for --tf",
+                     .argument = "[NAME=]AXIS=LO:HI,...",
+                     .help =
+                         "keep a part along x, y or z: fractions\n(x=0:0.5,z=0.2:), or lengths (x=10mm:40mm; "
+                         "u: the\nfile's own unit); NAME= as for --tf",
+                     .hint = ", as x=0:0.5",
                      .repeatable = true},
     [RENDER_CUT_PLANE] =
         {.name = "cut-plane",
@@ -343,6 +351,7 @@ const cli_option render_options[RENDER_OPTION_COUNT] = {
                         .argument = "[NAME=]AXIS=LO:HI,...",
                         .help = "cut a box out (x=0.5:,y=:0.5,z=0.5: is an octant);\ngive it again for more "
                                 "boxes; NAME= as for --cut-plane",
+                        .hint = ", as x=0.5:,y=:0.5,z=0.5:",
                         .repeatable = true},
     [RENDER_CUT_SPHERE] =
         {.name = "cut-sphere",
@@ -383,6 +392,10 @@ const cli_option render_options[RENDER_OPTION_COUNT] = {
                       .kind = OPTION_SWITCH,
                       .help = "a floor below everything that is seen, three times as\nwide, which receives "
                               "its shadow and is not cut"},
+    [RENDER_OUTLINE] = {.name = "outline",
+                        .kind = OPTION_SWITCH,
+                        .help = "the edges of the volumes' boxes as thin grey wires, also\nof the part that "
+                                "cuts take away"},
 
     [RENDER_LABELS] = {.name = "labels",
                        .kind = OPTION_TEXT,

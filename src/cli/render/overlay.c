@@ -55,13 +55,25 @@ static int read_scale_bar(const cli_value *value, cli_overlay *made) {
       value->text);
 }
 
+/* Keeps the first `length` characters of a text as the text of an annotation. */
+static int keep_annotation(const char *text, size_t length, hl_annotation *note, cli_overlay *made) {
+  note->text = made->texts[made->overlay.annotation_count++] = strndup(text, length);
+  return note->text != NULL ? EXIT_CODE_OK : fail(EXIT_CODE_FAILURE, "out of memory");
+}
+
 /* Reads the value of --annotate: "TEXT@X,Y" with fractions of the picture, or "TEXT@X,Y,Z" with a point of
- * the world. */
+ * the world. Texts without a place stand below one another at the upper left. */
 static int read_annotation(const char *text, cli_overlay *made) {
+  static const double left = 0.03, top = 0.05;
   const char *at = strrchr(text, '@');
   hl_annotation *note = &made->notes[made->overlay.annotation_count];
+  if (at == NULL) {
+    note->at[0] = left;
+    note->at[1] = top * (1 + made->placeless++);
+    return keep_annotation(text, strlen(text), note, made);
+  }
   size_t numbers = 0;
-  char *rest = at != NULL ? (char *)at + 1 : NULL;
+  char *rest = (char *)at + 1;
   while (rest != NULL && numbers < 3) {
     const char *from = rest;
     note->at[numbers++] = hl_plain_number(from, &rest);
@@ -69,15 +81,14 @@ static int read_annotation(const char *text, cli_overlay *made) {
     else if (*rest == ',' && numbers < 3) rest++;
     else break;
   }
-  if (at == NULL || at == text || rest == NULL || *rest != '\0' || numbers < 2)
-    return fail(EXIT_CODE_USAGE,
-                "--annotate: '%s' is no TEXT@X,Y (fractions of the picture from its upper left) or "
-                "TEXT@X,Y,Z (a point "
-                "of the world)",
-                text);
+  if (at == text || rest == NULL || *rest != '\0' || numbers < 2)
+    return fail(
+        EXIT_CODE_USAGE,
+        "--annotate: '%s' is no TEXT@X,Y (fractions of the picture from its upper left, as A@0.03,0.05) "
+        "or TEXT@X,Y,Z (a point of the world)",
+        text);
   note->in_world = numbers == 3;
-  note->text = made->texts[made->overlay.annotation_count++] = strndup(text, (size_t)(at - text));
-  return note->text != NULL ? EXIT_CODE_OK : fail(EXIT_CODE_FAILURE, "out of memory");
+  return keep_annotation(text, (size_t)(at - text), note, made);
 }
 
 /* The option that draws a part of the overlay, and the part's corner. */

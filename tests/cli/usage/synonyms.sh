@@ -1,8 +1,12 @@
 # Words of other programs lead to the option that does the same; the nearest word is told beside it.
-for word in rotate pitch resize samples isovalue bg cmap resolution clim crop dump fov spp voxel-size field band light-dir slices hdri colorbar ruler; do
+for word in panel-label bounding-box rotate pitch resize samples isovalue bg cmap resolution clim crop dump fov spp voxel-size field band light-dir slices hdri colorbar ruler; do
   halflight render --$word 1 x.nrrd 2>>told || true
 done
 sed 's/.*unknown option //' told
 # Of the subcommand's own options only.
 halflight diff --threshold 1 a.png b.png 2>told || true
+cat told
+# An option's value stands in the answer where the word means one.
+halflight animate x.nrrd --light-sweep 2>told || true
+halflight convert x.nrrd y.nrrd --scale 0.5 2>>told || true
 cat told
