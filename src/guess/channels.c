@@ -256,21 +256,40 @@ static hl_status add_all(channel_scenes *made, hl_error *error) {
   return status;
 }
 
+/* The length of the longest beginning of a list that ends before a comma and is shorter than `below`; 0 if
+ * there is none. */
+static size_t shorter_beginning(const char *list, size_t below) {
+  while (below > 0 && list[--below] != ',') {}
+  return below;
+}
+
+/* Makes the scene of the channel that a list begins with. A name may hold commas of its own: of all
+ * beginnings of the list the longest one that names a channel counts. If none does, the error is that of the
+ * shortest one. *length: the length of the name. */
+static hl_status add_first(channel_scenes *made, const char *list, size_t *length, hl_error *error) {
+  hl_status status;
+  char name[HL_CHANNEL_NAME_BYTES];
+  size_t unused, shortest = strcspn(list, ",");
+  if (shortest == 0 || shortest >= sizeof name)
+    return hl_fail(error, HL_ERROR_ARGUMENT,
+                   "hl_scene_for_channels: an empty or too long name of a channel in the list");
+  for (*length = strlen(list);; *length = shorter_beginning(list, *length)) {
+    if (*length >= sizeof name) continue;
+    memcpy(name, list, *length);
+    name[*length] = 0;
+    status = add_channel(made, name, &unused, error);
+    if (status == HL_OK || *length == shortest) return status;
+  }
+}
+
 /* Makes the scenes of the channels that a list names. */
 static hl_status add_listed(channel_scenes *made, const char *list, hl_error *error) {
   for (;;) {
-    char name[HL_CHANNEL_NAME_BYTES];
-    size_t unused;
-    const size_t length = strcspn(list, ",");
-    if (length == 0 || length >= sizeof name)
-      return hl_fail(error, HL_ERROR_ARGUMENT,
-                     "hl_scene_for_channels: an empty or too long name of a channel in the list");
+    size_t length;
     if (made->count == HL_CHANNELS_MOST)
       return hl_fail(error, HL_ERROR_ARGUMENT, "hl_scene_for_channels: give %d channels at most",
                      HL_CHANNELS_MOST);
-    memcpy(name, list, length);
-    name[length] = 0;
-    hl_status status = add_channel(made, name, &unused, error);
+    hl_status status = add_first(made, list, &length, error);
     if (status != HL_OK || list[length] == 0) return status;
     list += length + 1;
   }
