@@ -70,6 +70,17 @@ typedef struct hl_function_image {
                            * end there */
 } hl_function_image;
 
+/* An opacity that depends on the value alone, and a colour that depends on the second number alone: one
+ * volume in the colours of another one. Both are piecewise linear, and constant beyond the first and the last
+ * point. Without colours it is white. */
+typedef struct hl_function_curves {
+  const hl_opacity_point
+      *opacity; /* sorted by value; per unit_distance; without points there are no curves */
+  size_t opacity_count;
+  const hl_color_point *color; /* sorted by the second number; linear RGB */
+  size_t color_count;
+} hl_function_curves;
+
 /* The part of a transfer function that depends on two numbers. */
 typedef struct hl_function_plane {
   hl_second_axis second; /* HL_SECOND_NONE: the transfer function depends on the value alone */
@@ -79,6 +90,7 @@ typedef struct hl_function_plane {
   const hl_function_polygon *polygons;
   size_t polygon_count;
   hl_function_image image;
+  hl_function_curves curves;
   double second_scale; /* a factor by which the second number is multiplied before the function uses it; 0
                         * counts as 1 */
 } hl_function_plane;

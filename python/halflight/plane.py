@@ -1,4 +1,4 @@
-"""Reads the keywords `second`, `boxes`, `polygons` and `image` of TransferFunction, which make it a function of two
+"""Reads the keywords `second`, `boxes`, `polygons`, `image` and `curves` of TransferFunction, which make it a function of two
 numbers.
 """
 from __future__ import annotations
@@ -17,6 +17,7 @@ __all__ = ["Plane"]
 _BOX = {"value": None, "second": None, "color": (1.0, 1.0, 1.0), "opacity": 0.5, "edge": (0.0, 0.0), "sigma": 0.0}
 _POLYGON = {"vertices": None, "apex": None, "color": (1.0, 1.0, 1.0), "opacity": 0.5, "falloff": 1.0}
 _IMAGE = {"pixels": None, "value": None, "second": None}
+_CURVES: dict[str, Any] = {"opacity": None, "color": ()}
 
 
 def _parts(place: str, given: Any, standard: Mapping[str, Any], optional: Sequence[str] = ()) -> dict[str, Any]:
@@ -70,14 +71,24 @@ def _image(place: str, given: Any) -> dict[str, Any]:
     return parts
 
 
+def _points(place: str, given: Any, width: int) -> list[tuple[float, ...]]:
+    """Rows of numbers, sorted by the first one."""
+    return sorted((tuple(numbers_of(f"{place}[{n}]", one, width)) for n, one in enumerate(given)), key=lambda row: row[0])
+
+
+def _curves(place: str, given: Any) -> dict[str, Any]:
+    parts = _parts(place, given, _CURVES)
+    return {"opacity": _points(f"{place}: opacity", parts["opacity"], 2), "color": _points(f"{place}: color", parts["color"], 4)}
+
+
 class Plane:
-    """The shapes and the image of a function of two numbers in the plane of these numbers. Users give them as keywords
+    """The shapes, the image and the curves of a function of two numbers in the plane of these numbers. Users give them as keywords
     of TransferFunction.
     """
 
-    __slots__ = ("boxes", "image", "polygons", "second")
+    __slots__ = ("boxes", "curves", "image", "polygons", "second")
 
-    def __init__(self, place: str, second: Any, boxes: Any, polygons: Any, image: Any) -> None:
+    def __init__(self, place: str, second: Any, boxes: Any, polygons: Any, image: Any, curves: Any) -> None:
         if isinstance(second, Mapping) and list(second) == ["volume"]:
             second = {"volume": str(second["volume"])}
         elif second is not None and second != "gradient":
@@ -86,18 +97,21 @@ class Plane:
         self.boxes = [_box(f"{place}boxes[{n}]", one) for n, one in enumerate(boxes)]
         self.polygons = [_polygon(f"{place}polygons[{n}]", one) for n, one in enumerate(polygons)]
         self.image: Any = None if image is None else _image(f"{place}image", image)
-        if second is None and (self.boxes or self.polygons or self.image):
-            raise TypeError(f'{place}boxes, polygons and images need second="gradient" or second={{"volume": name}}')
+        self.curves: Any = None if curves is None else _curves(f"{place}curves", curves)
+        if second is None and (self.boxes or self.polygons or self.image or self.curves):
+            raise TypeError(f'{place}boxes, polygons, images and curves need second="gradient" or second={{"volume": name}}')
 
     def arguments(self) -> dict[str, Any]:
         """The keywords of TransferFunction that make this."""
-        return {word: getattr(self, word) for word in ("second", "boxes", "polygons", "image") if getattr(self, word)}
+        words = ("second", "boxes", "polygons", "image", "curves")
+        return {word: getattr(self, word) for word in words if getattr(self, word)}
 
     def equals(self, other: Plane) -> bool:
         """Whether the other plane shows the same."""
         if (self.image is None) != (other.image is None):
             return False
-        return ((self.second, self.boxes, self.polygons) == (other.second, other.boxes, other.polygons)
+        return ((self.second, self.boxes, self.polygons, self.curves)
+                == (other.second, other.boxes, other.polygons, other.curves)
                 and (self.image is None or all(np.array_equal(self.image[word], other.image[word]) for word in _IMAGE)))
 
     def fill(self, struct: Any, keep: list[Any]) -> None:
@@ -121,6 +135,11 @@ class Plane:
             made.apex, made.color, made.opacity, made.falloff = one["apex"], one["color"], one["opacity"], one["falloff"]
         struct.boxes, struct.box_count = boxes, len(self.boxes)
         struct.polygons, struct.polygon_count = polygons, len(self.polygons)
+        if self.curves is not None:
+            keep.append(opacity := ffi.new("hl_opacity_point[]", self.curves["opacity"]))
+            keep.append(color := ffi.new("hl_color_point[]", [(row[0], row[1:]) for row in self.curves["color"]]))
+            struct.curves.opacity, struct.curves.opacity_count = opacity, len(self.curves["opacity"])
+            struct.curves.color, struct.curves.color_count = color, len(self.curves["color"])
         if self.image is not None:
             pixels = self.image["pixels"]
             keep.append(pixels)
@@ -148,4 +167,9 @@ def plane_from(struct: Any) -> Plane:
         pixels = np.frombuffer(ffi.buffer(struct.image.pixels, 4 * int(np.prod(shape))), np.float32).reshape(shape).copy()
         low, high = struct.image.low, struct.image.high
         image = {"pixels": pixels, "value": (low[0], high[0]), "second": (low[1], high[1])}
-    return Plane("TransferFunction: ", second, boxes, polygons, image)
+    curves = None
+    if struct.curves.opacity_count > 0:
+        opacity, color = struct.curves.opacity, struct.curves.color
+        curves = {"opacity": [(opacity[n].value, opacity[n].opacity) for n in range(struct.curves.opacity_count)],
+                  "color": [(color[n].value, *color[n].color) for n in range(struct.curves.color_count)]}
+    return Plane("TransferFunction: ", second, boxes, polygons, image, curves)

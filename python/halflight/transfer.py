@@ -43,7 +43,7 @@ class TransferFunction:
         What extinction is multiplied by where the data's gradient has this length, in data units per world unit;
         sorted. Empty: 1 everywhere.
     second : "gradient" or {"volume": name}, optional
-        The second number that `boxes`, `polygons` and `image` take beside the value: the length of the data's
+        The second number that `boxes`, `polygons`, `image` and `curves` take beside the value: the length of the data's
         gradient, in data units per world unit, or the value of another volume of the scene. They then say all that is
         seen; colours are linear RGB or a name, opacities per `unit_distance`.
     boxes : sequence of dict
@@ -55,6 +55,9 @@ class TransferFunction:
     image : dict
         ``pixels``, (height, width, 4): linear RGB times opacity, and opacity, the greatest second number in the first
         row; ``value`` and ``second``, the ranges that it covers.
+    curves : dict
+        ``opacity``, a sequence of (value, opacity), and ``color``, a sequence of (second number, r, g, b): one volume in
+        the colours of another.
 
     Examples
     --------
@@ -70,11 +73,11 @@ class TransferFunction:
     @suggests
     def __init__(self, opacity: Any = (), color: Any = (1.0, 1.0, 1.0), unit_distance: float = 1.0,
                  gradient_opacity: Any = (), *, second: Any = None, boxes: Any = (), polygons: Any = (),
-                 image: Any = None) -> None:
+                 image: Any = None, curves: Any = None) -> None:
         place = "TransferFunction: "
-        self.plane = Plane(place, second, boxes, polygons, image)
+        self.plane = Plane(place, second, boxes, polygons, image, curves)
         if second is not None and len(opacity) > 0:
-            raise TypeError(f"{place}opacity and second exclude each other: boxes, polygons and images have their own")
+            raise TypeError(f"{place}opacity and second exclude each other: boxes, polygons, images and curves have their own")
         self.unit_distance = number(f"{place}unit_distance", unit_distance)
         points = [numbers_of(f"{place}opacity[{n}]", point, 2) for n, point in enumerate(opacity)]
         self.opacity = np.array(points, dtype=np.float64).reshape(-1, 2)

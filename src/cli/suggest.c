@@ -49,6 +49,7 @@ static const struct {
     {"iso VALUE:COLOR:OPACITY for a surface, --show LABEL:OPACITY for a label, --density FACTOR for all "
      "matter, or --tf FILE for values",
      "opacity transparency translucency"},
+    {"color-by", "color-array colour-by colour-array color-volume texture-by coloring scalar-array"},
     {"colormap",
      "cmap color-map colourmap lut palette colors colours color colour color-table lookup-table colorscale"},
     {"range",

@@ -59,6 +59,7 @@ const hl_option_row hl_option_rows[HL_ASK_COUNT] = {
     CHOICE(HL_ASK_LOOK, "look", .choices = looks),
     TEXTS(HL_ASK_TF, "tf"),
     TEXTS(HL_ASK_COLORMAP, "colormap"),
+    TEXT(HL_ASK_COLOR_BY, "color-by"),
     NAMED(HL_ASK_RANGE, "range", 2, .separator = ',', .percent = true),
     CHOICE(HL_ASK_RANGE_SCALE, "range-scale", .choices = range_scales),
     NAMED(HL_ASK_THRESHOLD, "threshold", 1, .separator = ','),

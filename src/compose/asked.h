@@ -22,6 +22,7 @@ typedef enum hl_ask {
   HL_ASK_LOOK, /* from this option to HL_ASK_SHADING: options for the look of volumes */
   HL_ASK_TF,
   HL_ASK_COLORMAP,
+  HL_ASK_COLOR_BY,
   HL_ASK_RANGE,
   HL_ASK_RANGE_SCALE,
   HL_ASK_THRESHOLD,

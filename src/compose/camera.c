@@ -142,10 +142,13 @@ static bool turn_view(const hl_asked *asked, hl_view *view) {
 
 /* Places the camera. It frames the volumes before it is turned, so that all frames of a turn have the same
  * target and distance. */
-static hl_status place(const hl_composer *composer, bool framed, hl_scene_description *description) {
+static hl_status place(const hl_composer *composer, bool framed, size_t added,
+                       hl_scene_description *description) {
   const hl_asked *asked = composer->asked;
   hl_view view;
-  hl_status status = choose_view(composer, description, &view);
+  hl_scene_description without = *description;
+  without.mesh_count -= added;
+  hl_status status = choose_view(composer, &without, &view);
   if (status != HL_OK) return status;
   if (composer->bare && (composer->flags & HL_COMPOSE_SKY) == 0)
     memcpy(description->sky.up, view.up, sizeof view.up);
@@ -160,7 +163,8 @@ static hl_status place(const hl_composer *composer, bool framed, hl_scene_descri
       "camera in the scene");
 }
 
-hl_status hl_compose_camera(const hl_composer *composer, bool seen, hl_scene_description *description) {
+hl_status hl_compose_camera(const hl_composer *composer, bool seen, size_t added,
+                            hl_scene_description *description) {
   const hl_asked *asked = composer->asked;
   if (asked[HL_ASK_SIZE].given) {
     description->width = (int)asked[HL_ASK_SIZE].number[0];
@@ -173,7 +177,7 @@ hl_status hl_compose_camera(const hl_composer *composer, bool seen, hl_scene_des
   bool framed = asked[HL_ASK_ZOOM].given || asked[HL_ASK_VIEW].given || asked[HL_ASK_UP].given ||
                 asked[HL_ASK_SLICE].given || (composer->bare && (reshaped || seen)) ||
                 turns_to_cuts(composer, description);
-  if (turned || framed) return place(composer, framed, description);
+  if (turned || framed) return place(composer, framed, added, description);
   bool taken_in = composer->bare && (composer->flags & HL_COMPOSE_MESHES) != 0;
   return taken_in ? hl_camera_reframe(description, &description->camera, composer->error) : HL_OK;
 }

@@ -7,6 +7,7 @@
 #include <math.h>
 #include <string.h>
 
+#include "compose/color_by.h"
 #include "compose/composer.h"
 #include "compose/lights.h"
 #include "compose/looks.h"
@@ -23,6 +24,7 @@ typedef struct scene_change {
   hl_scene_description description;
   hl_changed_volumes volumes;
   hl_scene_volume *channels; /* owned; the volumes, of which some may be translucent; null if none is */
+  hl_coloring coloring;      /* owned; the volumes in the colours of another one */
   hl_light *lights;          /* owned; [description.light_count] */
   hl_scene_mesh *colored; /* owned; the scene's meshes if "colormap" gives some of them colours; else null */
   hl_scene_mesh *meshes;  /* owned; the meshes, of which the last ones are added; null if none is added */
@@ -164,11 +166,12 @@ static hl_status change_all(const hl_composer *composer, scene_change *change) {
   if (status == HL_OK) smooth_labels(composer, description);
   if (status == HL_OK) status = color_meshes(composer, change);
   if (status == HL_OK) status = add_outline(composer, change);
-  if (status == HL_OK) status = hl_compose_camera(composer, seen, description);
+  if (status == HL_OK) status = hl_compose_camera(composer, seen, change->added, description);
   if (status == HL_OK) status = hl_see_through(composer, description, &change->channels);
   if (status == HL_OK) status = add_floor(composer, change);
   if (status == HL_OK) status = hl_compose_lights(composer, description, &change->lights);
   if (status == HL_OK) status = hl_compose_sky(composer, description, &change->sky);
+  if (status == HL_OK) status = hl_compose_color_by(composer, description, &change->coloring);
   if (status != HL_OK) return status;
   hl_compose_look(composer, description);
   hl_compose_slice(composer, description);
@@ -183,6 +186,7 @@ static hl_status change_all(const hl_composer *composer, scene_change *change) {
 
 static void change_release(hl_context *context, scene_change *change) {
   hl_changed_volumes_release(context, &change->volumes);
+  hl_coloring_release(context, &change->coloring);
   hl_release(context, change->channels);
   hl_release(context, change->sky);
   for (size_t n = 1; n <= change->added; n++)

@@ -136,8 +136,10 @@ hl_status hl_compose_sky(const hl_composer *composer, hl_scene_description *desc
 /* ---- camera.c ---- */
 
 /* Places the camera. seen: whether the visible part of the volumes has changed; if so, the camera of a bare
- * volume frames the volumes anew. */
-hl_status hl_compose_camera(const hl_composer *composer, bool seen, hl_scene_description *description);
+ * volume frames the volumes anew. added: the number of the last meshes that options have added: the picture
+ * frames them, but an automatic view is chosen without them. */
+hl_status hl_compose_camera(const hl_composer *composer, bool seen, size_t added,
+                            hl_scene_description *description);
 
 /* ---- values.c ---- */
 

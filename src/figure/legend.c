@@ -313,13 +313,34 @@ static hl_status draw_volume(legend *made, const hl_scene_volume *volume, bool f
   return status;
 }
 
+/* The volume whose values a volume's colours stand for: itself, or the one that gives its colours, which
+ * *other then holds with these colours. */
+static const hl_scene_volume *volume_of_colors(const hl_scene_description *scene,
+                                               const hl_scene_volume *volume, hl_scene_volume *other) {
+  static const hl_opacity_point opaque = {0, 1};
+  const hl_function_plane *plane = &volume->transfer_function.plane;
+  if (plane->second != HL_SECOND_VOLUME || plane->curves.opacity_count == 0) return volume;
+  for (size_t v = 0; v < scene->volume_count; v++)
+    if (scene->volumes[v].name != NULL && strcmp(scene->volumes[v].name, plane->volume) == 0) {
+      *other = scene->volumes[v];
+      other->transfer_function = (hl_transfer_function){.unit_distance = 1,
+                                                        .opacity = &opaque,
+                                                        .opacity_count = 1,
+                                                        .color = plane->curves.color,
+                                                        .color_count = plane->curves.color_count};
+      return other;
+    }
+  return volume;
+}
+
 hl_status hl_overlay_legend(const hl_ink *ink, const hl_overlay_place *place, hl_error *error) {
   const hl_scene_description *scene = place->scene;
+  hl_scene_volume other;
   const double height = place->legend.height;
   size_t strips = 0, lines = 0;
   for (size_t v = 0; v < scene->volume_count; v++) {
-    const hl_scene_volume *volume = &scene->volumes[v];
-    if (!volume->visible) continue;
+    const hl_scene_volume *volume = volume_of_colors(scene, &scene->volumes[v], &other);
+    if (!scene->volumes[v].visible) continue;
     strips += has_strip(volume);
     lines += 1 + count_rows(volume);
   }
@@ -340,8 +361,8 @@ hl_status hl_overlay_legend(const hl_ink *ink, const hl_overlay_place *place, hl
     bool first = true;
     if (turn == 1 && place->legend.in_columns) made.right = place->picture.left + place->margin + made.body;
     for (size_t v = 0; status == HL_OK && v < scene->volume_count; v++) {
-      const hl_scene_volume *volume = &scene->volumes[v];
-      if (!volume->visible) continue;
+      const hl_scene_volume *volume = volume_of_colors(scene, &scene->volumes[v], &other);
+      if (!scene->volumes[v].visible) continue;
       status = turn == 0 ? widen_body(&made, volume, first, error) : draw_volume(&made, volume, first, error);
       first = false;
     }

@@ -1,5 +1,5 @@
-/* json/function_plane.c - reads a transfer function of two numbers from JSON: its boxes, polygons and
- * image. */
+/* json/function_plane.c - reads a transfer function of two numbers from JSON: its boxes, polygons, image and
+ * curves. */
 #include <string.h>
 
 #include "core/memory.h"
@@ -106,6 +106,24 @@ static hl_status read_image(hl_json_reader *reader, const json_t *value, hl_func
   return status;
 }
 
+static hl_status read_curves(hl_json_reader *reader, const json_t *value, hl_function_curves *curves) {
+  static const char *const keys[] = {"opacity", "color", NULL};
+  double *rows = NULL;
+  if (value == NULL) return HL_OK;
+  size_t mark = hl_json_enter(reader, "curves");
+  hl_status status = hl_json_object(reader, value, keys);
+  if (status == HL_OK && json_object_get(value, "opacity") == NULL)
+    status = hl_json_fail(reader, HL_ERROR_INPUT, "opacity", "is missing: give [[value, opacity], ...]");
+  if (status == HL_OK) status = hl_json_read_rows(reader, value, "opacity", 2, &rows, &curves->opacity_count);
+  if (status == HL_OK) curves->opacity = (hl_opacity_point *)rows;
+  if (status == HL_OK && json_object_get(value, "color") != NULL) {
+    status = hl_json_read_rows(reader, value, "color", 4, &rows, &curves->color_count);
+    if (status == HL_OK) curves->color = (hl_color_point *)rows;
+  }
+  if (status == HL_OK) hl_json_leave(reader, mark);
+  return status;
+}
+
 /* ---- all of it ---- */
 
 typedef hl_status read_shape(hl_json_reader *reader, const json_t *value, void *shape);
@@ -140,8 +158,8 @@ hl_status hl_json_read_plane(hl_json_reader *reader, const json_t *value, hl_fun
   for (const char *const *key = others; *key != NULL; key++)
     if (json_object_get(value, *key) != NULL)
       return hl_json_fail(reader, HL_ERROR_INPUT, *key,
-                          "and second exclude each other: boxes, polygons and images have opacities and "
-                          "colours of their own");
+                          "and second exclude each other: boxes, polygons, images and curves have opacities "
+                          "and colours of their own");
   hl_status status = read_second(reader, value, plane);
   if (status == HL_OK)
     status = read_shapes(reader, value, "boxes", sizeof *plane->boxes, read_box, &boxes, &plane->box_count);
@@ -150,5 +168,6 @@ hl_status hl_json_read_plane(hl_json_reader *reader, const json_t *value, hl_fun
     status = read_shapes(reader, value, "polygons", sizeof *plane->polygons, read_polygon, &polygons,
                          &plane->polygon_count);
   plane->polygons = polygons;
-  return status == HL_OK ? read_image(reader, json_object_get(value, "image"), &plane->image) : status;
+  if (status == HL_OK) status = read_image(reader, json_object_get(value, "image"), &plane->image);
+  return status == HL_OK ? read_curves(reader, json_object_get(value, "curves"), &plane->curves) : status;
 }

@@ -164,8 +164,12 @@ typedef struct hl_function_subject {
 hl_status hl_json_read_transfer_function(hl_json_reader *reader, const json_t *value,
                                          hl_function_subject subject, hl_transfer_function *function);
 
-/* Reads the keys "second", "boxes", "polygons" and "image" of a transfer function that has "second". The
- * result is owned by *plane (hl_plane_release), also after a failure. */
+/* Reads an array of rows of `width` numbers. *rows is owned by the caller (hl_release). */
+hl_status hl_json_read_rows(hl_json_reader *reader, const json_t *object, const char *key, size_t width,
+                            double **rows, size_t *count);
+
+/* Reads the keys "second", "boxes", "polygons", "image" and "curves" of a transfer function that has
+ * "second". The result is owned by *plane (hl_plane_release), also after a failure. */
 hl_status hl_json_read_plane(hl_json_reader *reader, const json_t *value, hl_function_plane *plane);
 
 /* Reads ParaView's colour map, an array of one object. The points are owned by *function. */

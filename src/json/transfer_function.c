@@ -21,9 +21,8 @@
 
 static bool has(const json_t *object, const char *key) { return json_object_get(object, key) != NULL; }
 
-/* Reads an array of rows of `width` numbers. *rows is owned by the caller (hl_release). */
-static hl_status read_rows(hl_json_reader *reader, const json_t *object, const char *key, size_t width,
-                           double **rows, size_t *count) {
+hl_status hl_json_read_rows(hl_json_reader *reader, const json_t *object, const char *key, size_t width,
+                            double **rows, size_t *count) {
   const json_t *value = json_object_get(object, key);
   size_t mark = hl_json_enter(reader, key);
   hl_status status = hl_json_array(reader, value, 0, HL_LIMIT_POINTS);
@@ -121,13 +120,14 @@ static hl_status read_points(hl_json_reader *reader, const json_t *value, bool i
                           "%.9g is out of range: give an opacity from 0 to 1", inside);
     if ((status = set_solid_opacity(reader, inside, function)) != HL_OK) return status;
   } else if (opacity != NULL) {
-    if ((status = read_rows(reader, value, "opacity", 2, &rows, &count)) != HL_OK) return status;
+    if ((status = hl_json_read_rows(reader, value, "opacity", 2, &rows, &count)) != HL_OK) return status;
     hl_release(reader->context, (void *)function->opacity);
     function->opacity = (hl_opacity_point *)rows;
     function->opacity_count = count;
   }
   if (has(value, "gradient_opacity")) {
-    if ((status = read_rows(reader, value, "gradient_opacity", 2, &rows, &count)) != HL_OK) return status;
+    if ((status = hl_json_read_rows(reader, value, "gradient_opacity", 2, &rows, &count)) != HL_OK)
+      return status;
     hl_release(reader->context, (void *)function->gradient_opacity);
     function->gradient_opacity = (hl_opacity_point *)rows;
     function->gradient_opacity_count = count;
@@ -135,7 +135,7 @@ static hl_status read_points(hl_json_reader *reader, const json_t *value, bool i
   if (json_is_number(json_array_get(json_object_get(value, "color"), 0)))
     return read_plain_color(reader, value, function);
   if (has(value, "color")) {
-    if ((status = read_rows(reader, value, "color", 4, &rows, &count)) != HL_OK) return status;
+    if ((status = hl_json_read_rows(reader, value, "color", 4, &rows, &count)) != HL_OK) return status;
     hl_release(reader->context, (void *)function->color);
     function->color = (hl_color_point *)rows;
     function->color_count = count;
@@ -236,10 +236,10 @@ static hl_status read_start(hl_json_reader *reader, const json_t *value, hl_func
   return status;
 }
 
-/* Refuses boxes, polygons and images of a function that has no second number. */
+/* Refuses boxes, polygons, images and curves of a function that has no second number. */
 static hl_status refuse_shapes(hl_json_reader *reader, const json_t *value) {
-  for (const char *const *key = (const char *const[]){"boxes", "polygons", "image", NULL}; *key != NULL;
-       key++)
+  for (const char *const *key = (const char *const[]){"boxes", "polygons", "image", "curves", NULL};
+       *key != NULL; key++)
     if (has(value, *key))
       return hl_json_fail(reader, HL_ERROR_INPUT, *key,
                           "needs a second number: give \"second\": \"gradient\" or {\"volume\": NAME}");
@@ -249,8 +249,8 @@ static hl_status refuse_shapes(hl_json_reader *reader, const json_t *value) {
 static hl_status read_members(hl_json_reader *reader, const json_t *value, hl_function_subject subject,
                               hl_transfer_function *function) {
   static const char *const keys[] = {
-      "unit_distance", "opacity", "gradient_opacity", "color", "colormap", "range", "scale",
-      "preset",        "file",    "second",           "boxes", "polygons", "image", NULL};
+      "unit_distance", "opacity", "gradient_opacity", "color", "colormap", "range", "scale", "preset", "file",
+      "second",        "boxes",   "polygons",         "image", "curves",   NULL};
   hl_json_range range;
   hl_status status = hl_json_object(reader, value, keys);
   bool of_two = has(value, "second");

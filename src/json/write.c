@@ -115,6 +115,16 @@ static void write_opacity(hl_json_writer *w, const char *key, const hl_opacity_p
   hl_json_close(w, "]");
 }
 
+static void write_colors(hl_json_writer *w, const hl_color_point *points, size_t count) {
+  hl_json_open(w, "color", "[");
+  for (size_t p = 0; p < count; p++) {
+    const hl_color_point *point = &points[p];
+    hl_json_write_row(w, NULL, (double[4]){point->value, point->color[0], point->color[1], point->color[2]},
+                      4);
+  }
+  hl_json_close(w, "]");
+}
+
 static void write_ranges(hl_json_writer *w, const double low[2], const double high[2]) {
   for (int a = 0; a < 2; a++) hl_json_write_row(w, hl_plane_range_keys[a], (double[2]){low[a], high[a]}, 2);
 }
@@ -156,6 +166,12 @@ static void write_plane(hl_json_writer *w, const hl_function_plane *plane) {
     for (size_t p = 0; p < plane->polygon_count; p++) write_polygon(w, &plane->polygons[p]);
     hl_json_close(w, "]");
   }
+  if (plane->curves.opacity_count > 0) {
+    hl_json_open(w, "curves", "{");
+    write_opacity(w, "opacity", plane->curves.opacity, plane->curves.opacity_count);
+    write_colors(w, plane->curves.color, plane->curves.color_count);
+    hl_json_close(w, "}");
+  }
   if (plane->image.pixels == NULL) return;
   hl_json_open(w, "image", "{");
   write_file(w, plane->image.file);
@@ -182,13 +198,7 @@ static void write_transfer_function(hl_json_writer *w, const hl_transfer_functio
   write_opacity(w, "opacity", function->opacity, function->opacity_count);
   if (function->gradient_opacity_count > 0)
     write_opacity(w, "gradient_opacity", function->gradient_opacity, function->gradient_opacity_count);
-  hl_json_open(w, "color", "[");
-  for (size_t p = 0; p < function->color_count; p++) {
-    const hl_color_point *point = &function->color[p];
-    hl_json_write_row(w, NULL, (double[4]){point->value, point->color[0], point->color[1], point->color[2]},
-                      4);
-  }
-  hl_json_close(w, "]");
+  write_colors(w, function->color, function->color_count);
   hl_json_close(w, "}");
 }
 

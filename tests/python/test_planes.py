@@ -44,6 +44,22 @@ def test_another_volume_and_an_image(ramp):
     assert pixels[26, 16, 3] == pytest.approx(0, abs=1e-6)
 
 
+def test_curves_of_another_volume(ramp):
+    """The opacity is that of the value, and the colour that of the other volume, which rises along y."""
+    other = np.broadcast_to(np.arange(32, dtype=np.uint8)[:, None], (32, 32, 32)).copy()
+    curves = {"opacity": [(30, 0), (60, 0.05)], "color": [(8, 1, 0, 0), (24, 0, 0.5, 1)]}
+    function = TransferFunction(second={"volume": "other"}, curves=curves)
+    hidden = Volume(other, name="other", visible=False, casts_shadow=False)
+    pixels = picture(Volume(ramp, transfer_function=function, shading="flat"), hidden)
+    alone = picture(Volume(ramp, transfer_function=TransferFunction(curves["opacity"]), shading="flat"))
+    assert pixels[..., 3] == pytest.approx(alone[..., 3], abs=1e-3)
+    assert pixels[16, 26, 3] == pytest.approx(1 - 0.95**32, abs=1e-3)
+    for row in range(2, 30):
+        t = np.clip((31 - row - 8) / 16, 0, 1)  # the picture's first row is the greatest y
+        color = pixels[row, 26, :3] / pixels[row, 26, 3]
+        assert color == pytest.approx([1 - t, 0.5 * t, t], abs=0.02)
+
+
 def test_functions_come_back(ramp, tmp_path, program):
     cone = {"vertices": [(10, 1), (50, 1), (30, 6)], "color": "red", "falloff": 0.5}
     function = TransferFunction(second="gradient", boxes=[HOLDS, {**MISSES, "edge": (3, 1)}], polygons=[cone],
@@ -54,6 +70,12 @@ def test_functions_come_back(ramp, tmp_path, program):
     assert Scene.from_json(scene.to_json()).volumes[0].look["transfer_function"] == function
     assert "opacity" not in json.loads(scene.to_json())["volumes"][0]["transfer_function"]
     assert repr(function) == repr(eval(repr(function)))  # noqa: S307
+    curves = TransferFunction(second={"volume": "b"}, curves={"opacity": [(0, 0), (9, 0.5)], "color": [(1, 0, 1, 0)]})
+    both = Scene([Volume(str(tmp_path / "ramp.npy"), transfer_function=curves, shading="flat"),
+                  Volume(str(tmp_path / "ramp.npy"), name="b", transfer_function=TransferFunction([(0, 0.1)]), visible=False)],
+                 **LOOK)
+    assert Scene.from_json(both.to_json()).volumes[0].look["transfer_function"] == curves
+    assert repr(curves) == repr(eval(repr(curves)))  # noqa: S307
     # The program reads it from a file of its own, and from the scene.
     (tmp_path / "tf.json").write_text(json.dumps(json.loads(scene.to_json())["volumes"][0]["transfer_function"]))
     (tmp_path / "scene.json").write_text(scene.to_json())
@@ -72,6 +94,7 @@ def test_wrong_functions():
                            ({"second": "gradient", "polygons": [{"vertices": [(0, 0), (1, 1)]}]}, "fewer than three"),
                            ({"second": "gradient", "image": {"pixels": np.zeros((2, 2)), "value": (0, 1), "second": (0, 1)}},
                             "not \\(height, width, 4\\)"),
+                           ({"second": {"volume": "b"}, "curves": {"color": [(0, 1, 1, 1)]}}, "has no opacity"),
                            ({"opacity": [(0, 1)], "second": "gradient", "boxes": [HOLDS]}, "exclude each other")):
         with pytest.raises((TypeError, ValueError), match=message):
             TransferFunction(**given)

@@ -218,9 +218,17 @@ static void refusals_name_the_place(void **state) {
        "/boxes: needs a second number: give \"second\": \"gradient\" or {\"volume\": NAME}", HL_ERROR_INPUT},
       {"{\"second\": \"slope\"}", "/second: is an unknown name: give \"gradient\" or {\"volume\": NAME}",
        HL_ERROR_INPUT},
-      {"{\"second\": \"gradient\"}", "/second: has no use: give boxes, polygons or an image", HL_ERROR_INPUT},
+      {"{\"second\": \"gradient\"}", "/second: has no use: give boxes, polygons, an image or curves",
+       HL_ERROR_INPUT},
+      {"{\"second\": \"gradient\", \"curves\": {}}",
+       "/curves/opacity: is missing: give [[value, opacity], ...]", HL_ERROR_INPUT},
+      {"{\"second\": \"gradient\", \"curves\": {\"opacity\": [[2, 0], [1, 1]]}}",
+       "/curves/opacity/1/0: is below the point before it: sort the points", HL_ERROR_INPUT},
+      {"{\"second\": \"gradient\", \"curves\": {\"opacity\": [[0, 1]], \"color\": [[0, 1, 2, 0]]}}",
+       "/curves/color/0/2: 2 is out of range: give linear RGB, each from 0 to 1", HL_ERROR_INPUT},
       {"{\"second\": \"gradient\", \"color\": [1, 1, 1]}",
-       "/color: and second exclude each other: boxes, polygons and images have opacities and colours of "
+       "/color: and second exclude each other: boxes, polygons, images and curves have opacities and colours "
+       "of "
        "their "
        "own",
        HL_ERROR_INPUT},

@@ -55,7 +55,8 @@ static bool is_of_the_page(int which) {
 
 static bool names_a_file(int which) {
   return which == RENDER_TF || which == RENDER_LABELS || which == RENDER_MASK ||
-         which == RENDER_LABEL_TABLE || which == RENDER_SKY || which == RENDER_COLORMAP;
+         which == RENDER_LABEL_TABLE || which == RENDER_SKY || which == RENDER_COLORMAP ||
+         which == RENDER_COLOR_BY;
 }
 
 /* ---- a panel's command line ---- */

@@ -1,6 +1,6 @@
-/* scene/function/function_plane.c - the boxes, polygons and images of a transfer function of two numbers:
- * evaluates their opacity and colour at a point of the plane of the two numbers, or as a mean over a part of
- * it.
+/* scene/function/function_plane.c - the boxes, polygons, images and curves of a transfer function of two
+ * numbers: evaluates their opacity and colour at a point of the plane of the two numbers, or as a mean over a
+ * part of it.
  *
  * In: a transfer function. Out: extinction and colour, for the tables of grid/plane_table.c, for the
  * reference, and for the outline: a function of the value alone, which framing and exposure use. */
@@ -12,6 +12,7 @@
 #include "core/memory.h"
 #include "core/vector.h"
 #include "elementary/elementary.h"
+#include "scene/function/transfer_function.h"
 
 /* ---- weights ---- */
 
@@ -137,15 +138,43 @@ static void add_image(const hl_transfer_function *function, const double at[2], 
   add(sum, share * extinction_of(pixel[3], function->unit_distance), color);
 }
 
+/* The curves as a function of one number: the value for the opacity, the second number for the colour. */
+static hl_transfer_function function_of(const hl_function_curves *curves) {
+  return (hl_transfer_function){.opacity = curves->opacity,
+                                .opacity_count = curves->opacity_count,
+                                .color = curves->color,
+                                .color_count = curves->color_count};
+}
+
+/* Adds the mean extinction over the values of a part of the plane, in the mean colour over its second
+ * numbers. */
+static void add_curves(const hl_transfer_function *function, const plane_box *part, int samples,
+                       plane_sum *sum) {
+  const hl_transfer_function curves = function_of(&function->plane.curves);
+  double extinction = 0, color[3] = {0, 0, 0};
+  if (curves.opacity_count == 0) return;
+  for (int n = 0; n < samples; n++) {
+    const double along = (n + 0.5) / samples;
+    double at[3];
+    const double value = part->low[0] + (part->high[0] - part->low[0]) * along;
+    hl_transfer_function_color(&curves, part->low[1] + (part->high[1] - part->low[1]) * along, at);
+    extinction += extinction_of(hl_transfer_function_opacity(&curves, value), function->unit_distance) /
+                  samples;
+    for (int c = 0; c < 3; c++) color[c] += at[c] / samples;
+  }
+  add(sum, extinction, color);
+}
+
 enum { SAMPLES = 3 /* number of samples along each side of a part of the plane */ };
 
 plane_sum hl_plane_mean(const hl_transfer_function *function, const plane_box *part) {
   plane_sum sum = {0, {0, 0, 0}};
   const hl_function_plane *plane = &function->plane;
-  add_boxes(function, part, &sum);
-  if (plane->polygon_count == 0 && plane->image.pixels == NULL) return sum;
   bool is_point = part->low[0] == part->high[0] && part->low[1] == part->high[1];
   int samples = is_point ? 1 : SAMPLES;
+  add_boxes(function, part, &sum);
+  add_curves(function, part, samples, &sum);
+  if (plane->polygon_count == 0 && plane->image.pixels == NULL) return sum;
   for (int j = 0; j < samples; j++)
     for (int i = 0; i < samples; i++) {
       const double at[2] = {part->low[0] + (part->high[0] - part->low[0]) * (i + 0.5) / samples,
@@ -165,6 +194,21 @@ static void join(plane_box *bounds, const double low[2], const double high[2]) {
   }
 }
 
+/* Joins the values at which the curves may be visible, and the second numbers between which their colour
+ * changes. */
+static void join_curves(const hl_function_curves *curves, plane_box *bounds) {
+  const hl_opacity_point *points = curves->opacity;
+  size_t first = 0, end = curves->opacity_count, colors = curves->color_count;
+  while (first < end && !(points[first].opacity > 0)) first++;
+  if (first == end) return;
+  while (!(points[end - 1].opacity > 0)) end--;
+  const double low[2] = {first > 0 ? points[first - 1].value : -INFINITY,
+                         colors > 0 ? curves->color[0].value : 0};
+  const double high[2] = {end < curves->opacity_count ? points[end].value : INFINITY,
+                          colors > 0 ? curves->color[colors - 1].value : 0};
+  join(bounds, low, high);
+}
+
 bool hl_plane_bounds(const hl_function_plane *plane, plane_box *bounds) {
   *bounds = (plane_box){{INFINITY, INFINITY}, {-INFINITY, -INFINITY}};
   for (size_t b = 0; b < plane->box_count; b++) join(bounds, plane->boxes[b].low, plane->boxes[b].high);
@@ -172,6 +216,7 @@ bool hl_plane_bounds(const hl_function_plane *plane, plane_box *bounds) {
     for (size_t v = 0; v < plane->polygons[p].vertex_count; v++)
       join(bounds, plane->polygons[p].vertices[v], plane->polygons[p].vertices[v]);
   if (plane->image.pixels != NULL) join(bounds, plane->image.low, plane->image.high);
+  if (plane->curves.opacity_count > 0) join_curves(&plane->curves, bounds);
   return bounds->low[0] <= bounds->high[0];
 }
 
@@ -206,6 +251,21 @@ static void note_image(const hl_function_image *image, double from, double to, c
     }
 }
 
+/* Notes the greatest opacity of the curves from `from` to `to`, in the mean of all colours. */
+static void note_curves(const hl_function_curves *curves, double from, double to, column *column) {
+  const hl_transfer_function function = function_of(curves);
+  double greatest = 0, color[3] = {1, 1, 1};
+  if (curves->opacity_count == 0) return;
+  for (size_t n = 0; n < curves->opacity_count; n++)
+    if (curves->opacity[n].value > from && curves->opacity[n].value < to)
+      greatest = fmax(greatest, curves->opacity[n].opacity);
+  for (int end = 0; end < 2; end++)
+    greatest = fmax(greatest, hl_transfer_function_opacity(&function, end ? to : from));
+  for (size_t n = 0; n < curves->color_count; n++)
+    for (int c = 0; c < 3; c++) color[c] += ((double)curves->color[n].color[c] - color[c]) / (double)(n + 1);
+  if (greatest > 0) note(column, greatest, color);
+}
+
 static column column_between(const hl_function_plane *plane, double from, double to) {
   column found = {0, 0, {0, 0, 0}};
   for (size_t b = 0; b < plane->box_count; b++) {
@@ -224,6 +284,7 @@ static column column_between(const hl_function_plane *plane, double from, double
     if (to >= low && from <= high) note(&found, polygon->opacity, polygon->color);
   }
   note_image(&plane->image, from, to, &found);
+  note_curves(&plane->curves, from, to, &found);
   return found;
 }
 

@@ -97,16 +97,63 @@ static hl_checker inside(const char *place, const char *key, size_t index, hl_er
   return check;
 }
 
+/* Checks the points of one curve. point: the first point, which begins with its place along the axis. size:
+ * bytes of a point. */
+static hl_status check_order(const hl_checker *check, const char *key, const void *points, size_t count,
+                             size_t size) {
+  hl_status status = hl_check_count(check, key, points, count, HL_LIMIT_POINTS);
+  double before = -INFINITY;
+  for (size_t n = 0; n < count && status == HL_OK; n++) {
+    char element[48];
+    double at;
+    memcpy(&at, (const char *)points + n * size, sizeof at);
+    snprintf(element, sizeof element, "%s/%zu/0", key, n);
+    status = hl_check_range(check, element, at, -1e30, 1e30, GIVE_VALUE);
+    if (status == HL_OK && at < before)
+      status = hl_check_refuse(check, element, "is below the point before it: sort the points");
+    before = at;
+  }
+  return status;
+}
+
+static hl_status check_curves(const char *place, const hl_function_curves *curves, hl_error *error) {
+  hl_checker check = {error, ""};
+  snprintf(check.place, sizeof check.place, "%s/curves", place);
+  if (curves->opacity_count == 0)
+    return curves->color_count == 0
+               ? HL_OK
+               : hl_check_refuse(&check, "opacity", "is missing: give [[value, opacity], ...]");
+  hl_status status = check_order(&check, "opacity", curves->opacity, curves->opacity_count,
+                                 sizeof *curves->opacity);
+  if (status == HL_OK)
+    status = check_order(&check, "color", curves->color, curves->color_count, sizeof *curves->color);
+  for (size_t n = 0; n < curves->opacity_count && status == HL_OK; n++) {
+    char element[48];
+    snprintf(element, sizeof element, "opacity/%zu/1", n);
+    status = hl_check_range(&check, element, curves->opacity[n].opacity, 0, 1, "give an opacity from 0 to 1");
+  }
+  for (size_t n = 0; n < 3 * curves->color_count && status == HL_OK; n++) {
+    char element[48];
+    snprintf(element, sizeof element, "color/%zu/%zu", n / 3, n % 3 + 1);
+    status = hl_check_range(&check, element, curves->color[n / 3].color[n % 3], 0, 1,
+                            "give linear RGB, each from 0 to 1");
+  }
+  return status;
+}
+
 hl_status hl_plane_check(const hl_function_plane *plane, const char *place, hl_error *error) {
   hl_checker check = {error, ""};
   snprintf(check.place, sizeof check.place, "%s", place);
-  bool shapes = plane->box_count > 0 || plane->polygon_count > 0 || plane->image.pixels != NULL;
+  bool shapes = plane->box_count > 0 || plane->polygon_count > 0 || plane->image.pixels != NULL ||
+                plane->curves.opacity_count > 0;
   if (plane->second == HL_SECOND_NONE)
-    return shapes ? hl_check_refuse(&check, "second", "is missing: say what boxes, polygons or an image take")
+    return shapes ? hl_check_refuse(&check, "second",
+                                    "is missing: say what boxes, polygons, an image or curves take")
                   : HL_OK;
   if (plane->second != HL_SECOND_GRADIENT && plane->second != HL_SECOND_VOLUME)
     return hl_check_refuse(&check, "second", "is unknown: give \"gradient\" or {\"volume\": NAME}");
-  if (!shapes) return hl_check_refuse(&check, "second", "has no use: give boxes, polygons or an image");
+  if (!shapes)
+    return hl_check_refuse(&check, "second", "has no use: give boxes, polygons, an image or curves");
   if (plane->second == HL_SECOND_VOLUME && plane->volume == NULL)
     return hl_check_refuse(&check, "second/volume", "is missing: give another volume's name");
   if (!(plane->second_scale >= 0 && plane->second_scale <= 1e30))
@@ -126,6 +173,7 @@ hl_status hl_plane_check(const hl_function_plane *plane, const char *place, hl_e
     hl_checker at = inside(place, "polygons", p, error);
     status = check_polygon(&at, &plane->polygons[p]);
   }
+  if (status == HL_OK) status = check_curves(place, &plane->curves, error);
   if (status != HL_OK) return status;
   snprintf(check.place, sizeof check.place, "%s/image", place);
   return check_image(&check, &plane->image);
@@ -138,6 +186,8 @@ void hl_plane_release(hl_context *context, hl_function_plane *plane) {
     hl_release(context, (void *)plane->polygons[p].vertices);
   hl_release(context, (void *)plane->polygons);
   hl_release(context, (void *)plane->boxes);
+  hl_release(context, (void *)plane->curves.opacity);
+  hl_release(context, (void *)plane->curves.color);
   hl_release(context, (void *)plane->volume);
   hl_release(context, (void *)plane->image.file);
   hl_release(context, (void *)plane->image.pixels);
@@ -183,7 +233,14 @@ hl_status hl_plane_copy(hl_context *context, const hl_function_plane *from, hl_f
   to->image.file = NULL;
   to->image.pixels = copy_of(context, image->pixels, (size_t)image->width * (size_t)image->height,
                              4 * sizeof(float));
+  to->curves = from->curves;
+  to->curves.opacity = copy_of(context, from->curves.opacity, from->curves.opacity_count,
+                               sizeof *from->curves.opacity);
+  to->curves.color = copy_of(context, from->curves.color, from->curves.color_count,
+                             sizeof *from->curves.color);
   bool whole = (from->box_count == 0 || to->boxes != NULL) &&
+               (from->curves.opacity_count == 0 || to->curves.opacity != NULL) &&
+               (from->curves.color_count == 0 || to->curves.color != NULL) &&
                (image->pixels == NULL || to->image.pixels != NULL) &&
                copy_text(context, image->file, &to->image.file) &&
                (from->second != HL_SECOND_VOLUME || copy_text(context, from->volume, &to->volume)) &&
@@ -211,7 +268,11 @@ uint64_t hl_plane_mark(const hl_function_plane *plane) {
                             image->low[1],
                             image->high[0],
                             image->high[1]};
+  const hl_function_curves *curves = &plane->curves;
   add_block(&mark, numbers, sizeof numbers);
+  if (curves->opacity_count > 0)
+    add_block(&mark, curves->opacity, curves->opacity_count * sizeof *curves->opacity);
+  if (curves->color_count > 0) add_block(&mark, curves->color, curves->color_count * sizeof *curves->color);
   if (plane->box_count > 0) add_block(&mark, plane->boxes, plane->box_count * sizeof *plane->boxes);
   for (size_t p = 0; p < plane->polygon_count; p++) {
     const hl_function_polygon *polygon = &plane->polygons[p];

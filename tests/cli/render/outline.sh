@@ -27,3 +27,24 @@ for wrong in "ball_16x16x16_uint8.raw --look mip" "ball_16x16x16_uint8.raw --sli
   halflight render $wrong --outline --quiet -o no.png 2>message || code=$?
   echo $code "$(cut -c12-110 message)"
 done
+# The wires do not choose the view: a long field is seen from where it is seen without them.
+"$PYTHON" - <<'END'
+import math
+def value(i, j, k):
+    x, y, z = i - 11.5, j - 11.5, k - 11.5
+    return int(250 * math.exp(-((x / 2 - 0.866 * y) / 8) ** 2 - ((0.866 * x + y / 2) / 2.5) ** 2 - (z / 2.5) ** 2))
+with open("long.nrrd", "wb") as file:
+    file.write(b"NRRD0004\ntype: uint8\ndimension: 3\nsizes: 24 24 24\nencoding: raw\n\n")
+    file.write(bytes(value(i, j, k) for k in range(24) for j in range(24) for i in range(24)))
+END
+halflight render long.nrrd --print-scene >bare.json 2>/dev/null
+halflight render long.nrrd --outline --print-scene >wired.json 2>/dev/null
+"$PYTHON" - <<'END'
+import json
+way = []
+for name in ("bare.json", "wired.json"):
+    camera = json.load(open(name))["camera"]
+    away = [a - b for a, b in zip(camera["position"], camera["target"])]
+    way.append([a / sum(b * b for b in away) ** 0.5 for a in away])
+print(max(abs(a - b) for a, b in zip(*way)) < 1e-9)
+END

@@ -1,0 +1,22 @@
+/* compose/color_by.h - applies the option "color-by": matter in the colours of another volume's values. */
+#ifndef HL_COMPOSE_COLOR_BY_H
+#define HL_COMPOSE_COLOR_BY_H
+
+#include "compose/composer.h"
+
+/* What the option made. The description borrows it. */
+typedef struct hl_coloring {
+  hl_scene_volume *volumes; /* owned; the scene's volumes, of which the last one gives the colours */
+  hl_volume *other;         /* owned */
+  char *file;               /* owned */
+  char name[64];
+  hl_transfer_function colors; /* owned; its colours are those of the other volume's values */
+} hl_coloring;
+
+/* Adds the other volume to the scene, and gives the volumes of values its colours. Does nothing if the option
+ * is not given. *made is released by hl_coloring_release(), also after a failure. */
+hl_status hl_compose_color_by(const hl_composer *composer, hl_scene_description *description,
+                              hl_coloring *made);
+void hl_coloring_release(hl_context *context, hl_coloring *made);
+
+#endif

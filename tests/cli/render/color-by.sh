@@ -1,0 +1,37 @@
+# A volume in the colours of another one: its opacities stay, the other volume is in the scene and is not seen, and the
+# scene and its threads give the same bytes.
+tool ball 16 ball_16x16x16_uint8.raw
+"$PYTHON" - <<'END'
+with open("heat.nrrd", "wb") as file:
+    file.write(b"NRRD0004\ntype: uint8\ndimension: 3\nsizes: 16 16 16\nencoding: raw\n\n")
+    file.write(bytes(10 * i for k in range(16) for j in range(16) for i in range(16)))
+END
+ball() { halflight render ball_16x16x16_uint8.raw --quiet "$@"; }
+ball --print-scene >plain.json
+ball --color-by heat.nrrd --print-scene >whole.json
+ball --color-by heat.nrrd:inferno --print-scene >map.json
+ball --color-by heat.nrrd:inferno:20,90 --print-scene >range.json
+tool json whole.json "[(v['name'], v['visible']) for v in d['volumes'][1:]]"
+for scene in whole map range; do
+  tool json $scene.json "(lambda c: (c[0][0], c[-1][0], [round(x, 3) for x in c[-1][1:]]))(d['volumes'][0]['transfer_function']['curves']['color'])"
+done
+"$PYTHON" - <<'END'
+import json
+function = [json.load(open(name))["volumes"][0]["transfer_function"] for name in ("plain.json", "whole.json")]
+print(function[1]["second"], function[0]["opacity"] == function[1]["curves"]["opacity"], "opacity" in function[1])
+END
+ball --color-by heat.nrrd --size 32 -o direct.npy
+halflight render whole.json --size 32 --zoom 1 --quiet -o again.npy
+ball --color-by heat.nrrd --size 32 --threads 1 -o one.npy
+cmp direct.npy one.npy
+halflight diff direct.npy again.npy --max-rmse 0.01 >/dev/null
+ball --color-by heat.nrrd --size 32 --legend "Heat (K)" -o legend.png
+# The sheets are the reference's to the reference's own noise.
+ball --color-by heat.nrrd --size 12 --sky 0 --shadows off -o sheets.npy
+ball --color-by heat.nrrd --size 12 --sky 0 --shadows off --reference -o exact.npy
+halflight diff exact.npy sheets.npy --max-rmse 0.02 >/dev/null
+for wrong in "no.nrrd" "heat.nrrd:90,20" "heat.nrrd --look mip" "heat.nrrd --iso 90" "heat.nrrd:infernoo"; do
+  code=0
+  ball --color-by $wrong -o no.png 2>message || code=$?
+  echo $code "$(cut -c12-120 message)"
+done
