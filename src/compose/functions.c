@@ -11,6 +11,7 @@
 #include "core/context.h"
 #include "core/file.h"
 #include "core/memory.h"
+#include "guess/analysis.h"
 #include "scene/function/transfer_function.h"
 #include "text/color.h"
 #include "text/edit_distance.h"
@@ -331,9 +332,19 @@ static hl_status copy_item(const hl_composer *composer, const hl_scene_descripti
 
 /* ---- functions ---- */
 
+/* Logs that a preset of CT is fitted to values that are no Hounsfield units, as those of MR. */
+static void tell_of_units(const hl_composer *composer, const char *preset, const hl_volume *volume) {
+  if (strncmp(preset, "ct-", 3) == 0 && !hl_is_hounsfield(volume))
+    hl_log(composer->context, HL_LOG_INFO,
+           "--tf %s is made for CT in Hounsfield units, which this file's values are not: it is fitted to "
+           "their histogram (for MR there is --tf mr-brain)",
+           preset);
+}
+
 static hl_status load_function(const hl_composer *composer, const char *name, const hl_volume *volume,
                                hl_transfer_function *function) {
   const char *preset = find_known(name, preset_name);
+  if (preset != NULL) tell_of_units(composer, preset, volume);
   if (preset != NULL)
     return hl_transfer_function_preset(composer->context, preset, volume, function, composer->error);
   if (strpbrk(name, "./") != NULL || hl_file_kind(composer->context, name) != 0)

@@ -9,7 +9,7 @@ halflight render three.json --quiet --size 32x32 --zoom 1 -o again.npy
 halflight diff direct.npy again.npy --max-rmse 0.1 >/dev/null
 halflight render a_16x16x16_uint8.raw b_16x16x16_uint8.raw --iso a_16x16x16_uint8=90 --print-scene >one.json
 tool json one.json "[len(v.get('iso', [])) for v in d['volumes']]"
-halflight render a_16x16x16_uint8.raw --iso 90 --tf ct-bone --print-scene >both.json
+halflight render a_16x16x16_uint8.raw --iso 90 --tf ct-bone --quiet --print-scene >both.json
 tool json both.json "max(p[1] for p in d['volumes'][0]['transfer_function']['opacity']) > 0"
 for iso in gold 120:goldd 120:gold:2 120:gold:0.5:1 nan c=90; do
   code=0

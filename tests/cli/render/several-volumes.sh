@@ -10,7 +10,7 @@ halflight render b/c.nrrd --print-scene >alone.json
 tool json alone.json "d['volumes'][0]['transfer_function']" >one
 tool json scene.json "d['volumes'][1]['transfer_function']" >other
 cmp one other
-halflight render a_16x16x16_uint8.raw b/c.nrrd --print-scene --tf c=ct-bone --colormap a_16x16x16_uint8=viridis --colormap c=magma >own.json
+halflight render a_16x16x16_uint8.raw b/c.nrrd --quiet --print-scene --tf c=ct-bone --colormap a_16x16x16_uint8=viridis --colormap c=magma >own.json
 tool json own.json "[len(v['transfer_function']['color']) > 9 for v in d['volumes']], d['volumes'][0]['transfer_function']['opacity'] != d['volumes'][1]['transfer_function']['opacity']"
 # Both are in the picture: it is wider than one alone.
 halflight render a_16x16x16_uint8.raw b/c.nrrd --quiet --size 64x32 --azimuth 0 -o both.npy

@@ -4,8 +4,8 @@ scene() { halflight render ball_16x16x16_uint8.raw "$@" --print-scene; }
 scene --look surface --light-rig rim --tone filmic --view iso --background sky --sky 1 >one.json
 scene --look SURFACE --light-rig Rim --tone Filmic --view ISO --background Sky --sky 1 >other.json
 cmp one.json other.json
-scene --tf ct-bone --colormap viridis >one.json
-scene --tf CT-Bone --colormap Viridis >other.json
+scene --quiet --tf ct-bone --colormap viridis >one.json
+scene --quiet --tf CT-Bone --colormap Viridis >other.json
 cmp one.json other.json
 scene --channel all >one.json
 scene --channel ALL >other.json
