@@ -39,6 +39,8 @@ static const struct {
     {"elevation", "pitch phi tilt altitude elev rotate-x inclination"},
     {"roll", "rotate-y bank twist"},
     {"up", "view-up viewup up-vector orientation"},
+    {"up AXIS and --view SIDE, for a body whose file does not tell its directions",
+     "space anatomical-space body-space coordinate-system lps ras"},
     {"view", "viewpoint front side top camera-preset view-direction"},
     {"zoom", "zoom-in zoom-out zoom-factor dolly distance magnification crop-factor"},
     {"fovy", "fov field-of-view view-angle focal-length perspective vfov angle-of-view"},
