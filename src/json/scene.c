@@ -214,13 +214,27 @@ static hl_status read_version(hl_json_reader *reader, const json_t *root) {
                       "version %d is not known: this program reads version 1", version);
 }
 
+/* Refuses files of other kinds, which lack the version that a scene begins with. */
+static hl_status refuse_other_kinds(hl_json_reader *reader, const json_t *root) {
+  static const char *const kinds[][2] = {
+      {"panels", "are those of a figure, and no scene: halflight figure FILE makes its page"},
+      {"opacity", "is that of a transfer function, and no scene: give the file as --tf FILE beside a volume"},
+      {"second", "is that of a transfer function, and no scene: give the file as --tf FILE beside a volume"}};
+  if (json_object_get(root, "halflight") != NULL) return HL_OK;
+  for (size_t n = 0; n < sizeof kinds / sizeof *kinds; n++)
+    if (json_object_get(root, kinds[n][0]) != NULL)
+      return hl_json_fail(reader, HL_ERROR_INPUT, kinds[n][0], "%s", kinds[n][1]);
+  return HL_OK;
+}
+
 static hl_status read_scene(hl_json_reader *reader, const json_t *root, gathered *g) {
   static const char *const others[] = {"halflight", "description", "image",   "camera", "lights",
                                        "sky",       "groups",      "volumes", "meshes", "render",
                                        "cuts",      "marks",       "$schema", NULL};
   hl_scene_description *d = &g->description;
   const char *schema = NULL;
-  hl_status status = hl_json_settings_object(reader, root, HL_SETTINGS_SCENE, -1, others);
+  hl_status status = refuse_other_kinds(reader, root);
+  if (status == HL_OK) status = hl_json_settings_object(reader, root, HL_SETTINGS_SCENE, -1, others);
   if (status == HL_OK) status = read_version(reader, root);
   if (status == HL_OK) status = hl_json_text(reader, root, "$schema", &schema);
   if (status == HL_OK) status = hl_json_text(reader, root, "description", &d->description);
