@@ -12,7 +12,7 @@
 #include "core/memory.h"
 #include "core/vector.h"
 #include "elementary/elementary.h"
-#include "scene/function/transfer_function.h"
+#include "scene/function/points.h"
 
 /* ---- weights ---- */
 
@@ -138,29 +138,22 @@ static void add_image(const hl_transfer_function *function, const double at[2], 
   add(sum, share * extinction_of(pixel[3], function->unit_distance), color);
 }
 
-/* The curves as a function of one number: the value for the opacity, the second number for the colour. */
-static hl_transfer_function function_of(const hl_function_curves *curves) {
-  return (hl_transfer_function){.opacity = curves->opacity,
-                                .opacity_count = curves->opacity_count,
-                                .color = curves->color,
-                                .color_count = curves->color_count};
-}
-
 /* Adds the mean extinction over the values of a part of the plane, in the mean colour over its second
  * numbers. */
 static void add_curves(const hl_transfer_function *function, const plane_box *part, int samples,
                        plane_sum *sum) {
-  const hl_transfer_function curves = function_of(&function->plane.curves);
+  const hl_function_curves *curves = &function->plane.curves;
   double extinction = 0, color[3] = {0, 0, 0};
-  if (curves.opacity_count == 0) return;
+  if (curves->opacity_count == 0 || isnan(part->low[0])) return;
   for (int n = 0; n < samples; n++) {
     const double along = (n + 0.5) / samples;
-    double at[3];
-    const double value = part->low[0] + (part->high[0] - part->low[0]) * along;
-    hl_transfer_function_color(&curves, part->low[1] + (part->high[1] - part->low[1]) * along, at);
-    extinction += extinction_of(hl_transfer_function_opacity(&curves, value), function->unit_distance) /
-                  samples;
-    for (int c = 0; c < 3; c++) color[c] += at[c] / samples;
+    double at[2], one[3];
+    for (int axis = 0; axis < 2; axis++)
+      at[axis] = part->low[axis] + (part->high[axis] - part->low[axis]) * along;
+    const double opacity = hl_points_opacity(curves->opacity, curves->opacity_count, at[0]);
+    extinction += extinction_of(opacity, function->unit_distance) / samples;
+    hl_points_color(curves->color, curves->color_count, at[1], one);
+    for (int c = 0; c < 3; c++) color[c] += one[c] / samples;
   }
   add(sum, extinction, color);
 }
@@ -253,14 +246,13 @@ static void note_image(const hl_function_image *image, double from, double to, c
 
 /* Notes the greatest opacity of the curves from `from` to `to`, in the mean of all colours. */
 static void note_curves(const hl_function_curves *curves, double from, double to, column *column) {
-  const hl_transfer_function function = function_of(curves);
   double greatest = 0, color[3] = {1, 1, 1};
   if (curves->opacity_count == 0) return;
   for (size_t n = 0; n < curves->opacity_count; n++)
     if (curves->opacity[n].value > from && curves->opacity[n].value < to)
       greatest = fmax(greatest, curves->opacity[n].opacity);
   for (int end = 0; end < 2; end++)
-    greatest = fmax(greatest, hl_transfer_function_opacity(&function, end ? to : from));
+    greatest = fmax(greatest, hl_points_opacity(curves->opacity, curves->opacity_count, end ? to : from));
   for (size_t n = 0; n < curves->color_count; n++)
     for (int c = 0; c < 3; c++) color[c] += ((double)curves->color[n].color[c] - color[c]) / (double)(n + 1);
   if (greatest > 0) note(column, greatest, color);

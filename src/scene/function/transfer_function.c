@@ -1,42 +1,17 @@
-/* scene/function/transfer_function.c - evaluates a transfer function at a value and over a range of values.
- *
- * The function is piecewise linear in data values, and constant beyond the end points. Two points at one
- * value make a step. At this value itself, the function has the opacity or colour of the second point. */
+/* scene/function/transfer_function.c - evaluates a transfer function at a value and over a range of values,
+ * as points.h evaluates its points. */
 #include "scene/function/transfer_function.h"
 #include <math.h>
 #include <string.h>
 #include "core/door.h"
 #include "core/memory.h"
 #include "scene/function/function_plane.h"
+#include "scene/function/points.h"
 #include "text/edit_distance.h"
-
-/* The number of a function's points whose value is at most `value`. Points begin with their value, and are
- * `stride` bytes apart. */
-static size_t count_not_above(const void *points, size_t count, size_t stride, double value) {
-  size_t low = 0, high = count;
-  while (low < high) {
-    size_t middle = low + (high - low) / 2;
-    double at;
-    memcpy(&at, (const char *)points + middle * stride, sizeof at);
-    if (at <= value) low = middle + 1;
-    else high = middle;
-  }
-  return low;
-}
-
-/* The opacity at a value, linear between points. There must be at least one point. */
-static double opacity_between(const hl_opacity_point *points, size_t count, double value) {
-  size_t after = count_not_above(points, count, sizeof *points, value);
-  if (after == 0) return points[0].opacity;
-  if (after == count) return points[after - 1].opacity;
-  const hl_opacity_point *a = &points[after - 1], *b = &points[after];
-  double t = (value - a->value) / (b->value - a->value);
-  return a->opacity + t * (b->opacity - a->opacity);
-}
 
 double hl_transfer_function_opacity(const hl_transfer_function *function, double value) {
   if (function->opacity_count == 0 || isnan(value)) return 0;
-  return opacity_between(function->opacity, function->opacity_count, value);
+  return hl_points_opacity(function->opacity, function->opacity_count, value);
 }
 
 /* Derived: the difference of two opacities is linear in both values, as long as both stay between the same
@@ -58,25 +33,11 @@ double hl_transfer_function_opacity_change(const hl_transfer_function *function,
 
 double hl_transfer_function_gradient_opacity(const hl_transfer_function *function, double gradient) {
   if (function->gradient_opacity_count == 0) return 1;
-  return opacity_between(function->gradient_opacity, function->gradient_opacity_count, gradient);
+  return hl_points_opacity(function->gradient_opacity, function->gradient_opacity_count, gradient);
 }
 
 void hl_transfer_function_color(const hl_transfer_function *function, double value, double color[3]) {
-  const hl_color_point *points = function->color;
-  size_t count = function->color_count;
-  if (count == 0) {
-    color[0] = color[1] = color[2] = 1;
-    return;
-  }
-  size_t after = isnan(value) ? 0 : count_not_above(points, count, sizeof *points, value);
-  if (after == 0 || after == count) {
-    memcpy(color, points[after == 0 ? 0 : count - 1].color, 3 * sizeof *color);
-    return;
-  }
-  const hl_color_point *a = &points[after - 1], *b = &points[after];
-  double t = (value - a->value) / (b->value - a->value);
-  for (int channel = 0; channel < 3; channel++)
-    color[channel] = a->color[channel] + t * (b->color[channel] - a->color[channel]);
+  hl_points_color(function->color, function->color_count, value, color);
 }
 
 int hl_transfer_function_visible(const hl_transfer_function *function, double low, double high) {
@@ -86,7 +47,7 @@ int hl_transfer_function_visible(const hl_transfer_function *function, double lo
     return 1;
   /* both ends of the range are transparent, and the function is linear between points. So only points between
    * the ends need to be tested; both points of a step are tested */
-  for (size_t p = count_not_above(points, function->opacity_count, sizeof *points, low);
+  for (size_t p = hl_points_not_above(points, function->opacity_count, sizeof *points, low);
        p < function->opacity_count && points[p].value <= high; p++)
     if (points[p].opacity > 0) return 1;
   return 0;
@@ -98,7 +59,8 @@ int hl_transfer_function_visible(const hl_transfer_function *function, double lo
 bool hl_transfer_function_transparent(const hl_transfer_function *function, double low, double high,
                                       double target, double *nearest) {
   double candidates[3] = {target, low, high}, best = INFINITY;
-  size_t first = count_not_above(function->opacity, function->opacity_count, sizeof *function->opacity, low);
+  size_t first = hl_points_not_above(function->opacity, function->opacity_count, sizeof *function->opacity,
+                                     low);
   for (size_t c = 0; c < 3 + 2 * (function->opacity_count - first); c++) {
     double value = c < 3 ? candidates[c] : function->opacity[first + (c - 3) / 2].value;
     if (c >= 3 && c % 2 == 0) value = nextafter(value, -INFINITY);
