@@ -153,7 +153,9 @@ LANES_INLINE float factor_of_length(const classifier *classifier, float length) 
   return factors[0] + (factors[1] - factors[0]) * (entry - (float)(int32_t)entry);
 }
 
-/* Returns whether the transfer function may show something in the grid's cell around a position. */
+/* Returns whether the transfer function may show something in the grid's cell around a position. The values
+ * here are interpolated linearly between voxels, and may show noise that the kernel smooths. The bits follow
+ * from the kernel, so that such noise absorbs no light where nothing is drawn. */
 LANES_INLINE int cell_shows(const grid *grid, const float at[3]) {
   int32_t cell[3], brick[3];
   if (grid->cell_bits == NULL) return 1;

@@ -152,19 +152,18 @@ static void lay_out_columns(brick_job *job, int threads, hl_layout *layout) {
   job->copies = hl_layout_take(layout, (size_t)threads * WINDOW * WINDOW, job->copy_bytes);
 }
 
-/* Bounds the layers of bricks. If several ranks share the volume, each rank bounds a part of the layers. */
-static void bound_layers_of_bricks(hl_pool *pool, brick_job *job) {
-  const grid *grid = job->grid;
-  size_t layers = (size_t)grid->brick_count[2];
-  size_t layer_bytes = hl_grid_bricks(grid) / layers * 2 * hl_storage_bytes(grid->storage);
+void hl_bricks_run(hl_pool *pool, const grid *grid, void (*function)(void *data, size_t index, int worker),
+                   void *data, size_t *first, void *stored, size_t layer_bytes) {
+  const size_t layers = (size_t)grid->brick_count[2];
+  *first = 0;
   if (grid->pages == NULL || grid->pages->blocks == NULL) {
-    hl_pool_run(pool, layers, bound_layer_of_bricks, job);
+    hl_pool_run(pool, layers, function, data);
     return;
   }
   hl_ranks *ranks = hl_blocks_ranks(grid->pages->blocks);
-  job->first = hl_ranks_part(ranks, layers, ranks->rank);
-  hl_pool_run(pool, hl_ranks_part(ranks, layers, ranks->rank + 1) - job->first, bound_layer_of_bricks, job);
-  hl_ranks_complete(ranks, grid->brick_bounds, layers, layer_bytes);
+  *first = hl_ranks_part(ranks, layers, ranks->rank);
+  hl_pool_run(pool, hl_ranks_part(ranks, layers, ranks->rank + 1) - *first, function, data);
+  hl_ranks_complete(ranks, stored, layers, layer_bytes);
 }
 
 hl_status hl_bricks_bound(hl_context *context, hl_pool *pool, const grid_functions *functions, grid *grid,
@@ -179,7 +178,9 @@ hl_status hl_bricks_bound(hl_context *context, hl_pool *pool, const grid_functio
   hl_layout layout = {0};
   while (hl_layout_pass(&layout, context)) lay_out_columns(&job, hl_pool_threads(pool), &layout);
   if (layout.base == NULL) return hl_fail_memory(error, layout.bytes, "the bricks of a volume");
-  bound_layers_of_bricks(pool, &job);
+  const size_t layer_bricks = (size_t)grid->brick_count[0] * (size_t)grid->brick_count[1];
+  hl_bricks_run(pool, grid, bound_layer_of_bricks, &job, &job.first, grid->brick_bounds,
+                layer_bricks * 2 * hl_storage_bytes(grid->storage));
   if (grid->pages != NULL) hl_pages_forget(grid->pages);
   hl_release(context, job.columns);
   return HL_OK;

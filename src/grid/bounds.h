@@ -22,6 +22,12 @@ void hl_bricks_lay_out(grid *grid, hl_layout *layout);
 /* Fills the grid's brick_bounds, and clears `relevant`. */
 hl_status hl_bricks_bound(hl_context *context, hl_pool *pool, const grid_functions *functions, grid *grid,
                           hl_error *error);
+/* Calls a function for layers of bricks. If several ranks hold the voxels, each rank makes the calls of a
+ * part of the layers, and gets what the other ranks have stored. function: as for hl_pool_run(); the index is
+ * that of a layer less *first. first: belongs to `data`; receives the first layer of this rank's part.
+ * stored: [layers][layer_bytes], which the calls fill. */
+void hl_bricks_run(hl_pool *pool, const grid *grid, void (*function)(void *data, size_t index, int worker),
+                   void *data, size_t *first, void *stored, size_t layer_bytes);
 /* The least and greatest stored value of a brick. */
 void hl_bounds_of_brick(const grid *grid, size_t brick, float bounds[2]);
 

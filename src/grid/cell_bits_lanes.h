@@ -35,8 +35,8 @@ LANES_INLINE lanes bits_two_rows(hl_storage storage, const unsigned char *const 
   return both;
 }
 
-/* Loads eight voxels of each of two rows that reach beyond the grid's faces. Beyond the faces, the values at
- * the border continue. */
+/* Loads eight voxels of each of two rows that reach beyond the grid's faces, or lie in pages. Beyond the
+ * faces, the values at the border continue. */
 LANES_INLINE lanes bits_two_held_rows(const grid *grid, int32_t x, int32_t y, int32_t z) {
   float both[LANES];
   for (int i = 0; i < LANES; i++) both[i] = hl_stored_value(grid, x + i % BITS_ROW, y + i / BITS_ROW, z);
@@ -85,7 +85,7 @@ LANES_INLINE void bits_along_z(const grid *grid, hl_storage storage, const int32
   size_t bytes = hl_storage_bytes(storage);
   int32_t x = brick[0] * HL_BRICK_CELLS - 2, y = brick[1] * HL_BRICK_CELLS - 2,
           z = brick[2] * HL_BRICK_CELLS - 2;
-  int within = x >= 0 && x + BITS_ROW <= count[0];
+  int within = grid->voxels != NULL && x >= 0 && x + BITS_ROW <= count[0];
   const unsigned char *voxels = (const unsigned char *)grid->voxels + (within ? (size_t)x * bytes : 0);
   for (int pair = 0; pair < BITS_ROWS / 2; pair++) {
     lanes v[CELL_BIT_TAPS], greatest[HL_BRICK_CELLS];

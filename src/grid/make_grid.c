@@ -163,7 +163,7 @@ static void lay_out(grid *grid, const hl_volume *volume, const kernel *kernel,
   if (volume->bricks != NULL && !hl_bricks_are_finite(volume->bricks))
     lay_out_bricks(volume->bricks, grid, layout);
   hl_bricks_lay_out(grid, layout);
-  if (one_array && kernel->degree == HL_BSPLINE_DEGREE) hl_cell_bits_lay_out(grid, layout);
+  if (grid->bricks == NULL && kernel->degree == HL_BSPLINE_DEGREE) hl_cell_bits_lay_out(grid, layout);
   hl_cells_lay_out(grid, layout);
 }
 

@@ -289,6 +289,7 @@ typedef struct bits_job {
   grid *grid;
   brick_bits_function *brick_bits;
   float sign, threshold; /* a value is visible where sign * stored value > threshold */
+  size_t first;          /* see hl_bricks_run() */
   /* number of visible bricks, and number of the cells of these bricks that may show something; changed
    * atomically */
   uint64_t bricks, set_bits;
@@ -325,20 +326,29 @@ static uint64_t find_bits(const bits_job *job, size_t at, const int32_t brick[3]
   return low > job->threshold ? UINT64_MAX : job->brick_bits(grid, brick, job->sign, job->threshold);
 }
 
-static void find_layer_bits(void *data, size_t layer, int worker) {
+static void find_layer_bits(void *data, size_t index, int worker) {
+  (void)worker;
+  const bits_job *job = data;
+  const grid *grid = job->grid;
+  const size_t layer = job->first + index;
+  size_t at = layer * (size_t)grid->brick_count[1] * (size_t)grid->brick_count[0];
+  for (int32_t y = 0; y < grid->brick_count[1]; y++)
+    for (int32_t x = 0; x < grid->brick_count[0]; x++, at++)
+      grid->cell_bits[at] = find_bits(job, at, (const int32_t[3]){x, y, (int32_t)layer});
+}
+
+static void count_layer_bits(void *data, size_t layer, int worker) {
   (void)worker;
   bits_job *job = data;
   const grid *grid = job->grid;
-  size_t at = layer * (size_t)grid->brick_count[1] * (size_t)grid->brick_count[0];
+  const size_t bricks_of_layer = (size_t)grid->brick_count[1] * (size_t)grid->brick_count[0],
+               end = (layer + 1) * bricks_of_layer;
   uint64_t bricks = 0, set_bits = 0;
-  for (int32_t y = 0; y < grid->brick_count[1]; y++)
-    for (int32_t x = 0; x < grid->brick_count[0]; x++, at++) {
-      uint64_t bits = find_bits(job, at, (const int32_t[3]){x, y, (int32_t)layer});
-      grid->cell_bits[at] = bits;
-      if (!grid->relevant[at] || !has_visible_cell(grid, at)) continue;
-      bricks++;
-      set_bits += (uint64_t)__builtin_popcountll(bits);
-    }
+  for (size_t at = layer * bricks_of_layer; at < end; at++) {
+    if (!grid->relevant[at] || !has_visible_cell(grid, at)) continue;
+    bricks++;
+    set_bits += (uint64_t)__builtin_popcountll(grid->cell_bits[at]);
+  }
   __atomic_fetch_add(&job->bricks, bricks, __ATOMIC_RELAXED);
   __atomic_fetch_add(&job->set_bits, set_bits, __ATOMIC_RELAXED);
 }
@@ -346,9 +356,15 @@ static void find_layer_bits(void *data, size_t layer, int worker) {
 static void find_cell_bits(grid *grid, const classifier *classifier, brick_bits_function *brick_bits,
                            hl_pool *pool) {
   bits_job job = {.grid = grid, .brick_bits = brick_bits};
+  const size_t layers = (size_t)grid->brick_count[2], bytes = hl_grid_bricks(grid) * sizeof *grid->cell_bits;
   grid->cell_bits_tell = grid->cell_bits != NULL && find_threshold(grid, classifier, &job);
-  if (!grid->cell_bits_tell) return;
-  hl_pool_run(pool, (size_t)grid->brick_count[2], find_layer_bits, &job);
+  if (!grid->cell_bits_tell) {
+    if (grid->cell_bits != NULL) memset(grid->cell_bits, 0xff, bytes); /* every cell may show something */
+    return;
+  }
+  hl_bricks_run(pool, grid, find_layer_bits, &job, &job.first, grid->cell_bits, bytes / layers);
+  if (grid->pages != NULL) hl_pages_forget(grid->pages);
+  hl_pool_run(pool, layers, count_layer_bits, &job);
   double cells = 64 * (double)job.bricks;
   grid->cell_bits_tell = cells - (double)job.set_bits >= LEAST_LEFT_OUT * cells;
 }

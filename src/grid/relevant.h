@@ -44,7 +44,8 @@ enum {
   CELL_BIT_TAPS = HL_BRICK_CELLS + 3 /* voxels along an axis on which a brick's cells depend: 4b-2 .. 4b+4 */
 };
 
-/* Lays out the grid's array cell_bits. Large volumes get no such array. */
+/* Lays out the grid's array cell_bits. Large volumes get no such array. Whether the voxels lie in memory or
+ * in pages makes no difference: the light of a sky depends on the bits (field/opacity_lanes.h). */
 void hl_cell_bits_lay_out(grid *grid, hl_layout *layout);
 
 #endif

@@ -109,7 +109,7 @@ static void test_all_equal(void **state) {
 
 /* ---- huge and tiny values ---- */
 
-static void render_scaled(double by, hl_shading shading, float *pixels) {
+static void render_scaled(double by, hl_shading shading, hl_sky_type sky, float *pixels) {
   static float voxels[VOXELS];
   static hl_opacity_point opacity[3];
   static hl_color_point color[2];
@@ -127,6 +127,8 @@ static void render_scaled(double by, hl_shading shading, float *pixels) {
   volume->transfer_function.color = color;
   volume->transfer_function.color_count = 2;
   volume->shading = shading;
+  set.scene.sky.type = sky;
+  for (int c = 0; c < 3; c++) set.scene.sky.color[c] = 1;
   stage_render_sheets(&set, pixels);
   stage_close(&set);
 }
@@ -138,16 +140,31 @@ static void test_units_of_data(void **state) {
   static float expected[FLOATS], pixels[FLOATS];
   static const int exponents[] = {90, 40, -40, -90, -105};
   for (int shading = 0; shading < 2; shading++) {
-    render_scaled(1, (hl_shading)shading, expected);
+    render_scaled(1, (hl_shading)shading, HL_SKY_NONE, expected);
     for (size_t e = 0; e < sizeof exponents / sizeof *exponents; e++) {
-      render_scaled(ldexp(1, exponents[e]), (hl_shading)shading, pixels);
+      render_scaled(ldexp(1, exponents[e]), (hl_shading)shading, HL_SKY_NONE, pixels);
       for (int i = 0; i < FLOATS; i++)
         if (pixels[i] != expected[i])
           fail_msg("data of 2^%d: %.9g instead of %.9g", exponents[e], (double)pixels[i],
                    (double)expected[i]);
     }
-    render_scaled(ldexp(1, -135), (hl_shading)shading, pixels);
+    render_scaled(ldexp(1, -135), (hl_shading)shading, HL_SKY_NONE, pixels);
     for (int i = 0; i < FLOATS; i++) assert_true(isfinite(pixels[i]) && pixels[i] >= 0);
+  }
+}
+
+/* Data below 1e-30 have no bits of cells, so that voxels that the kernel smooths away may shade the sky. */
+static void test_units_of_data_under_a_sky(void **state) {
+  (void)state;
+  static float expected[FLOATS], pixels[FLOATS];
+  static const int exponents[] = {90, -90, -105};
+  render_scaled(1, HL_SHADING_NONE, HL_SKY_UNIFORM, expected);
+  for (size_t e = 0; e < sizeof exponents / sizeof *exponents; e++) {
+    render_scaled(ldexp(1, exponents[e]), HL_SHADING_NONE, HL_SKY_UNIFORM, pixels);
+    for (int i = 0; i < FLOATS; i++)
+      if (!(fabsf(pixels[i] - expected[i]) <= (exponents[e] > -100 ? 0 : 1e-3f)))
+        fail_msg("data of 2^%d under a sky: %.9g instead of %.9g", exponents[e], (double)pixels[i],
+                 (double)expected[i]);
   }
 }
 
@@ -332,6 +349,7 @@ int main(void) {
       cmocka_unit_test(test_nothing_finite),
       cmocka_unit_test(test_all_equal),
       cmocka_unit_test(test_units_of_data),
+      cmocka_unit_test(test_units_of_data_under_a_sky),
       cmocka_unit_test(test_extremes_among_data),
       cmocka_unit_test(test_types_agree),
       cmocka_unit_test(test_one_voxel_thick),

@@ -169,6 +169,14 @@ static void draw_sky(stage *set) {
   set->scene.sky.type = HL_SKY_UNIFORM;
   for (int c = 0; c < 3; c++) set->scene.sky.color[c] = 0.7;
 }
+/* Cells in which single voxels are visible, and the values that the kernel draws of them are not. */
+static void draw_noise_under_a_sky(stage *set) {
+  static const hl_opacity_point opacity[] = {{0.6, 0}, {0.9, 0.9}};
+  set->scene.sky.type = HL_SKY_UNIFORM;
+  for (int c = 0; c < 3; c++) set->scene.sky.color[c] = 0.7;
+  set->volumes[0].transfer_function.opacity = opacity;
+  set->volumes[0].transfer_function.opacity_count = 2;
+}
 static void draw_scattering(stage *set) {
   draw_gradient_opacity(set);
   set->volumes[0].shading = HL_SHADING_NONE;
@@ -193,6 +201,7 @@ static const way ways[] = {{"hard, splat", draw_hard_splat},
                            {"maximum", draw_maximum},
                            {"gradient opacity", draw_gradient_opacity},
                            {"sky", draw_sky},
+                           {"sky over noise", draw_noise_under_a_sky},
                            {"scattering", draw_scattering},
                            {"clipped", draw_clipped},
                            {"isosurface", draw_isosurface},
