@@ -22,7 +22,7 @@ halflight render ball_176x176x176_uint8.raw $frame -o raw.npy
 cmp raw.npy shared.npy
 awk '$1 > 3200000 { print FILENAME ": " $1 " bytes" }' read.0 read.1 read.2 read.3
 for ranks in 1 3 7; do
-  runs $ranks "$HALFLIGHT" render scene.json --quiet --volume-over-ranks --max-memory 13M -o shared.npy
+  runs $ranks "$HALFLIGHT" render scene.json --quiet --volume-over-ranks --max-memory 14M -o shared.npy
   cmp whole.npy shared.npy && rm shared.npy
 done
 halflight render scene.json --quiet --sky skyblue:orange -o sky.npy
