@@ -285,7 +285,7 @@ static hl_status add_first(channel_scenes *made, const char *list, size_t *lengt
 /* Makes the scenes of the channels that a list names. */
 static hl_status add_listed(channel_scenes *made, const char *list, hl_error *error) {
   for (;;) {
-    size_t length;
+    size_t length = 0;
     if (made->count == HL_CHANNELS_MOST)
       return hl_fail(error, HL_ERROR_ARGUMENT, "hl_scene_for_channels: give %d channels at most",
                      HL_CHANNELS_MOST);
