@@ -387,11 +387,10 @@ HL_API double hl_scene_joined_spacing(const hl_scene_description *description, c
 /* Makes a scene of several channels of a file, such as a microscope's. Each channel is a volume with the look
  * that hl_scene_for_volume_look() gives it, in the colour of hl_scene_channel_color(). The volume's name is
  * the channel's name in the file, or else "channel0" and so on. path, options: as for hl_volume_load_with();
- * options may be null, which stands for the defaults; options->channel and
- * options->channel_name are not used, and options->bytes is read once for each channel. channels: numbers,
- * from 0, and names of channels, separated by commas (hl_volume_load_options.channel_name); a name may hold
- * commas of its own, and the longest name that fits counts. "all" or null stands for
- * all channels of the file. A scene has at most HL_CHANNELS_MOST channels. */
+ * options may be null, which stands for the defaults; options->channel and options->channel_name are not
+ * used, and options->bytes is read once for each channel. channels: numbers, from 0, and names of channels,
+ * separated by commas (hl_volume_load_options.channel_name); a name may hold commas of its own, and the
+ * longest name that fits counts. "all" or null stands for all channels. At most HL_CHANNELS_MOST. */
 enum { HL_CHANNELS_MOST = 16 };
 HL_API HL_WARN_UNUSED hl_status hl_scene_for_channels(hl_context *context, const char *path,
                                                       const hl_volume_load_options *options,

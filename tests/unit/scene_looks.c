@@ -1,5 +1,4 @@
-/* tests/unit/scene_looks.c - what volumes are taken for, and how they are then shown: colours and
- * labels. */
+/* tests/unit/scene_looks.c - what volumes are taken for, and how they are then shown. */
 #include "guess/looks.h"
 #include "image/srgb.h"
 #include "looks_volumes.h"
@@ -24,11 +23,6 @@ static double twigs(int i, int j, int k) { /* a few thin rods in noisy air */
   return (rod ? 150 : 8) + 12 * noise(i, j, k);
 }
 
-static double regions(int i, int j, int k) {
-  if (distance(i, j, k, 24, 24, 24) > 20) return 0;
-  return i < 20 ? 3 : j < 25 ? 17 : k < 24 ? 42 : 1001;
-}
-
 static double mask(int i, int j, int k) { return distance(i, j, k, 24, 24, 24) < 15; }
 static double whole_noise(int i, int j, int k) { return floor(40 * (noise(i, j, k) + 0.5)); }
 /* Waves of many directions that fill the grid, about a mean. */
@@ -46,29 +40,11 @@ static double orbital(int i, int j, int k) { /* saturated lobes on nothing */
   return fabs(lobe) < 0.05 ? 0 : fmax(-1, fmin(1, lobe));
 }
 
-/* ---- angiograms: noisy tissue in air, in which something is much brighter ---- */
-
-static double tissue(int i, int j, int k, double share) { /* share: of what is bright in the voxel, 0..1 */
-  if (distance(i, j, k, 24, 24, 24) > 23) return 8 + 6 * noise(i, j, k);
-  return 100 + 280 * fmin(fmax(share, 0), 1) + 40 * noise(i, j, k) + 40 * noise(k, i, j);
-}
-
-/* Three winding vessels from one side to the other. */
-static double angiogram(int i, int j, int k) {
-  double first = hypot(i - 24 - 6 * sin(0.2 * k), j - 15 - 5 * cos(0.15 * k)),
-         second = hypot(j - 30 - 5 * sin(0.17 * i), k - 24 - 6 * cos(0.21 * i)),
-         third = hypot(i - 12 - 0.5 * j, k - 10 - 4 * sin(0.2 * j));
-  return tissue(i, j, k, 2.2 - fmin(first, fmin(second, third)));
-}
-/* An oblique membrane in one half, and beads, that are as bright. */
+/* An oblique membrane in one half of tissue, as bright as vessels. */
 static double membrane(int i, int j, int k) {
   double from = fabs(k - 24 - 0.3 * i + 0.2 * j);
   return tissue(i, j, k, i < 24 ? 1.2 - from : 0);
 }
-static double beads(int i, int j, int k) {
-  return tissue(i, j, k, 3.5 - distance(i % 16, j % 16, k % 16, 8, 8, 8));
-}
-
 /* A flame's temperature, which is highest in a shell; and the same as a scanner would measure it. */
 static double flame(int i, int j, int k) {
   double sway = 3 * sin(0.3 * k), wide = 5 + 0.12 * k, r = hypot(i - 24 - sway, j - 24 + 0.5 * sway) / wide,
@@ -294,14 +270,6 @@ static double level_of(const hl_transfer_function *function, double value) {
   return 255 * hl_srgb_encode_number(0.2126 * color[0] + 0.7152 * color[1] + 0.0722 * color[2]);
 }
 
-/* A head as in MR weighted by T1: grey matter of about 60, white matter of about 90, and bright fat around
- * them, all noisy. */
-static double head_in_mr(int i, int j, int k) {
-  double r = distance(i, j, k, 24, 24, 24), grey = 60 / (1 + exp((r - 20) / 0.5)),
-         white = 30 / (1 + exp((r - 12) / 0.5)), fat = 60 * exp(-pow((r - 18) / 0.8, 2));
-  return grey + white + fat + (4 + 16 * (r < 20)) * noise(i, j, k);
-}
-
 /* The difference in brightness between two values, in the look that suits the volume. */
 static double contrast(hl_context *context, double (*each)(int, int, int), const char *file, double dark,
                        double light) {
@@ -408,32 +376,6 @@ static void skin_is_for_bodies(void **state) {
   hl_context_destroy(context);
 }
 
-/* Every label has a colour of its own up to half way to the next; only close to its number there is
- * matter. */
-static void labels_have_colors_of_their_own(void **state) {
-  (void)state;
-  static const double labels[] = {3, 17, 42, 1001};
-  hl_context *context = make_context();
-  hl_transfer_function f;
-  fill(regions);
-  hl_volume *volume = make_volume(context, N, values);
-  assert_int_equal(hl_transfer_function_automatic(context, volume, &f, NULL), HL_OK);
-  for (int n = 0; n < 4; n++) {
-    double before = n > 0 ? labels[n - 1] : 0, here[3], near[3], other[3];
-    assert_true(hl_transfer_function_opacity(&f, labels[n]) > 0.9);
-    assert_true(hl_transfer_function_opacity(&f, 0.5 * (before + labels[n])) == 0);
-    hl_transfer_function_color(&f, labels[n], here);
-    hl_transfer_function_color(&f, labels[n] - 0.49 * (labels[n] - before), near);
-    assert_memory_equal(here, near, sizeof here);
-    hl_transfer_function_color(&f, before, other);
-    if (n > 0)
-      assert_true(fabs(here[0] - other[0]) + fabs(here[1] - other[1]) + fabs(here[2] - other[2]) > 0.3);
-  }
-  hl_transfer_function_release(context, &f);
-  hl_volume_release(volume);
-  hl_context_destroy(context);
-}
-
 /* A flow's common values are clear, its extremes are not; where all values are equally common, all are
  * visible. */
 static void flows_show_their_extremes(void **state) {
@@ -457,123 +399,6 @@ static void flows_show_their_extremes(void **state) {
   }
   hl_transfer_function_release(context, &f);
   hl_volume_release(volume);
-  hl_context_destroy(context);
-}
-
-/* Three materials in air: each has a colour of its own, and so have the materials of a scan with noise. */
-static double three(int i, int j, int k) {
-  if (distance(i, j, k, 24, 24, 24) > 20) return 10 + 4 * noise(i, j, k);
-  return (i < 20 ? 60 : i < 30 ? 120 : 200) + 8 * noise(i, j, k);
-}
-
-static void materials_have_colors_of_their_own(void **state) {
-  (void)state;
-  static const double at[3] = {60, 120, 200};
-  hl_context *context = make_context();
-  fill(three);
-  for (int w = 0; w < COUNT; w++) values[w] = roundf(values[w]);
-  hl_volume *volume = make_volume(context, N, values);
-  hl_transfer_function f;
-  double color[3][3];
-  assert_int_equal(hl_transfer_function_automatic(context, volume, &f, NULL), HL_OK);
-  for (int m = 0; m < 3; m++) hl_transfer_function_color(&f, at[m], color[m]);
-  for (int m = 0; m < 3; m++) {
-    const double *a = color[m], *b = color[(m + 1) % 3];
-    assert_true(fabs(a[0] - b[0]) + fabs(a[1] - b[1]) + fabs(a[2] - b[2]) > 0.15);
-  }
-  hl_transfer_function_release(context, &f);
-  hl_volume_release(volume);
-  assert_int_equal(hl_context_memory_held(context), 0);
-  hl_context_destroy(context);
-}
-
-/* A block of one material, whose faces lie along the axes and are blurred over two voxels: their values make
- * two peaks of the histogram. */
-static double block(int i, int j, int k) {
-  const int at[3] = {i, j, k};
-  double part = 1;
-  for (int a = 0; a < 3; a++) {
-    const int depth = at[a] - 6 < 41 - at[a] ? at[a] - 6 : 41 - at[a];
-    part *= depth < 0 ? 0 : depth == 0 ? 0.25 : depth == 1 ? 0.7 : 1;
-  }
-  return 10 + 200 * part + 2 * noise(i, j, k);
-}
-
-/* The head has one material, also if its values are rounded to so few levels that the histogram has gaps. */
-static double rounded_head(int i, int j, int k) { return 4 * floor(head_in_mr(i, j, k) / 4); }
-
-static void levels_are_no_materials(void **state) {
-  (void)state;
-  hl_context *context = make_context();
-  for (int rounded = 0; rounded < 2; rounded++) {
-    hl_data_analysis analysis;
-    fill(rounded ? rounded_head : head_in_mr);
-    hl_volume *volume = make_volume(context, N, values);
-    assert_int_equal(hl_data_analyse(volume, &analysis, NULL), HL_OK);
-    assert_int_equal(analysis.kind, HL_DATA_SURFACES);
-    assert_int_equal(analysis.material_count, 1);
-    hl_volume_release(volume);
-  }
-  hl_context_destroy(context);
-}
-
-/* Matter that is several times as bright as the rest is steel, which is seen within the rest. */
-static void metal_is_seen_within_matter(void **state) {
-  (void)state;
-  hl_context *context = make_context();
-  hl_transfer_function f;
-  double flesh[3], steel[3];
-  fill(beads);
-  hl_volume *volume = make_volume(context, N, values);
-  assert_int_equal(hl_transfer_function_automatic(context, volume, &f, NULL), HL_OK);
-  hl_transfer_function_color(&f, 100, flesh);
-  hl_transfer_function_color(&f, 380, steel);
-  assert_true(flesh[0] > 2 * flesh[2] && steel[2] > steel[0]);
-  const double opacity = hl_transfer_function_opacity(&f, 100);
-  assert_true(opacity > 0.1 && opacity < 0.4 && hl_transfer_function_opacity(&f, 380) > 0.85);
-  hl_transfer_function_release(context, &f);
-  hl_shading shading;
-  assert_int_equal(hl_transfer_function_look(context, "vessels", volume, &f, &shading, NULL), HL_OK);
-  assert_true(hl_transfer_function_opacity(&f, 150) > 0.5); /* vessels are not the metal alone */
-  hl_transfer_function_release(context, &f);
-  hl_volume_release(volume);
-  assert_int_equal(hl_context_memory_held(context), 0);
-  hl_context_destroy(context);
-}
-
-/* A bare volume is lit by a warm lamp, and by a cool sky. */
-static void light_is_warm_and_shade_is_cool(void **state) {
-  (void)state;
-  hl_context *context = make_context();
-  hl_scene *scene = NULL;
-  fill(head_in_mr);
-  hl_volume *volume = make_volume(context, N, values);
-  assert_int_equal(hl_scene_for_volume(context, volume, NULL, &scene, NULL), HL_OK);
-  const hl_scene_description *d = hl_scene_describe(scene);
-  assert_true(d->lights[0].color[0] > d->lights[0].color[2]);
-  assert_true(d->sky.zenith[0] < d->sky.zenith[2] && d->sky.horizon[0] < d->sky.horizon[2]);
-  hl_scene_release(scene);
-  hl_volume_release(volume);
-  assert_int_equal(hl_context_memory_held(context), 0);
-  hl_context_destroy(context);
-}
-
-static void boundaries_are_no_materials(void **state) {
-  (void)state;
-  hl_context *context = make_context();
-  fill(block);
-  hl_volume *volume = make_volume(context, N, values);
-  hl_data_analysis analysis;
-  assert_int_equal(hl_data_analyse(volume, &analysis, NULL), HL_OK);
-  assert_int_equal(analysis.kind, HL_DATA_SURFACES);
-  assert_int_equal(analysis.material_count, 1);
-  fill(three);
-  hl_volume *others = make_volume(context, N, values);
-  assert_int_equal(hl_data_analyse(others, &analysis, NULL), HL_OK);
-  assert_int_equal(analysis.material_count, 3);
-  hl_volume_release(volume);
-  hl_volume_release(others);
-  assert_int_equal(hl_context_memory_held(context), 0);
   hl_context_destroy(context);
 }
 
@@ -667,13 +492,7 @@ int main(void) {
       cmocka_unit_test(hot_voxels_hide_no_objects),
       cmocka_unit_test(coarse_matter_is_as_opaque),
       cmocka_unit_test(skin_is_for_bodies),
-      cmocka_unit_test(labels_have_colors_of_their_own),
       cmocka_unit_test(flows_show_their_extremes),
-      cmocka_unit_test(materials_have_colors_of_their_own),
-      cmocka_unit_test(levels_are_no_materials),
-      cmocka_unit_test(metal_is_seen_within_matter),
-      cmocka_unit_test(light_is_warm_and_shade_is_cool),
-      cmocka_unit_test(boundaries_are_no_materials),
       cmocka_unit_test(looks_by_name),
       cmocka_unit_test(own_looks_by_name_change_nothing),
   };
