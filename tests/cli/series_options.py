@@ -168,7 +168,7 @@ CASES = {
     "look": [f"--look {look}" for look in ("auto", "surface", "translucent", "xray", "smoke", "vessels", "mip")],
     "tf": ["--tf look.json", "--tf ct-bone"],
     "colormap": ["--colormap viridis", "--colormap viridis --look mip"],
-    "color-by": ["--color-by slope.nrrd:inferno:20,90"],
+    "color-by": [".slope.nrrd --color-by part_1.slope.nrrd:inferno:20,90"],
     "range": ["--range 20,150", "--range 1%,99%", "--labels map.nrrd --range map=0,9"],
     "range-scale": ["--range 20,150 --range-scale log"],
     "threshold": ["--threshold 80"],
