@@ -21,10 +21,11 @@ void hl_device_release(hl_renderer *renderer) {
   renderer->device.gpu = NULL;
 }
 
-/* Lets the processors make all frames from now on. */
+/* Lets the processors make all frames from now on. reason: may be a text of the device, which is released
+ * after it is copied. */
 static void give_up(hl_renderer *renderer, const char *reason) {
-  hl_device_release(renderer);
   snprintf(renderer->device.problem, sizeof renderer->device.problem, "%.390s", reason);
+  hl_device_release(renderer);
 }
 
 /* The name of the device that should make the renderer's frames. Returns null if the processors make them. */

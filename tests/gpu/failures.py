@@ -8,6 +8,7 @@ import ctypes.util
 import json
 import os
 import pathlib
+import re
 import subprocess
 import sys
 import tempfile
@@ -22,6 +23,10 @@ FAILURES = [
     *((f"clEnqueueReadBuffer {number}", error) for number in (1, 2, 3, 4) for error in (LOST,)),
     *((f"clEnqueueReadBuffer {number}", SPOILT) for number in (1,)),
 ]
+# What the program says of each failure. SPOILT: a result is changed.
+REASONS = {OUT_OF_MEMORY: "^[^:]+ has no memory left$", LOST: "failed with OpenCL's error -36$", UNBUILT: "does not compile the kernels: ",
+           SPOILT: "^[^:]+ (makes another picture|computes) "}
+REASON_TOLD = re.compile(r"halflight: warning: the processors make the pictures: [ -~]+\n")
 SCENE = {"halflight": 1, "image": {"width": 48, "height": 48},
          "camera": {"type": "perspective", "position": [50, 32, -88], "target": [0, 0, 0], "up": [0, 1, 0], "fovy_deg": 30},
          "lights": [{"type": "directional", "direction": [0.4, -0.7, 0.5], "shadows": "hard"}],
@@ -37,11 +42,12 @@ def real_library():
 
 
 def run(folder, *arguments, fails=None):
+    # A released text would be told as bytes of 0xf9.
     environment = {**os.environ, "XDG_CACHE_HOME": str(folder / "cache"), "LD_LIBRARY_PATH": os.path.dirname(failing),
-                   "OPENCL_LIBRARY": real_library() or ""}
+                   "OPENCL_LIBRARY": real_library() or "", "MALLOC_PERTURB_": str(0xf9)}
     if fails:
         environment["OPENCL_FAILS"] = fails
-    return subprocess.run([program, *map(str, arguments)], capture_output=True, text=True, cwd=folder, env=environment)
+    return subprocess.run([program, *map(str, arguments)], capture_output=True, text=True, errors="replace", cwd=folder, env=environment)
 
 
 def picture(folder, device, fails=None):
@@ -75,7 +81,9 @@ def main():
             if report["device"] != "cpu":
                 continue # the device makes fewer such calls
             failed += 1
-            assert report.get("device_reason"), f"{call} {error}: {report}"
+            reason = report.get("device_reason", "")
+            assert re.search(REASONS[error], reason), f"{call} {error}: {reason!r}"
+            assert not told or REASON_TOLD.match(told), f"{call} {error}: {told!r}"
             assert len(told.splitlines()) <= 1, f"{call} {error}: {told}"
             print(f"{call} {error}: {report['device_reason']}", flush=True)
         assert failed > len(FAILURES) - 4, failed
