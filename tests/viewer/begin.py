@@ -219,6 +219,14 @@ def two_pictures(browser):
     inside = browser.run("""(() => { const view = document.getElementById('view').getBoundingClientRect();
       return [...document.querySelectorAll('.side')].every((side) => { const b = side.getBoundingClientRect(); return b.left >= view.left && b.right <= view.right; }); })()""")
     check(inside, "names have room in a narrow picture")
+    browser.run("document.querySelector('.divider').focus()")
+    for key in ["ArrowLeft"] * 4 + ["ArrowRight"] * 4:
+        browser.key(key)
+        browser.run("document.querySelector('.side').setAttribute('data-making', '')")
+        browser.run("halflight.report('saved a file with a long name.json')")
+        clear = browser.run("document.querySelector('#message').getBoundingClientRect().top - Math.max(...[...document.querySelectorAll('.side')].map((side) => side.getBoundingClientRect().bottom))")
+        check(clear > 0, f"a message is below the names, by {clear}")
+    browser.run("document.querySelector('#message').hidden = true")
     resize(browser, *size)
     browser.wait("!document.querySelector('.compared').hidden")
     x, y = center(browser, ".divider")

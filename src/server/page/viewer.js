@@ -96,6 +96,9 @@ function messageBox(box) {
   return (text, time = MESSAGE_TIME) => {
     box.textContent = text;
     box.hidden = false;
+    const top = box.parentElement.getBoundingClientRect().top;
+    const lowest = Math.max(0, ...[...box.parentElement.querySelectorAll(".side")].map((name) => name.getBoundingClientRect().bottom - top));
+    box.style.setProperty("--names", `${lowest}px`); // a comparison's names may take several lines
     clearTimeout(timer);
     timer = setTimeout(() => { box.hidden = true; }, time);
   };
