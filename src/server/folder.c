@@ -2,6 +2,7 @@
  * started, and files that are dropped on the page. */
 #define _GNU_SOURCE
 #include <dirent.h>
+#include <fcntl.h>
 #include <limits.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -12,6 +13,7 @@
 
 #include <halflight/formats.h>
 
+#include "core/beneath.h"
 #include "parts.h"
 #include "start/start.h"
 
@@ -54,7 +56,9 @@ static bool is_folder(const char *path) {
   return stat(path, &about) == 0 && S_ISDIR(about.st_mode);
 }
 
-bool folder_resolve(const server *s, const char *inside, char path[PATH_BYTES]) {
+/* Finds the absolute path of a file or folder below the server's folder. Returns false if it does not lie
+ * there, after links were followed. */
+static bool folder_resolve(const server *s, const char *inside, char path[PATH_BYTES]) {
   char asked[PATH_BYTES];
   const char *folder = s->options.folder;
   size_t length = strlen(folder);
@@ -64,13 +68,28 @@ bool folder_resolve(const server *s, const char *inside, char path[PATH_BYTES]) 
   return strncmp(path, folder, length) == 0 && (path[length] == '\0' || path[length] == '/' || length == 1);
 }
 
+/* The part of a path of folder_resolve() that lies below the server's folder; "" for the folder itself. */
+static const char *below_folder(const server *s, const char *path) {
+  size_t length = strlen(s->options.folder);
+  return path + (length == 1 ? 1 : length + (path[length] == '/'));
+}
+
+int folder_open(const server *s, const char *inside, int flags) {
+  char path[PATH_BYTES];
+  if (!folder_resolve(s, inside, path)) return -1;
+  int folder = open(s->options.folder, O_PATH | O_DIRECTORY | O_CLOEXEC);
+  int opened = folder >= 0 ? hl_beneath_open(folder, below_folder(s, path), flags) : -1;
+  if (folder >= 0) close(folder);
+  return opened;
+}
+
 bool folder_find(const server *s, const char *inside, char path[PATH_BYTES], server_file *file) {
   size_t length = strlen(s->options.folder);
   *file = (server_file){.name = "."};
   if (strncmp(inside, s->options.folder, length) == 0 && (length == 1 || inside[length] == '/'))
     inside += length == 1 ? 1 : length + 1; /* an absolute name */
   if (inside[0] == '\0' || !folder_resolve(s, inside, path)) return false;
-  const char *below = path + (length == 1 ? 1 : length + (path[length] == '/'));
+  const char *below = below_folder(s, path);
   if (is_folder(path)) {
     file->folder = path;
     return hl_context_confine(s->below, below, &file->confined, NULL) == HL_OK;
@@ -86,11 +105,14 @@ bool folder_find(const server *s, const char *inside, char path[PATH_BYTES], ser
 /* The letter by which a folder's list shows an entry: 'd' for a folder, 'f' for a file that can be opened,
  * and 0 for an entry that is not listed. */
 static char kind_of(const server *s, const char *at, const char *name, off_t *bytes) {
-  char inside[PATH_BYTES], path[PATH_BYTES];
+  char inside[PATH_BYTES];
   struct stat about;
   bool fits = snprintf(inside, sizeof inside, "%s%s%s", at, at[0] != '\0' ? "/" : "", name) <
               (int)sizeof inside;
-  if (name[0] == '.' || !fits || !folder_resolve(s, inside, path) || stat(path, &about) != 0) return 0;
+  int opened = name[0] != '.' && fits ? folder_open(s, inside, O_PATH) : -1;
+  bool is_known = opened >= 0 && fstat(opened, &about) == 0;
+  if (opened >= 0) close(opened);
+  if (!is_known) return 0;
   *bytes = about.st_size;
   if (S_ISDIR(about.st_mode)) return 'd';
   return S_ISREG(about.st_mode) && folder_can_open(name) ? 'f' : 0;
@@ -111,11 +133,13 @@ static void put_entries(const server *s, FILE *out, const char *at, struct diren
 }
 
 char *describe_folder(const server *s, const char *at) {
-  char path[PATH_BYTES], *text = NULL;
+  char *text = NULL;
   size_t length = 0;
   struct dirent **entries = NULL;
-  if (!folder_resolve(s, at, path)) return NULL;
-  int count = scandir(path, &entries, NULL, versionsort);
+  int folder = folder_open(s, at, O_RDONLY | O_DIRECTORY);
+  if (folder < 0) return NULL;
+  int count = scandirat(folder, ".", &entries, NULL, versionsort);
+  close(folder);
   if (count < 0) return NULL;
   FILE *out = open_memstream(&text, &length);
   if (out != NULL) {

@@ -342,14 +342,16 @@ bool folder_can_open(const char *name); /* tells by a name's ending whether the 
  * The caller owns file->confined. path: set to the absolute path; file->name and file->folder point into it.
  * Returns false if the file does not lie there, after links were followed, or cannot be opened. */
 bool folder_find(const server *s, const char *inside, char path[PATH_BYTES], server_file *file);
-/* Finds the absolute path of a file or folder below the server's folder. Returns false if it does not lie
- * there, after links were followed. */
-bool folder_resolve(const server *s, const char *inside, char path[PATH_BYTES]);
+/* Opens a file or folder below the server's folder, with the flags of open(). Returns its descriptor, or -1
+ * if none lies there after links were followed. Nobody can lead the name out of the folder by a link that is
+ * put into it meanwhile. */
+int folder_open(const server *s, const char *inside, int flags);
 
 /* ---- sessions.c ---- */
 
-/* The text of a session that lies at this path, owned by the caller (free()); null if there is none. */
-char *session_read(const char *path);
+/* The text of a session of this name below the server's folder, owned by the caller (free()); null if there
+ * is none. */
+char *session_read(const server *s, const char *inside);
 /* Lists, as JSON (free()), everything that can be opened in a folder below the server's folder; null if there
  * is no such folder. */
 char *describe_folder(const server *s, const char *at);

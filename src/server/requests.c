@@ -406,8 +406,7 @@ static void post_open(server *s, struct MHD_Connection *connection, server_answe
 /* Answers with a session that lies below the viewer's folder; with status 204 if the file is none. */
 static void post_session(server *s, struct MHD_Connection *connection, server_answer *answer) {
   const char *name = query_text(connection, "file");
-  char path[PATH_BYTES];
-  char *text = name != NULL && s->below != NULL && folder_resolve(s, name, path) ? session_read(path) : NULL;
+  char *text = name != NULL && s->below != NULL ? session_read(s, name) : NULL;
   if (text != NULL) answer_json(answer, text);
   else answer->status = 204;
 }

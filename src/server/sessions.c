@@ -12,9 +12,9 @@
 
 enum { MOST_SESSION = 64 << 20 }; /* bytes; the small pictures of bookmarks are in it */
 
-/* Reads a regular file. Returns null for anything else, or if there is no memory. *length: its bytes. */
-static char *read_regular(const char *path, size_t *length) {
-  int descriptor = open(path, O_RDONLY | O_CLOEXEC | O_NOFOLLOW | O_NONBLOCK);
+/* Reads a regular file and closes its descriptor. Returns null for anything else, or if there is no memory.
+ * *length: its bytes. */
+static char *read_regular(int descriptor, size_t *length) {
   struct stat about;
   if (descriptor < 0) return NULL;
   FILE *file = fstat(descriptor, &about) == 0 && S_ISREG(about.st_mode) && about.st_size <= MOST_SESSION
@@ -30,9 +30,9 @@ static char *read_regular(const char *path, size_t *length) {
   return bytes;
 }
 
-char *session_read(const char *path) {
+char *session_read(const server *s, const char *inside) {
   size_t length = 0;
-  char *bytes = read_regular(path, &length);
+  char *bytes = read_regular(folder_open(s, inside, O_RDONLY | O_NONBLOCK), &length);
   json_t *root = bytes != NULL ? json_loadb(bytes, length, 0, NULL) : NULL;
   char *text = json_is_integer(json_object_get(root, "halflight_session")) ? json_dumps(root, JSON_COMPACT)
                                                                            : NULL;

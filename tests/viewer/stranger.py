@@ -12,6 +12,7 @@ import shutil
 import struct
 import sys
 import tempfile
+import threading
 import urllib.parse
 import zipfile
 
@@ -28,10 +29,10 @@ PLOTFILE = os.path.join(os.path.dirname(os.path.abspath(__file__)), "../fuzz/cor
 VOLUME = "_8x8x8_uint8.raw"  # how names of bare voxels end
 
 
-def request(viewer, path, body=None, **query):
+def request(viewer, path, body=None, method="POST", **query):
     """(status, the answer's text)."""
     connection = http.client.HTTPConnection("127.0.0.1", viewer.port, timeout=60)
-    connection.request("POST", f"/{viewer.token}/{path}?{urllib.parse.urlencode(query)}", body)
+    connection.request(method, f"/{viewer.token}/{path}?{urllib.parse.urlencode(query)}", body)
     answer = connection.getresponse()
     result = answer.status, answer.read().decode(errors="replace")
     connection.close()
@@ -419,6 +420,33 @@ def sessions(viewer):
             check(json.loads(answer[1]) == json.loads(session), f"{name}: {answer}")
 
 
+def changing_links(viewer):
+    """A folder that becomes a link out of the viewer's folder, and a folder again, leads no request out, whenever it changes."""
+    session = json.dumps({"halflight_session": 1, "place": "inside"}).encode()
+    os.mkdir("turning")
+    write("turning/kept.json", session)
+    write("../outside/kept.json", session.replace(b"inside", b"outside"))
+    write(f"../outside/only-outside{VOLUME}", b"0")
+    os.symlink("../outside", "turned")
+    stopped = threading.Event()
+
+    def turn():
+        while not stopped.is_set():
+            for name, other in (("turning", "kept-aside"), ("turned", "turning"), ("turning", "turned"), ("kept-aside", "turning")):
+                os.rename(name, other)
+
+    turner = threading.Thread(target=turn)
+    turner.start()
+    answers = [request(viewer, "session", b"", file="turning/kept.json") for _ in range(1000)]
+    lists = [request(viewer, "folder.json", method="GET", at="turning") for _ in range(300)]
+    stopped.set()
+    turner.join()
+    check(any(status == 200 for status, _ in answers), "the session is read while its folder stands")
+    check(any("kept.json" in text for _, text in lists), "the folder is listed while it stands")
+    check(not any("outside" in text for _, text in answers), "no session outside is read through a link that comes and goes")
+    check(not any("only-outside" in text for _, text in lists), "no folder outside is listed through a link that comes and goes")
+
+
 def data_folder(viewer, outside):
     """Scenes of pages do not reach the data folder, by which names of the command line begin."""
     for name in ("data:secret", "data:../outside/secret"):
@@ -450,6 +478,7 @@ with tempfile.TemporaryDirectory() as folder:
         kinds_of_vtk_files(viewer)
         odd_files(viewer)
         sessions(viewer)
+        changing_links(viewer)
         data_folder(viewer, outside)
         left = [name for name in os.listdir(os.environ["TMPDIR"]) if name.startswith("halflight-view")]
         check(left == [], f"nothing is left of uploads: {left}")
