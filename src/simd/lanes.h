@@ -137,7 +137,13 @@ LANES_CALL lanes lanes_max(lanes a, lanes b) {
 #endif
 }
 
-#if !defined(__AVX2__) && !defined(__ARM_NEON) && !defined(__FP_FAST_FMAF) && !defined(__wasm_relaxed_simd__)
+/* gcc says by __FP_FAST_FMAF that the C library's fmaf() is one instruction. clang has no such macro on x86.
+ */
+#if defined(__FP_FAST_FMAF) || defined(__FMA__)
+#define LANES_FMA_IS_FAST
+#endif
+#if !defined(__AVX2__) && !defined(__ARM_NEON) && !defined(LANES_FMA_IS_FAST) && \
+    !defined(__wasm_relaxed_simd__)
 typedef double lanes_double __attribute__((vector_size(128)));
 typedef int64_t lanes_long __attribute__((vector_size(128)));
 typedef uint32_t lanes_unsigned __attribute__((vector_size(64)));
@@ -206,7 +212,7 @@ LANES_INLINE lanes lanes_fma(lanes a, lanes b, lanes c) {
   for (int i = 0; i < 4; i++) z[i] = wasm_f32x4_relaxed_madd(x[i], y[i], z[i]);
   memcpy(&c, z, sizeof c);
   return c;
-#elif defined(__FP_FAST_FMAF)
+#elif defined(LANES_FMA_IS_FAST)
   for (int lane = 0; lane < LANES; lane++) c[lane] = __builtin_fmaf(a[lane], b[lane], c[lane]);
   return c;
 #else
