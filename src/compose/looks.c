@@ -56,23 +56,52 @@ hl_status hl_compose_volume_look(const hl_composer *composer, hl_scene_volume *v
   return HL_OK;
 }
 
-/* Fits the greys of a maximum projection to the background. Derived: a grey of the preset, when encoded, lies
- * at the fraction t of the way from black to white. The new colour lies at the same fraction of the way from
- * the background to the end colour, also in encoded values. For a black background and a white end, the new
- * colour is the grey itself. */
-void hl_fit_projection(const hl_composer *composer, hl_transfer_function *function) {
+/* The background, in linear RGB, to which a maximum projection is fitted; returns false if it has no single
+ * colour. */
+static bool find_background(const hl_composer *composer, double color[3]) {
   const hl_asked *background = &composer->asked[HL_ASK_BACKGROUND];
-  if (!background->given || background->chosen) return;
-  const double *from = background->number;
+  for (int c = 0; c < 3; c++) color[c] = background->given ? background->number[c] : 0;
+  return !background->chosen;
+}
+
+/* The colour at the fraction t of the way between two colours, in encoded values. */
+static void mix_encoded(const double from[3], const double to[3], double t, double mixed[3]) {
+  for (int c = 0; c < 3; c++) {
+    const double begin = hl_srgb_encode_number(from[c]), end = hl_srgb_encode_number(to[c]);
+    mixed[c] = hl_srgb_decode(begin + (end - begin) * t);
+  }
+}
+
+/* Derived: a grey of the preset, when encoded, lies at the fraction t of the way from black to white. The new
+ * colour lies at the same fraction of the way from the background to the end colour, also in encoded values.
+ * For a black background and a white end, the new colour is the grey itself. */
+void hl_fit_projection(const hl_composer *composer, hl_transfer_function *function) {
+  double from[3];
+  if (!composer->asked[HL_ASK_BACKGROUND].given || !find_background(composer, from)) return;
   const double luminance = 0.2126 * from[0] + 0.7152 * from[1] + 0.0722 * from[2];
   const double end = luminance > MIDDLE_GREY ? 0 : 1;
   for (size_t n = 0; n < function->color_count; n++) {
     double *color = ((hl_color_point *)function->color)[n].color;
-    for (int c = 0; c < 3; c++) {
-      const double begin = hl_srgb_encode_number(from[c]), t = hl_srgb_encode_number(color[c]);
-      color[c] = hl_srgb_decode(begin + (end - begin) * t);
-    }
+    mix_encoded(from, (double[3]){end, end, end}, hl_srgb_encode_number(color[0]), color);
   }
+}
+
+hl_status hl_fade_projection(const hl_composer *composer, const hl_volume *volume,
+                             hl_transfer_function *function) {
+  double background[3], seen[2];
+  hl_transfer_function objects = {0};
+  if (function->color_count < 2 || !find_background(composer, background)) return HL_OK;
+  hl_status status = hl_transfer_function_automatic(composer->context, volume, &objects, composer->error);
+  if (status == HL_OK) status = hl_transfer_function_visible_range(volume, &objects, seen, composer->error);
+  hl_transfer_function_release(composer->context, &objects);
+  if (status != HL_OK) return hl_blame_options(status);
+  const double low = function->color[0].value, high = function->color[function->color_count - 1].value;
+  if (seen[0] >= high) return HL_OK;
+  for (size_t n = 0; n < function->color_count && function->color[n].value < seen[0]; n++) {
+    hl_color_point *point = &((hl_color_point *)function->color)[n];
+    mix_encoded(background, point->color, (point->value - low) / (seen[0] - low), point->color);
+  }
+  return HL_OK;
 }
 
 void hl_tell_of_function(const hl_composer *composer) {

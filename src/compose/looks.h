@@ -24,6 +24,13 @@ hl_status hl_compose_volume_look(const struct hl_composer *composer, hl_scene_vo
  * more from the background. */
 void hl_fit_projection(const struct hl_composer *composer, hl_transfer_function *function);
 
+/* Adapts a colormap in a bare volume's maximum projection to the background: values around the objects, from
+ * the map's least value to the value from which the automatic function shows objects, fade into the
+ * background. The map's first colour would else surround the objects as a box or ring of noise. A map whose
+ * least value belongs to an object, or that ends before objects begin, stays as it is. */
+hl_status hl_fade_projection(const struct hl_composer *composer, const hl_volume *volume,
+                             hl_transfer_function *function);
+
 /* If both "tf" and "look" are given, logs which properties of the picture come from "tf", and which ones from
  * "look". */
 void hl_tell_of_function(const struct hl_composer *composer);

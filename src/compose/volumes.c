@@ -35,12 +35,16 @@ static hl_status change_volume(const hl_composer *composer, const hl_scene_descr
   if (looks) status = hl_compose_volume_look(composer, volume);
   if (status != HL_OK) return status;
   if (looks) look = volume->transfer_function;
-  if (looks && description->volume_count == 1 && hl_is_maximum(composer, description))
-    hl_fit_projection(composer, &look);
+  const bool projected = looks && description->volume_count == 1 && hl_is_maximum(composer, description);
+  if (projected) hl_fit_projection(composer, &look);
   char color[8];
   bool colored = looks && hl_projected_color(composer, description, index, color);
   status = hl_compose_function(composer, description, index, colored ? color : NULL,
                                &changed->functions[index]);
+  if (status == HL_OK && projected && !sliced &&
+      hl_text_for(composer, HL_ASK_COLORMAP, volume, index) != NULL &&
+      hl_text_for(composer, HL_ASK_TF, volume, index) == NULL)
+    status = hl_fade_projection(composer, volume->volume, &changed->functions[index]);
   if (status == HL_OK && sliced && hl_text_for(composer, HL_ASK_TF, volume, index) == NULL)
     status = hl_make_slice_opaque(composer, volume->volume, &changed->functions[index]);
   volume->transfer_function = changed->functions[index];
