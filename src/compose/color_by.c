@@ -8,6 +8,7 @@
 #include "compose/color_by.h"
 #include "compose/looks.h"
 #include "core/context.h"
+#include "core/file.h"
 #include "core/memory.h"
 #include "scene/function/function_plane.h"
 #include "scene/function/transfer_function.h"
@@ -23,7 +24,7 @@ static const char *const colormap_of_fields = "viridis";
 /* The value of the option in its parts. */
 typedef struct typed_coloring {
   char *file; /* owned */
-  char map[NAME_BYTES];
+  const char *map;
   double range[2]; /* [0] < [1] if a range was typed */
 } typed_coloring;
 
@@ -40,15 +41,20 @@ static void take_range(char *text, double range[2]) {
   *colon = '\0';
 }
 
-/* Takes the last part after ':' off a text, if the part is the name of a colormap. */
-static void take_map(char *text, char map[NAME_BYTES]) {
-  double ignored[3];
-  char *colon = strrchr(text, ':');
-  snprintf(map, NAME_BYTES, "%s", colormap_of_fields);
-  if (colon == NULL || strlen(colon + 1) >= NAME_BYTES || !hl_colormap_evaluate(colon + 1, 0, ignored))
-    return;
-  snprintf(map, NAME_BYTES, "%s", colon + 1);
+/* Takes the last part after ':' off the file's name, if the part is the name of a colormap. If only the name
+ * before this part is that of a file, the part was meant for a colormap, and is refused. */
+static hl_status take_map(const hl_composer *composer, typed_coloring *typed) {
+  char *colon = strrchr(typed->file, ':');
+  typed->map = colormap_of_fields;
+  if (colon == NULL) return HL_OK;
+  const char *map = hl_find_colormap(colon + 1);
+  if (map == NULL && hl_file_kind(composer->context, typed->file) != 0) return HL_OK;
   *colon = '\0';
+  if (map != NULL) typed->map = map;
+  else if (hl_file_kind(composer->context, typed->file) != 0)
+    return hl_refuse_colormap("color-by", colon + 1, composer->error);
+  else *colon = ':';
+  return HL_OK;
 }
 
 /* Reads the option's value. typed->file is owned by the caller, also after a failure. */
@@ -56,10 +62,9 @@ static hl_status read_coloring(const hl_composer *composer, const char *text, ty
   *typed = (typed_coloring){.file = hl_copy_text(composer->context, text)};
   if (typed->file == NULL) return hl_fail_memory(composer->error, strlen(text) + 1, "a name");
   take_range(typed->file, typed->range);
-  take_map(typed->file, typed->map);
   if (typed->range[0] > typed->range[1])
     return hl_fail(composer->error, HL_ERROR_ARGUMENT, "--color-by: '%.200s': LO must be below HI", text);
-  return HL_OK;
+  return take_map(composer, typed);
 }
 
 /* Refuses scenes whose matter cannot have the colours of another volume. */

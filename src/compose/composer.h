@@ -32,6 +32,12 @@ bool hl_asks_for_functions(const hl_asked *asked);
 hl_status hl_compose_function(const hl_composer *composer, const hl_scene_description *description,
                               size_t index, const char *color, hl_transfer_function *function);
 
+/* The colormap that a text names, without regard to upper and lower case; null if there is none. */
+const char *hl_find_colormap(const char *text);
+
+/* Fails because an option names a colormap that does not exist. The error offers the nearest one. */
+hl_status hl_refuse_colormap(const char *option, const char *name, hl_error *error);
+
 /* Refuses "tf", "colormap", "range", "threshold" and "iso" with a NAME= that no volume has. */
 hl_status hl_check_volume_names(const hl_composer *composer, const hl_scene_description *description);
 

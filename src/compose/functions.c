@@ -37,9 +37,9 @@ static const char *find_known(const char *text, const char *(*known)(const void 
   return NULL;
 }
 
-/* The colormap that a text names; null if there is none. "gray" is the colormap that ParaView, matplotlib and
- * Fiji have under this name, although CSS has a colour of this name. */
-static const char *find_colormap(const char *text) {
+/* "gray" is the colormap that ParaView, matplotlib and Fiji have under this name, although CSS has a colour
+ * of this name. */
+const char *hl_find_colormap(const char *text) {
   const bool gray = hl_plain_equal(text, "gray") || hl_plain_equal(text, "grey");
   return find_known(gray ? "grays" : text, colormap_name);
 }
@@ -89,6 +89,10 @@ static hl_status refuse_name(const char *option, const char *name, const char *k
                    meant);
   return hl_fail(error, HL_ERROR_ARGUMENT, "--%s: '%.300s' is no %s: see 'halflight help %s'", option, name,
                  kind, topic);
+}
+
+hl_status hl_refuse_colormap(const char *option, const char *name, hl_error *error) {
+  return refuse_name(option, name, "colormap", "colormaps", colormap_name, error);
 }
 
 /* ---- names ---- */
@@ -265,7 +269,7 @@ hl_status hl_color_meshes(const hl_composer *composer, const hl_scene_descriptio
       return hl_fail(
           composer->error, HL_ERROR_ARGUMENT,
           "--colormap: '%.200s': a mesh has one colour%s: give #rrggbb, linear R,G,B or a CSS name",
-          given->texts[n], find_colormap(color) != NULL ? " and no colour map" : "");
+          given->texts[n], hl_find_colormap(color) != NULL ? " and no colour map" : "");
     }
   return HL_OK;
 }
@@ -456,7 +460,7 @@ static hl_status color_by_name(const hl_composer *composer, const char *name, co
                                value_range range, bool maximum, hl_transfer_function *function) {
   hl_transfer_function colors = {0};
   double color[3];
-  const char *map = find_colormap(name);
+  const char *map = hl_find_colormap(name);
   if (map == NULL && !hl_parse_color(name, 0, 1, color))
     return refuse_name("colormap", name, "colormap and no colour", "colormaps", colormap_name,
                        composer->error);
@@ -488,7 +492,7 @@ static hl_status change_function(const hl_composer *composer, const hl_volume *v
                                  const function_changes *changes, bool maximum,
                                  hl_transfer_function *function) {
   const char *colormap = changes->colormap;
-  const bool mapped = colormap != NULL && find_colormap(colormap) != NULL;
+  const bool mapped = colormap != NULL && hl_find_colormap(colormap) != NULL;
   const hl_spread_use use = maximum ? HL_SPREAD_PROJECTION : mapped ? HL_SPREAD_COLORMAP : HL_SPREAD_ALONE;
   value_range range;
   hl_asked threshold;
