@@ -259,22 +259,27 @@ static size_t name_in(const char *argument, char *name, size_t size) {
 }
 
 static int refuse_unknown(const cli_command *command, const char *argument) {
-  char name[80];
+  char name[80], json[160];
   size_t length = name_in(argument, name, sizeof name);
   const char *meant = length > 0 ? hl_nearest_candidate(name, option_name, command) : NULL;
-  const char *does = synonym_of(name, option_name, command);
-  char json[160];
-  if (does == NULL && strcmp(command->name, "render") == 0 && scene_setting_of(name, json, sizeof json))
+  const char *word = length > 0 ? name : argument + 1; /* "j" of "-j" */
+  const int typed = (int)strcspn(argument, "=");
+  const char *does = synonym_of(word, option_name, command);
+  const char *answer = does == NULL ? answer_to(word) : NULL;
+  if (answer != NULL)
+    return fail(EXIT_CODE_USAGE, "unknown option '%.*s' of %s: %s", typed, argument, command->name, answer);
+  if (does == NULL && strcmp(command->name, "render") == 0 && scene_setting_of(word, json, sizeof json))
     return fail(EXIT_CODE_USAGE,
-                "unknown option '--%s' of render: a scene says %s; --print-scene writes a scene", name, json);
+                "unknown option '%.*s' of render: a scene says %s; --print-scene writes a scene", typed,
+                argument, json);
   const bool differ = does != NULL && meant != NULL && strncmp(does, meant, strcspn(does, " ")) != 0;
   if (differ)
-    return fail(EXIT_CODE_USAGE, "unknown option '--%s' of %s: did you mean --%s, or --%s?", name,
+    return fail(EXIT_CODE_USAGE, "unknown option '%.*s' of %s: did you mean --%s, or --%s?", typed, argument,
                 command->name, does, meant);
   if (does != NULL) meant = does;
   if (meant != NULL)
-    return fail(EXIT_CODE_USAGE, "unknown option '--%s' of %s: did you mean --%s?", name, command->name,
-                meant);
+    return fail(EXIT_CODE_USAGE, "unknown option '%.*s' of %s: did you mean --%s?", typed, argument,
+                command->name, meant);
   return fail(EXIT_CODE_USAGE, "unknown option '%s' of %s: see 'halflight help %s'", argument, command->name,
               command->name);
 }

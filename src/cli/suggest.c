@@ -14,12 +14,14 @@ static const struct {
 } meanings[] = {
     {"output", "out outfile output-file file save screenshot image png write destination dest render-output"},
     {"format", "type filetype file-format output-format ext extension render-format"},
+    {"size 3840x2160", "4k uhd"},
+    {"size 1920x1080", "hd fullhd full-hd 1080p"},
     {"size",
      "height w h resolution res geometry resize scale dimensions image-size view-size window-size pixels "
      "film-size imagesize"},
     {"width", "figure-width paper-width print-width column-width"},
     {"dpi", "ppi pixels-per-inch print-resolution"},
-    {"legend", "colorbar color-bar colourbar colour-bar scalar-bar scalarbar"},
+    {"legend", "colorbar color-bar cbar colourbar colour-bar scalar-bar scalarbar"},
     {"scale-bar", "scalebar scalebars"},
     {"marks", "ruler rulers measure measurement measurements distance-ruler angle-mark dimension caliper"},
     {"font-size", "font fontsize text-size letter-size"},
@@ -28,20 +30,25 @@ static const struct {
     {"annotate A@0.03,0.05", "panel-label panel-letter letter"},
     {"preset light-sweep", "light-sweep sweep light-turn"},
     {"preset turntable", "turn-table rotation-film"},
+    {"turntable", "orbit spin turn rotate rotation revolve revolutions"},
+    {"key PATH=FRAME:VALUE,...", "keyframe keyframes keys path track tracks timeline"},
+    {"ease smooth", "easing ease-in ease-out ease-in-out tween smoothstep interpolation"},
+    {"frames N and --fps N", "duration seconds length film-length"},
+    {"fps", "framerate frame-rate frames-per-second delay speed"},
     {"shrink 2", "scale resize resample downsample downscale bin binning subsample reduce factor size"},
     {"place", "legend-position legend-loc legend-place location position corner corners anchor"},
     {"depth", "bits bit-depth color-depth"},
-    {"background",
-     "bg background-color bgcolor background-colour canvas backdrop world-color transparent alpha"},
+    {"background", "bg background-color bgcolor background-colour canvas backdrop world-color transparent"},
     {"layers", "passes aov aovs buffers depth-map zbuffer normals render-layers"},
     {"azimuth",
      "rotate rotation yaw theta angle turn spin orbit rotate-z heading azim camera-position camera"},
     {"elevation", "pitch phi tilt altitude elev rotate-x inclination"},
     {"roll", "rotate-y bank twist"},
     {"up", "view-up viewup up-vector orientation"},
+    {"up AXIS, as --up -z", "flip flip-z flip-y flip-x flipud upside-down invert-axis"},
     {"up AXIS and --view SIDE, for a body whose file does not tell its directions",
      "space anatomical-space body-space coordinate-system lps ras"},
-    {"view", "viewpoint front side top camera-preset view-direction"},
+    {"view", "viewpoint front back left right side top bottom camera-preset view-direction"},
     {"zoom", "zoom-in zoom-out zoom-factor dolly distance magnification crop-factor"},
     {"fovy", "fov field-of-view view-angle focal-length perspective vfov angle-of-view"},
     {"ortho", "orthographic parallel parallel-projection orthogonal ortho-scale"},
@@ -50,10 +57,12 @@ static const struct {
      "transfer ctf otf presets opacity-function"},
     {"iso VALUE:COLOR:OPACITY for a surface, --show LABEL:OPACITY for a label, --density FACTOR for all "
      "matter, or --tf FILE for values",
-     "opacity transparency translucency"},
+     "opacity alpha transparency translucency"},
     {"color-by", "color-array colour-by colour-array color-volume texture-by coloring scalar-array"},
     {"colormap",
      "cmap color-map colourmap lut palette colors colours color colour color-table lookup-table colorscale"},
+    {"range 1%,99%", "percentile percentiles quantile quantiles auto-contrast autoscale robust"},
+    {"range-scale log", "log log-scale logscale logarithmic log-norm"},
     {"range",
      "clim window level window-level vmin vmax scalar-range data-range color-range rescale-range clims min "
      "max "
@@ -109,7 +118,7 @@ static const struct {
     {"threads", "jobs j cores cpus nthreads cpu num-threads workers"},
     {"max-memory", "memory mem ram memory-limit mem-limit"},
     {"instruction-set", "simd isa avx arch"},
-    {"json", "stats statistics report info verbose"},
+    {"json", "stats statistics report info verbose debug"},
     {"quiet", "hide-progress silent no-progress q batch"},
     {"print-scene", "dump dump-scene save-scene export-scene scene print dry-run write-scene"},
     {"data", "data-dir data-folder include"},
@@ -205,6 +214,28 @@ bool scene_setting_of(const char *word, char *text, size_t size) {
 
 /* words: separated by blanks, in lower case */
 static const struct {
+  const char *sentence, *words;
+} answers[] = {
+    {"raw voxels have their size and type in the file's name, as in name_256x256x128_uint8.raw, or in a "
+     "header "
+     ".nhdr",
+     "dims dim shape dtype data-type voxel-type endian byte-order raw raw-size header-size skip-bytes"},
+    {"OUT is replaced without a question", "overwrite force clobber yes y f"},
+    {"the ending of OUT chooses the kind of film; --keep-frames keeps the pictures for another encoder",
+     "codec bitrate crf encoder vcodec"},
+    {"the ending of OUT chooses the format, as in OUT.exr for linear light above white, or OUT.tif",
+     "hdr exr tiff tif pdf svg"},
+    {"'halflight view' shows the histogram of the values", "hist histogram"},
+};
+
+const char *answer_to(const char *word) {
+  for (size_t n = 0; n < sizeof answers / sizeof *answers; n++)
+    if (has_word(answers[n].words, word)) return answers[n].sentence;
+  return NULL;
+}
+
+/* words: separated by blanks, in lower case */
+static const struct {
   const char *option, *value, *words;
 } values[] = {
     {"view", "front", "anterior coronal face ap"},
@@ -254,16 +285,19 @@ static const struct {
   const char *command, *words;
 } commands[] = {
     {"view", "show open display viewer gui interactive web browse"},
-    {"render", "draw image picture plot snapshot screenshot export-image slice"},
+    {"render",
+     "draw image picture plot snapshot screenshot thumbnail export-image slice mip volume-render run start"},
     {"animate", "movie film video turntable anim animation rotate spin mp4 gif"},
-    {"looks", "styles presets contact-sheet gallery thumbnails"},
+    {"looks", "styles contact-sheet gallery thumbnails"},
     {"info", "stat stats header describe inspect ls list metadata"},
-    {"convert", "resample crop resize downsample save translate"},
+    {"convert", "resample crop resize downsample save translate mesh isosurface marching-cubes stl"},
     {"diff", "compare cmp difference psnr rmse"},
     {"bench", "benchmark time timing profile"},
     {"export", "html page webpage share"},
     {"figure", "panel panels montage layout"},
     {"figures", "paper examples"},
+    {"help colormaps", "colormaps colormap colors colours cmaps luts palettes"},
+    {"help presets", "presets preset"},
     {"devices", "gpus gpu cuda opencl"},
     {"make", "create generate new shape"},
 };

@@ -16,6 +16,10 @@ const char *synonym_of(const char *word, const char *(*option)(const void *data,
  * spelled as an option. Returns false if no such setting is known. */
 bool scene_setting_of(const char *word, char *text, size_t size);
 
+/* A sentence that answers a word for which there is no option, since something else does what it means; null
+ * if none is known. */
+const char *answer_to(const char *word);
+
 /* The value that a word of other programs means for an option (for "view", "anterior" means "front"); null if
  * none is known. */
 const char *value_meant_by(const char *option, const char *word);

@@ -10,3 +10,14 @@ cat told
 halflight animate x.nrrd --light-sweep 2>told || true
 halflight convert x.nrrd y.nrrd --scale 0.5 2>>told || true
 cat told
+# Words for which there is no option are answered, also for films and as one letter.
+for word in dtype overwrite hdr percentile log cbar alpha flip 4k; do
+  halflight render x.nrrd --$word 2>>answers || true
+done
+halflight render x.nrrd -j 2 2>>answers || true
+for word in easing duration keyframes codec orbit; do
+  halflight animate x.nrrd --$word 2>>answers || true
+done
+halflight colormaps 2>>answers || true
+halflight mesh x.nrrd 2>>answers || true
+sed 's/.*unknown //' answers
