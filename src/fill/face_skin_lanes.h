@@ -31,13 +31,20 @@ LANES_INLINE lanes3 point_in_shape(const run_cut *cut, lanes3 point) {
                   row_of_point(cut->rows[2], point)};
 }
 
+/* The distances of a point, given in a cut's own space, from the three pairs of faces of a box; in voxels.
+ * They are negative between the faces. scale: voxels per unit of each axis of that space. */
+LANES_INLINE lanes3 distances_to_box(lanes3 at, const float scale[3]) {
+  return (lanes3){(lanes_abs(at.x) - 1.0f) * scale[0], (lanes_abs(at.y) - 1.0f) * scale[1],
+                  (lanes_abs(at.z) - 1.0f) * scale[2]};
+}
+
 /* The distance of a point from the shape of a cut, in voxels: positive outside the shape, negative inside.
  * The point is given in the cut's own space. scale: voxels per unit of each axis of that space. */
 LANES_INLINE lanes distance_to_shape(const run_cut *cut, lanes3 at, const float scale[3]) {
   if (cut->shape->type == HL_CUT_PLANE) return at.x * -scale[0];
   if (cut->shape->type == HL_CUT_SPHERE) return (lanes_sqrt(dot3(at, at)) - 1.0f) * scale[0];
-  return lanes_max(lanes_max((lanes_abs(at.x) - 1.0f) * scale[0], (lanes_abs(at.y) - 1.0f) * scale[1]),
-                   (lanes_abs(at.z) - 1.0f) * scale[2]);
+  lanes3 from_faces = distances_to_box(at, scale);
+  return lanes_max(lanes_max(from_faces.x, from_faces.y), from_faces.z);
 }
 
 /* The skin of a cut: the fraction of the matter that belongs to one of the cut's faces. In a box whose inside
@@ -68,6 +75,31 @@ LANES_INLINE lanes skin_of_faces(const slab_run *run, int slab, lanes u, lanes v
   for (int i = 0; i < run->cut_count; i++)
     skin = lanes_max(skin, skin_of_cut(&run->cuts[i], from, to, run->voxel));
   return skin;
+}
+
+/* The rays that come nearer than FACE_VOXELS to an edge of a box whose outside is left, on the way to the
+ * box. At such an edge two faces meet in an inner corner of the matter. */
+LANES_INLINE lanes_int nears_edge(const run_cut *cut, lanes3 from, lanes3 to, float voxel) {
+  const float scale[3] = {1.0f / (cut->size[0] * voxel), 1.0f / (cut->size[1] * voxel),
+                          1.0f / (cut->size[2] * voxel)};
+  lanes3 before = distances_to_box(point_in_shape(cut, from), scale),
+         after = distances_to_box(point_in_shape(cut, to), scale);
+  lanes farthest = lanes_max(lanes_max(after.x, after.y), after.z);
+  lanes second = lanes_max(lanes_min(after.x, after.y), lanes_min(lanes_max(after.x, after.y), after.z));
+  return (lanes_max(lanes_max(before.x, before.y), before.z) > farthest) & (farthest < FACE_VOXELS) &
+         (second > -FACE_VOXELS);
+}
+
+/* The rays of a block that come near to an inner corner of matter, in slab number `slab` of a run. */
+LANES_INLINE lanes_int nears_inner_corner(const slab_run *run, int slab, lanes u, lanes v) {
+  lanes_int near = lanes_set_int(0);
+  for (int i = 0; i < run->cut_count; i++) {
+    const run_cut *cut = &run->cuts[i];
+    if (cut->shape->type != HL_CUT_BOX || cut->shape->keep_inside) continue;
+    near |= nears_edge(cut, rays_positions(&run->rays[slab], u, v),
+                       rays_positions(&run->rays[slab + 1], u, v), run->voxel);
+  }
+  return near;
 }
 
 #endif

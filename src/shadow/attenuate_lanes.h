@@ -129,6 +129,15 @@ LANES_INLINE kept_light kept_by_face(const attenuate_volume *volume, kept_light 
   return (kept_light){kept_in_skin(kept.before, skin), kept_in_skin(kept.within, skin)};
 }
 
+/* Finds the fractions k and k' of attenuate.h near an inner corner of a cut. Light that goes through matter
+ * to one of the corner's faces has left the surface through which it came in. It does not light the corner's
+ * other face as light at an outside: k = k' = 0. corner: the block's first pixel. */
+LANES_INLINE kept_light kept_by_inner_corner(const attenuate_volume *volume, kept_light kept,
+                                             const int corner[2]) {
+  lanes_int ends = nears_inner_corner(volume->faces, volume->slab, block_u(corner[0]), block_v(corner[1]));
+  return (kept_light){lanes_keep(~ends, kept.before), lanes_keep(~ends, kept.within)};
+}
+
 /* Finds the fractions k and k' of attenuate.h in a slab that a face of the volume's box divides. If the
  * matter ends within the slab, light leaves the surface, and k = k' = 0. If the matter begins within the
  * slab, no surface lies before it, so k would not matter. But blurs may have spread the shadow of the face's
@@ -239,6 +248,8 @@ LANES_INLINE attenuated_block attenuate_block(const attenuate_job *job, int volu
     if (volume->surface) {
       own = kept_by_values(job, volume, a, b, &to, span, path, extinction, (size_t)y * job->stride + x);
       if (volume->faces != NULL) own = kept_by_face(volume, own, b, corner);
+      if (volume->faces != NULL && volume->faces->cut_count > 0)
+        own = kept_by_inner_corner(volume, own, corner);
       own = kept_in_span(volume, own, span);
     }
     own.before = lanes_keep(extinction > 0.0f, own.before);

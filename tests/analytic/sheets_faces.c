@@ -1,5 +1,5 @@
 /* analytic/sheets_faces.c - faces of a box that light grazes, and the normals of clipped ones: the picture
- * against the closed form. */
+ * against the closed form. Balls with a corner or a half cut away: light that leaves through a face. */
 #include <setjmp.h>
 #include <stdarg.h>
 #include <stdint.h>
@@ -10,7 +10,7 @@
 
 #include "reference_stage.h"
 
-enum { VOXELS = 32, SIDE = 72 };
+enum { VOXELS = 32, SIDE = 72, RADIUS = 13 };
 
 static const double OPACITY = 0.95, HALF = VOXELS / 2.0, INSIDE = 7;
 
@@ -185,9 +185,95 @@ static void test_joined_parts(void **state) {
   assert_true(greatest < 0.005);
 }
 
+/* ---- light that leaves matter through a face ---- */
+
+/* An opaque ball around the origin whose edge is two voxels wide, with a cut and a light. */
+static void open_whole_ball(stage *set, const hl_cut *cut, vec3 light) {
+  static float voxels[VOXELS * VOXELS * VOXELS];
+  static const hl_opacity_point opacity[] = {{0, 0}, {1, 0.999}};
+  for (int n = 0; n < VOXELS * VOXELS * VOXELS; n++) {
+    double x = n % VOXELS + 0.5 - HALF, y = n / VOXELS % VOXELS + 0.5 - HALF,
+           z = n / (VOXELS * VOXELS) + 0.5 - HALF;
+    voxels[n] = (float)fmin(fmax((RADIUS + 1 - sqrt(x * x + y * y + z * z)) / 2, 0), 1);
+  }
+  stage_open(set);
+  set->scene.width = set->scene.height = SIDE;
+  set->scene.render.sheet_spacing = 0.5;
+  hl_scene_volume *ball = stage_add_grid(set, (size_t[3]){VOXELS, VOXELS, VOXELS}, (double[3]){1, 1, 1},
+                                         (vec3){-HALF, -HALF, -HALF}, voxels);
+  ball->transfer_function.opacity = opacity;
+  ball->transfer_function.opacity_count = 2;
+  ball->shading = HL_SHADING_PHONG;
+  ball->material = (hl_material){.diffuse = 1, .shininess = 1};
+  ball->cuts = cut;
+  ball->cut_count = cut != NULL;
+  stage_add_directional(set, light);
+}
+
+/* A corner of the ball is cut away, from five voxels below its surface on. The corner's floor lies behind
+ * five voxels of opaque matter, as the light sees it: it is dark, up to the wall. */
+static void test_inner_corner(void **state) {
+  (void)state;
+  static float pixels[SIDE * SIDE * 4];
+  static const hl_cut corner = {
+      .type = HL_CUT_BOX, .min = {-RADIUS + 5, 0, 0}, .max = {40, 40, 40}, .keep = HL_CUT_KEEP_OUTSIDE};
+  stage set;
+  open_whole_ball(&set, &corner, (vec3){1, 0.15, -0.5});
+  set.scene.camera.height = 10;
+  stage_look(&set, (vec3){60, 48, 54}, (vec3){-RADIUS + 5, 0, 0}, (vec3){0, 0, 1});
+  stage_render_sheets(&set, pixels);
+  double greatest = 0;
+  int count = 0;
+  for (int p = 0; p < SIDE * SIDE; p++) {
+    vec3 origin, way;
+    stage_eye_ray(&set, p % SIDE, p / SIDE, &origin, &way);
+    const vec3 at = vec3_add(origin, vec3_scale(way, -origin.z / way.z));
+    const double from_wall = at.x + RADIUS - 5;
+    if (from_wall < 0.15 || from_wall > 3 || at.y < 1 || at.y > 4) continue;
+    greatest = fmax(greatest, (double)pixels[4 * p]);
+    count++;
+  }
+  print_message("# inner corner: greatest light %.4f\n", greatest);
+  stage_close(&set);
+  assert_true(count > 100);
+  assert_true(greatest < 0.01);
+}
+
+/* Beside a cut through which light leaves, the ball's own surface is as bright as without the cut. The light
+ * grazes the surface, by 8 degrees. */
+static void test_rim(void **state) {
+  (void)state;
+  static float pixels[2][SIDE * SIDE * 4];
+  static const hl_cut half = {.type = HL_CUT_PLANE, .normal = {1, 0, 0}};
+  double greatest = 0;
+  int count = 0;
+  for (int whole = 0; whole < 2; whole++) {
+    stage set;
+    open_whole_ball(&set, whole ? NULL : &half, (vec3){1, 0.1, -0.15});
+    set.scene.camera.height = 10;
+    stage_look(&set, (vec3){-20, 0, 60}, (vec3){-2, 0, RADIUS}, (vec3){0, 1, 0});
+    stage_render_sheets(&set, pixels[whole]);
+    for (int p = 0; p < SIDE * SIDE && whole; p++) {
+      vec3 origin, way;
+      stage_eye_ray(&set, p % SIDE, p / SIDE, &origin, &way);
+      const vec3 at = vec3_add(origin, vec3_scale(way, (RADIUS - origin.z) / way.z));
+      if (at.x < -3 || at.x > -1 || fabs(at.y) > 2) continue;
+      greatest = fmax(greatest, fabs((double)pixels[0][4 * p] - (double)pixels[1][4 * p]));
+      count++;
+    }
+    stage_close(&set);
+  }
+  print_message("# rim: greatest difference %.4f\n", greatest);
+  assert_true(count > 100);
+  assert_true(greatest < 0.02);
+}
+
 int main(void) {
   const struct CMUnitTest tests[] = {cmocka_unit_test(test_even_under_grazing_light),
                                      cmocka_unit_test(test_normal_of_a_cut),
-                                     cmocka_unit_test(test_cut_behind), cmocka_unit_test(test_joined_parts)};
+                                     cmocka_unit_test(test_cut_behind),
+                                     cmocka_unit_test(test_joined_parts),
+                                     cmocka_unit_test(test_inner_corner),
+                                     cmocka_unit_test(test_rim)};
   return cmocka_run_group_tests_name("sheets_faces", tests, NULL, NULL);
 }

@@ -182,12 +182,19 @@ DEVICE float skin_of_axis(float from, float to, float low, float high, float sca
                  skin_of_depth((high - from) * scale, (high - to) * scale));
 }
 
+/* The distances of a point from the three pairs of faces of a cut's box, in voxels; below 0 between the
+ * faces. */
+DEVICE vector distances_to_box(GLOBAL const plan_cut *cut, vector at) {
+  return vector_of((magnitude(at.x) - 1.0f) * cut->scale[0], (magnitude(at.y) - 1.0f) * cut->scale[1],
+                   (magnitude(at.z) - 1.0f) * cut->scale[2]);
+}
+
 /* The distance of a point from a cut's shape, in voxels; below 0 inside the shape. */
 DEVICE float distance_to_shape(GLOBAL const plan_cut *cut, vector at) {
   if (cut->shape == CUT_PLANE) return at.x * -cut->scale[0];
   if (cut->shape == CUT_SPHERE) return (root(dot3(at, at)) - 1.0f) * cut->scale[0];
-  return greater(greater((magnitude(at.x) - 1.0f) * cut->scale[0], (magnitude(at.y) - 1.0f) * cut->scale[1]),
-                 (magnitude(at.z) - 1.0f) * cut->scale[2]);
+  const vector from_faces = distances_to_box(cut, at);
+  return greater(greater(from_faces.x, from_faces.y), from_faces.z);
 }
 
 /* The skin of all faces of a cut. from, to: where a light's ray meets the slab's sheets; index space. */
@@ -199,6 +206,18 @@ DEVICE float skin_of_cut(GLOBAL const plan_cut *cut, vector from, vector to) {
                    skin_of_axis(a.z, b.z, -1.0f, 1.0f, cut->scale[2]));
   const float before = distance_to_shape(cut, a), depth = distance_to_shape(cut, b);
   return cut->keep_inside ? skin_of_depth(-before, -depth) : skin_of_depth(before, depth);
+}
+
+/* Returns whether a light's ray comes near to an edge of a box whose outside is left, on the way to the box.
+ * from, to: as for skin_of_cut(). The result is the same as that of nears_edge() in fill/face_skin_lanes.h.
+ */
+DEVICE int nears_edge(GLOBAL const plan_cut *cut, vector from, vector to) {
+  const vector before = distances_to_box(cut, point_in_shape(cut->in_index, from)),
+               after = distances_to_box(cut, point_in_shape(cut->in_index, to));
+  const float farthest = greater(greater(after.x, after.y), after.z);
+  const float second = greater(lesser(after.x, after.y), lesser(greater(after.x, after.y), after.z));
+  return greater(greater(before.x, before.y), before.z) > farthest && farthest < FACE_VOXELS &&
+         second > -FACE_VOXELS;
 }
 
 #endif

@@ -193,6 +193,25 @@ DEVICE float skin_of_faces(const volume_data *data, GLOBAL const plan_light *lig
   return skin;
 }
 
+/* Returns whether a light's ray comes near to an inner corner of matter in a slab. in_index: as for
+ * skin_of_faces(). */
+DEVICE int nears_inner_corner(const volume_data *data, GLOBAL const plan_light *light,
+                              GLOBAL const plan_rays *in_index, float u, float v) {
+  int near = 0;
+#if CUTS
+  const int perspective = !light->parallel;
+  const vector from = position_on(in_index, perspective, u, v),
+               to = position_on(in_index + 1, perspective, u, v);
+  for (int i = 0; i < light->cut_count; i++) {
+    GLOBAL const plan_cut *cut = &data->cuts[light->first_cut + i];
+    near = near || (cut->shape == CUT_BOX && !cut->keep_inside && nears_edge(cut, from, to));
+  }
+#else
+  (void)data, (void)light, (void)in_index, (void)u, (void)v;
+#endif
+  return near;
+}
+
 /* Finds k and k': the fractions of the light that a surface has absorbed which still light the surface after
  * a slab. sums: integrals from a to b. path: length of the light's ray through the slab. extinction: the
  * slab's extinction. skin: how much of the visible matter belongs to a face. */

@@ -394,8 +394,10 @@ DEVICE int attenuate_slab(const sweep_data *sweep, GLOBAL const plan_light *ligh
   const float skin = BOXED && volume->faces_take
                          ? skin_of_faces(&sweep->volume, light, in_index - 1, ray->u, ray->v)
                          : 0.0f;
-  const kept_light kept = kept_in_slab(&sweep->volume, a, b, &sums, part, path, extinction, skin,
-                                       pixel->passing[0], pixel->passing[CHANNELS]);
+  kept_light kept = kept_in_slab(&sweep->volume, a, b, &sums, part, path, extinction, skin, pixel->passing[0],
+                                 pixel->passing[CHANNELS]);
+  if (CUTS && volume->faces_take && nears_inner_corner(&sweep->volume, light, in_index - 1, ray->u, ray->v))
+    kept.before = kept.within = 0.0f;
 #endif
   for (int c = 0; c < CHANNELS; c++) {
     float depth = fused(extinction, volume->weight[c], 0.0f), light_before = pixel->passing[c];
