@@ -81,10 +81,6 @@
  * matter again. For the faces of cuts, behind which matter is often even, skin is used in addition. */
 #define EVEN_VOXELS 1
 
-/* If the part of a slab that lies in the box ends before the slab's end by less than this fraction of the
- * slab, the part is taken to reach the slab's end. Such a difference is only rounding. */
-#define ROUNDING_OF_SPAN 1e-3f
-
 /* Light may come from the matter of one surface into another surface, which begins at the value `foot`. In a
  * blurred edge, values rise through the values of the first surface to the values of the second. In such an
  * edge the two are one surface, and the light that the first surface has absorbed lights the second one, too.

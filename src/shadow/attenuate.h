@@ -75,10 +75,12 @@ typedef struct attenuate_job {
  * proportional to h. While light goes on within one surface, which begins at one value, k = k' = min(1, h2 /
  * h1)^OUTWARDS_POWER. Here h1 and h2 are the depths of x1 and x2. So k is 1 while light goes deeper, and
  * falls to 0 where the surface ends. Where light enters another surface within the slab, k = 0 and k' = 1.
- * Where light leaves a surface, or a cut's face, k = k' = 0. The product of k over slabs depends only on h at
- * both ends of the way, and not on how the way is cut into slabs. Where values hardly change, matter is no
- * surface (classifier.normal_edge): EVEN_VOXELS of such matter on the light's way divide k and k' by e. In a
- * medium k = k' = 0. Where several volumes share a slab, k and k' are their means, weighted by optical depth.
+ * Where light leaves a surface, or a cut's face, k = k' = 0. Pixels in which a slab has no matter
+ * keep Y. Where a mask or gradient opacity hides a slab's matter, k = 0. The product of k over slabs depends
+ * only on h at both ends of the way, and not on how the way is cut into slabs. Where values hardly change,
+ * matter is no surface (classifier.normal_edge): EVEN_VOXELS of such matter on the light's way divide k and
+ * k' by e. In a medium k = k' = 0. Where several volumes share a slab, k and k' are their means, weighted by
+ * optical depth.
  *
  * A face that cuts matter is a surface, too. Its outside is the face, and light goes deeper into it whatever
  * the values behind it are: k = k' = 1 for visible matter up to a voxel behind a face through which the light

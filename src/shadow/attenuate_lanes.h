@@ -138,15 +138,16 @@ LANES_INLINE kept_light kept_by_inner_corner(const attenuate_volume *volume, kep
   return (kept_light){lanes_keep(~ends, kept.before), lanes_keep(~ends, kept.within)};
 }
 
-/* Finds the fractions k and k' of attenuate.h in a slab that a face of the volume's box divides. If the
- * matter ends within the slab, light leaves the surface, and k = k' = 0. If the matter begins within the
- * slab, no surface lies before it, so k would not matter. But blurs may have spread the shadow of the face's
- * own matter across the face, together with the light that this matter has absorbed. This light still lights
- * the face, so k is not changed. */
-LANES_INLINE kept_light kept_in_span(const attenuate_volume *volume, kept_light kept, covered_span span) {
-  if (volume->enter == NULL) return kept;
-  lanes_int ends = (span.begin + span.length) < (1.0f - ROUNDING_OF_SPAN);
-  return (kept_light){lanes_keep(~ends, kept.before), lanes_keep(~ends, kept.within)};
+/* Finds the fractions k and k' of attenuate.h in a slab that a face divides. If the matter ends within the
+ * slab, or at the slab's end, light leaves the surface, and k = k' = 0. If the matter begins within the slab,
+ * no surface lies before it, so k would not matter. But blurs may have spread the shadow of the face's own
+ * matter across the face, together with the light that this matter has absorbed. This light still lights the
+ * face, so k is not changed. height: the height of the slab's end. */
+LANES_INLINE kept_light kept_in_span(const attenuate_volume *volume, kept_light kept, int block,
+                                     float height) {
+  if (volume->enter == NULL || volume->uncut) return kept;
+  lanes_int goes_on = lanes_load(volume->leave + block * BLOCK_PIXELS) > height;
+  return (kept_light){lanes_keep(goes_on, kept.before), lanes_keep(goes_on, kept.within)};
 }
 
 /* Finds the fractions k and k' of attenuate.h from the values of one volume. a, b: the table coordinates of
@@ -203,11 +204,14 @@ typedef struct attenuated_block {
 } attenuated_block;
 
 /* Attenuates one channel of the light at the outside of surfaces by a slab. before, after: the transmittance
- * before and after the slab. Returns the new light at the outside. */
-LANES_INLINE lanes pass_outside(float *at, size_t stride, lanes before, lanes after, kept_light kept) {
+ * before and after the slab. affected: the pixels in which the slab has matter; the others keep their light.
+ * Returns the new light at the outside. */
+LANES_INLINE lanes pass_outside(float *at, size_t stride, lanes before, lanes after, kept_light kept,
+                                lanes_int affected) {
   lanes light = lanes_max(before, lanes_set(0)), left = lanes_max(after, lanes_set(0));
-  lanes taken = lanes_max(lanes_load_block(at, stride) - light, lanes_set(0));
+  lanes old = lanes_load_block(at, stride), taken = lanes_max(old - light, lanes_set(0));
   lanes outside = lanes_fma(taken, kept.before, lanes_fma(light - left, kept.within, left));
+  outside = lanes_select(affected, outside, old);
   lanes_store_block(at, stride, outside);
   return outside;
 }
@@ -221,9 +225,9 @@ LANES_INLINE attenuated_block attenuate_block(const attenuate_job *job, int volu
   lanes depth[HL_CHANNELS] = {lanes_set(0), lanes_set(0), lanes_set(0)}, total = lanes_set(0);
   kept_light kept = {lanes_set(0), lanes_set(0)};
   lanes path = path_through_sheet(&job->rays, job->path, block_u(corner[0]), block_v(corner[1]));
-  /* not 0 if a factor multiplies the extinction of some matter. Where the factor hides this matter, surfaces
-   * have ended, although the values are not low */
-  int hidden = 0;
+  /* the pixels in which a factor hides a volume's matter. There, surfaces end, although the values are not
+   * low */
+  lanes_int hidden = lanes_set_int(0);
   for (int i = 0; i < volume_count; i++) {
     const attenuate_volume *volume = &job->volumes[i];
     if (volume_count > 1 && (volume->blocks >> block & 1) == 0) continue;
@@ -239,8 +243,9 @@ LANES_INLINE attenuated_block attenuate_block(const attenuate_job *job, int volu
     way_sums sums = sums_and_ends_of_way(volume->classifier, a, b, &to);
     lanes extinction = sums.extinction * span.length;
     if (hl_classifier_is_weighed(volume->classifier)) {
-      hidden |= job->outside[0] != NULL && lanes_bits(extinction > 0.0f) != 0;
+      lanes_int matter = extinction > 0.0f;
       extinction = extinction * factor_in_block(job, volume, corner, &sums, a.x, b.x, span);
+      if (job->outside[0] != NULL) hidden |= matter & ~(extinction > 0.0f);
     }
     for (int c = 0; c < channels; c++) depth[c] = lanes_add_scaled(depth[c], extinction, volume->weight[c]);
     if (job->outside[0] == NULL) continue;
@@ -250,15 +255,16 @@ LANES_INLINE attenuated_block attenuate_block(const attenuate_job *job, int volu
       if (volume->faces != NULL) own = kept_by_face(volume, own, b, corner);
       if (volume->faces != NULL && volume->faces->cut_count > 0)
         own = kept_by_inner_corner(volume, own, corner);
-      own = kept_in_span(volume, own, span);
+      own = kept_in_span(volume, own, block, job->height);
     }
     own.before = lanes_keep(extinction > 0.0f, own.before);
     if (volume_count == 1) kept = own;
     else add_kept(&kept, own, extinction), total = total + extinction;
   }
   lanes any = channels == 1 ? depth[0] : depth[0] + depth[1] + depth[2];
+  const lanes_int affected = (any > 0.0f) | hidden;
   const int taken = lanes_bits(any > 0.0f) != 0;
-  if (!taken && !hidden) return (attenuated_block){0, 0, 1};
+  if (lanes_bits(affected) == 0) return (attenuated_block){0, 0, 1};
   if (volume_count > 1 && job->outside[0] != NULL) {
     lanes inverse = 1.0f / lanes_max(total, lanes_set(1e-30f));
     kept = (kept_light){kept.before * inverse, kept.within * inverse};
@@ -272,7 +278,7 @@ LANES_INLINE attenuated_block attenuate_block(const attenuate_job *job, int volu
     greatest = lanes_max(greatest, after);
     if (job->outside[c] != NULL)
       greatest = lanes_max(greatest, pass_outside(job->outside[c] + (size_t)y * job->stride + x, job->stride,
-                                                  before, after, kept));
+                                                  before, after, kept, affected));
     if (job->older[c] != NULL) {
       float *older = job->older[c] + (size_t)y * job->stride + x;
       lanes older_after = lanes_load_block(older, job->stride) * passing;

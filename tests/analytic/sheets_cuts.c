@@ -415,8 +415,7 @@ static double deviation_of_face(const lit_face *face, const hl_opacity_point *op
   return errors[(size_t)(0.999 * (double)(count - 1))];
 }
 
-/* A face is lit by the light at its outside, whatever the values behind it are. The blurs of `paper` leave
- * lines on a face that light grazes by 15 degrees (docs/limits.md). */
+/* A face is lit by the light at its outside, whatever the values behind it are. */
 static void test_even_in_grazing_light(void **state) {
   (void)state;
   static const double eyes[] = {70, 20, 5}, lights[] = {70, 30, 15};
@@ -425,7 +424,6 @@ static void test_even_in_grazing_light(void **state) {
     for (int n = 0; n < 9; n++)
       for (int method = -1; method <= HL_SOFT_SUBLIGHTS; method++) {
         const lit_face face = {eyes[n % 3], lights[n / 3], method};
-        if (method == HL_SOFT_PAPER && face.light < 30) continue;
         const double most = deviation_of_face(&face, functions[f], false);
         if (!(most < 0.03))
           fail_msg("function %d, method %d, eye at %g, light at %g degrees: %.4f", f, method, face.eye,

@@ -187,14 +187,15 @@ static void test_joined_parts(void **state) {
 
 /* ---- light that leaves matter through a face ---- */
 
-/* An opaque ball around the origin whose edge is two voxels wide, with a cut and a light. */
-static void open_whole_ball(stage *set, const hl_cut *cut, vec3 light) {
+/* An opaque ball around the origin, or a layer below the height RADIUS, with a cut and a light. The edge of
+ * the matter is two voxels wide. */
+static void open_cut_matter(stage *set, int layer, const hl_cut *cut, vec3 light) {
   static float voxels[VOXELS * VOXELS * VOXELS];
   static const hl_opacity_point opacity[] = {{0, 0}, {1, 0.999}};
   for (int n = 0; n < VOXELS * VOXELS * VOXELS; n++) {
     double x = n % VOXELS + 0.5 - HALF, y = n / VOXELS % VOXELS + 0.5 - HALF,
            z = n / (VOXELS * VOXELS) + 0.5 - HALF;
-    voxels[n] = (float)fmin(fmax((RADIUS + 1 - sqrt(x * x + y * y + z * z)) / 2, 0), 1);
+    voxels[n] = (float)fmin(fmax((RADIUS + 1 - (layer ? z : sqrt(x * x + y * y + z * z))) / 2, 0), 1);
   }
   stage_open(set);
   set->scene.width = set->scene.height = SIDE;
@@ -218,7 +219,7 @@ static void test_inner_corner(void **state) {
   static const hl_cut corner = {
       .type = HL_CUT_BOX, .min = {-RADIUS + 5, 0, 0}, .max = {40, 40, 40}, .keep = HL_CUT_KEEP_OUTSIDE};
   stage set;
-  open_whole_ball(&set, &corner, (vec3){1, 0.15, -0.5});
+  open_cut_matter(&set, 0, &corner, (vec3){1, 0.15, -0.5});
   set.scene.camera.height = 10;
   stage_look(&set, (vec3){60, 48, 54}, (vec3){-RADIUS + 5, 0, 0}, (vec3){0, 0, 1});
   stage_render_sheets(&set, pixels);
@@ -249,7 +250,7 @@ static void test_rim(void **state) {
   int count = 0;
   for (int whole = 0; whole < 2; whole++) {
     stage set;
-    open_whole_ball(&set, whole ? NULL : &half, (vec3){1, 0.1, -0.15});
+    open_cut_matter(&set, 0, whole ? NULL : &half, (vec3){1, 0.1, -0.15});
     set.scene.camera.height = 10;
     stage_look(&set, (vec3){-20, 0, 60}, (vec3){-2, 0, RADIUS}, (vec3){0, 1, 0});
     stage_render_sheets(&set, pixels[whole]);
@@ -268,12 +269,43 @@ static void test_rim(void **state) {
   assert_true(greatest < 0.02);
 }
 
+/* A layer, up to two voxels thick, hangs above a floor. The sheets lie along its cut, and for some heights of
+ * the cut a sheet lies in it: the light leaves the layer at the end of a slab. The floor gets what the layer
+ * lets through. */
+static void test_cut_at_a_sheet(void **state) {
+  (void)state;
+  static float pixels[SIDE * SIDE * 4];
+  double greatest = 0;
+  for (int hollow = 0; hollow < 2; hollow++)
+    for (int step = 0; step < 8; step++) {
+      const double face = RADIUS - 2 + step / 16.0;
+      const hl_cut cuts[] = {
+          {.type = HL_CUT_PLANE, .point = {0, 0, face}, .normal = {0, 0, -1}},
+          {.type = HL_CUT_BOX, .min = {-40, -40, -40}, .max = {40, 40, face}, .keep = HL_CUT_KEEP_OUTSIDE}};
+      stage set;
+      open_cut_matter(&set, 1, &cuts[hollow], (vec3){0, 0.5, -1});
+      hl_scene_volume *floor = stage_add_grid(&set, (size_t[3]){VOXELS, VOXELS, 6}, (double[3]){1, 1, 1},
+                                              (vec3){-HALF, -HALF, -HALF - 6}, NULL);
+      stage_set_opacity(&set, floor, 0.999, 1);
+      floor->shading = HL_SHADING_PHONG;
+      floor->material = (hl_material){.diffuse = 1, .shininess = 1};
+      set.scene.camera.height = 3;
+      stage_look(&set, (vec3){0, 12 + 30, 60 - HALF}, (vec3){0, 12, -HALF}, (vec3){0, 0, 1});
+      stage_render_sheets(&set, pixels);
+      stage_close(&set);
+      for (int p = 0; p < SIDE * SIDE; p++) greatest = fmax(greatest, (double)pixels[4 * p]);
+    }
+  print_message("# below a cut at a sheet: greatest light %.4f\n", greatest);
+  assert_true(greatest < 0.02);
+}
+
 int main(void) {
   const struct CMUnitTest tests[] = {cmocka_unit_test(test_even_under_grazing_light),
                                      cmocka_unit_test(test_normal_of_a_cut),
                                      cmocka_unit_test(test_cut_behind),
                                      cmocka_unit_test(test_joined_parts),
                                      cmocka_unit_test(test_inner_corner),
-                                     cmocka_unit_test(test_rim)};
+                                     cmocka_unit_test(test_rim),
+                                     cmocka_unit_test(test_cut_at_a_sheet)};
   return cmocka_run_group_tests_name("sheets_faces", tests, NULL, NULL);
 }

@@ -213,18 +213,18 @@ DEVICE int nears_inner_corner(const volume_data *data, GLOBAL const plan_light *
 }
 
 /* Finds k and k': the fractions of the light that a surface has absorbed which still light the surface after
- * a slab. sums: integrals from a to b. path: length of the light's ray through the slab. extinction: the
- * slab's extinction. skin: how much of the visible matter belongs to a face. */
+ * a slab. sums: integrals from a to b. way: the length of the light's way through the slab's matter. depth:
+ * the slab's optical depth. skin: how much of the visible matter belongs to a face. light, outside: T and Y
+ * before the slab. */
 DEVICE kept_light kept_in_slab(const volume_data *volume, table_coordinate a, table_coordinate b,
-                               const way_sums *sums, covered_span span, float path, float extinction,
-                               float skin, float light, float outside) {
+                               const way_sums *sums, float way, float depth, float skin, float light,
+                               float outside) {
   GLOBAL const plan_volume *plan = volume->plan;
-  float way = path * span.length;
   float even = way - magnitude(b.x - a.x) * divided(1.0f, plan->normal_edge);
   even = exp_negative(greater(even, 0.0f) * divided(1.0f, EVEN_VOXELS * plan->voxel));
   kept_light kept;
   if (plan->several_surfaces) {
-    kept = kept_of_several(volume, a, b, sums, way, extinction * path, even, light, outside);
+    kept = kept_of_several(volume, a, b, sums, way, depth, even, light, outside);
   } else {
     float left = power_of_depth(sums->to_a - plan->only_beginning, sums->to_b - plan->only_beginning);
     kept.before = kept.within = left * even;
@@ -238,7 +238,6 @@ DEVICE kept_light kept_in_slab(const volume_data *volume, table_coordinate a, ta
       kept.within = power_of_part(kept.within, 1.0f - skin);
     }
   }
-  if (span.begin + span.length < 1.0f - ROUNDING_OF_SPAN) kept.before = kept.within = 0.0f;
 #endif
   return kept;
 }

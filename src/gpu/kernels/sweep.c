@@ -169,7 +169,7 @@ KERNEL(12) run_light(SWEEP_ARGUMENTS) {
     if (does == SLAB_TAKES) touched[tile] = SOFT ? in_frame[sheet].chunk : 1;
 #endif
 #if OUTSIDE
-    if (block_any(votes, does != 0) && does != SLAB_TAKES) {
+    if (does == SLAB_HIDES) {
       leave_surface(&own);
       changed_at = sheet;
     }

@@ -154,13 +154,21 @@ DEVICE ray_left left_of_ray(GLOBAL const plan_box *box, GLOBAL const plan_cut *c
   return ray;
 }
 
+/* The heights between which the volume's box and cuts leave matter in the slab that ends at a sheet. */
+DEVICE heights_in_box heights_left_in_slab(const ray_left *ray, float height, float spacing) {
+#if CUTS
+  return heights_in_slab(ray->in_box, ray->cuts, ray->cut_count, ray->u, ray->v, height, spacing);
+#else
+  (void)height;
+  (void)spacing;
+  return ray->in_box;
+#endif
+}
+
 /* The part that the volume's box and cuts leave of the slab that ends at a sheet. */
 DEVICE covered_span part_of_slab(const ray_left *ray, float height, float spacing) {
-#if CUTS
-  return covered(heights_in_slab(ray->in_box, ray->cuts, ray->cut_count, ray->u, ray->v, height, spacing),
-                 height, spacing);
-#elif BOXED
-  return covered(ray->in_box, height, spacing);
+#if BOXED
+  return covered(heights_left_in_slab(ray, height, spacing), height, spacing);
 #else
   (void)ray;
   (void)height;
@@ -366,7 +374,7 @@ DEVICE float factor_in_slab(const sweep_data *sweep, GLOBAL const plan_light *li
 }
 
 /* The effect of a slab on the light of a pixel. SLAB_TAKES: the slab absorbs light. SLAB_HIDES: the slab
- * absorbs no light, but it ends surfaces in the pixel's block, because a factor hides its matter. */
+ * absorbs no light, but it ends surfaces, because a factor hides its matter. */
 #define SLAB_TAKES 1
 #define SLAB_HIDES 2
 
@@ -378,10 +386,17 @@ DEVICE int attenuate_slab(const sweep_data *sweep, GLOBAL const plan_light *ligh
   GLOBAL const plan_volume *volume = sweep->volume.plan;
   table_coordinate a = coordinate_of_density(volume, before), b = coordinate_of_density(volume, after);
   if (!may_be_visible(volume, a, b)) return 0;
-  covered_span part = part_of_slab(ray, in_frame->height, plan->spacing);
 #if BOXED
+  const heights_in_box left = heights_left_in_slab(ray, in_frame->height, plan->spacing);
+  const covered_span part = covered(left, in_frame->height, plan->spacing);
+  /* whether light leaves the matter in the slab, or at the slab's end */
+  const int ends = left.leave <= in_frame->height;
   cut_way(part, &a, &b);
+#else
+  const covered_span part = whole_slab();
+  const int ends = 0;
 #endif
+  (void)ends;
   const way_sums sums = sums_of_way(sweep->volume.tables, a, b);
   float extinction = sums.extinction * part.length, all = 0.0f;
   if (!(extinction > 0.0f)) return 0;
@@ -389,19 +404,21 @@ DEVICE int attenuate_slab(const sweep_data *sweep, GLOBAL const plan_light *ligh
   extinction = extinction * factor_in_slab(sweep, light, in_frame, ray, part, a.x, b.x, &sums);
   if (!(extinction > 0.0f)) return SLAB_HIDES;
 #endif
+  for (int c = 0; c < CHANNELS; c++) all = all + fused(extinction, volume->weight[c], 0.0f);
+  if (!(all > 0.0f)) return 0;
   float path = path_through_sheet(in_frame, !light->parallel, light->slab_path, ray->u, ray->v);
 #if OUTSIDE
   const float skin = BOXED && volume->faces_take
                          ? skin_of_faces(&sweep->volume, light, in_index - 1, ray->u, ray->v)
                          : 0.0f;
-  kept_light kept = kept_in_slab(&sweep->volume, a, b, &sums, part, path, extinction, skin, pixel->passing[0],
-                                 pixel->passing[CHANNELS]);
-  if (CUTS && volume->faces_take && nears_inner_corner(&sweep->volume, light, in_index - 1, ray->u, ray->v))
+  kept_light kept = kept_in_slab(&sweep->volume, a, b, &sums, part.length * path, extinction * path, skin,
+                                 pixel->passing[0], pixel->passing[CHANNELS]);
+  if (ends ||
+      (CUTS && volume->faces_take && nears_inner_corner(&sweep->volume, light, in_index - 1, ray->u, ray->v)))
     kept.before = kept.within = 0.0f;
 #endif
   for (int c = 0; c < CHANNELS; c++) {
     float depth = fused(extinction, volume->weight[c], 0.0f), light_before = pixel->passing[c];
-    all = all + depth;
     const float passing = exp_negative(depth * path);
     pixel->passing[c] = light_before * passing;
 #if SOFT
@@ -413,11 +430,10 @@ DEVICE int attenuate_slab(const sweep_data *sweep, GLOBAL const plan_light *ligh
                                                 kept);
 #endif
   }
-  return all > 0.0f ? SLAB_TAKES : 0;
+  return SLAB_TAKES;
 }
 
-/* Ends the surface in a light's pixel: sets the light at the surface's outside to the transmittance. This is
- * done if a slab absorbs no light in this pixel, but affects the light of another pixel of the block. */
+/* Ends the surface in a light's pixel: sets the light at the surface's outside to the transmittance. */
 DEVICE void leave_surface(light_pixel *pixel) {
   for (int c = 0; c < CHANNELS * OUTSIDE; c++)
     pixel->passing[CHANNELS + c] = greater(pixel->passing[c], 0.0f);
