@@ -29,6 +29,23 @@ hl_status hl_check_range(const hl_checker *check, const char *key, double value,
   return hl_fail(check->error, HL_ERROR_INPUT, "%s/%s: %.9g %s: %s", check->place, key, value, problem, mend);
 }
 
+hl_status hl_check_point_opacity(const hl_checker *check, const char *key, size_t index, double opacity) {
+  char element[64];
+  snprintf(element, sizeof element, "%s/%zu/1", key, index);
+  return hl_check_range(check, element, opacity, 0, 1, "give an opacity from 0 to 1");
+}
+
+hl_status hl_check_point_color(const hl_checker *check, const char *key, size_t index,
+                               const double color[3]) {
+  hl_status status = HL_OK;
+  for (int channel = 0; status == HL_OK && channel < 3; channel++) {
+    char element[64];
+    snprintf(element, sizeof element, "%s/%zu/%d", key, index, channel + 1);
+    status = hl_check_range(check, element, color[channel], 0, 1, "give linear RGB, each from 0 to 1");
+  }
+  return status;
+}
+
 hl_status hl_check_point(const hl_checker *check, const char *key, const double v[3]) {
   for (int a = 0; a < 3; a++) {
     char element[48];

@@ -26,6 +26,10 @@ hl_status hl_check_settings(const hl_checker *check, hl_setting_kind kind, const
 hl_status hl_check_range(const hl_checker *check, const char *key, double value, double low, double high,
                          const char *mend);
 
+/* Check the opacity and the colour of point `index` of the list `key` of a transfer function's points. */
+hl_status hl_check_point_opacity(const hl_checker *check, const char *key, size_t index, double opacity);
+hl_status hl_check_point_color(const hl_checker *check, const char *key, size_t index, const double color[3]);
+
 /* Two checks of vectors. hl_check_point() checks that coordinates are within HL_LIMIT_LENGTH, and
  * hl_check_direction() that a direction is not zero. */
 hl_status hl_check_point(const hl_checker *check, const char *key, const double v[3]);

@@ -35,13 +35,10 @@ static hl_status check_opacity_points(const hl_checker *check, const char *key,
   hl_status status = hl_check_count(check, key, points, count, HL_LIMIT_POINTS);
   for (size_t p = 0; status == HL_OK && p < count; p++) {
     const hl_opacity_point *point = &points[p];
-    char element[64];
-    snprintf(element, sizeof element, "%s/%zu/1", key, p);
     if ((status = check_value(check, key, p, point->value)) != HL_OK) return status;
     if (p > 0)
       status = check_order(check, key, p, p > 1 ? point[-2].value : 0, point[-1].value, point->value);
-    if (status == HL_OK)
-      status = hl_check_range(check, element, point->opacity, 0, 1, "give an opacity from 0 to 1");
+    if (status == HL_OK) status = hl_check_point_opacity(check, key, p, point->opacity);
   }
   return status;
 }
@@ -53,12 +50,7 @@ static hl_status check_color_points(const hl_checker *check, const hl_transfer_f
     if ((status = check_value(check, "color", p, point->value)) != HL_OK) return status;
     if (p > 0)
       status = check_order(check, "color", p, p > 1 ? point[-2].value : 0, point[-1].value, point->value);
-    for (int channel = 0; status == HL_OK && channel < 3; channel++) {
-      char element[48];
-      snprintf(element, sizeof element, "color/%zu/%d", p, channel + 1);
-      status = hl_check_range(check, element, point->color[channel], 0, 1,
-                              "give linear RGB, each from 0 to 1");
-    }
+    if (status == HL_OK) status = hl_check_point_color(check, "color", p, point->color);
   }
   return status;
 }

@@ -127,17 +127,10 @@ static hl_status check_curves(const char *place, const hl_function_curves *curve
                                  sizeof *curves->opacity);
   if (status == HL_OK)
     status = check_order(&check, "color", curves->color, curves->color_count, sizeof *curves->color);
-  for (size_t n = 0; n < curves->opacity_count && status == HL_OK; n++) {
-    char element[48];
-    snprintf(element, sizeof element, "opacity/%zu/1", n);
-    status = hl_check_range(&check, element, curves->opacity[n].opacity, 0, 1, "give an opacity from 0 to 1");
-  }
-  for (size_t n = 0; n < 3 * curves->color_count && status == HL_OK; n++) {
-    char element[48];
-    snprintf(element, sizeof element, "color/%zu/%zu", n / 3, n % 3 + 1);
-    status = hl_check_range(&check, element, curves->color[n / 3].color[n % 3], 0, 1,
-                            "give linear RGB, each from 0 to 1");
-  }
+  for (size_t n = 0; n < curves->opacity_count && status == HL_OK; n++)
+    status = hl_check_point_opacity(&check, "opacity", n, curves->opacity[n].opacity);
+  for (size_t n = 0; n < curves->color_count && status == HL_OK; n++)
+    status = hl_check_point_color(&check, "color", n, curves->color[n].color);
   return status;
 }
 
