@@ -122,15 +122,15 @@ static int open_standard_input(cli_input *input, uint64_t limit) {
 }
 
 /* Opens an input that is an ordinary file: finds out its kind. Reads the file into memory if it is a picture,
- * or a scene whose path begins with "/dev/", because such a path does not tell the folder to which names in
- * the scene are relative. If the file is missing (descriptor < 0), a later reader reports the error. */
+ * or a scene whose path is the name of a stream, because such a path does not tell the folder to which names
+ * in the scene are relative. If the file is missing (descriptor < 0), a later reader reports the error. */
 static int open_file(cli_input *input, int descriptor, uint64_t limit) {
   unsigned char first[1024];
   ssize_t got = descriptor >= 0 ? pread(descriptor, first, sizeof first, 0) : 0;
   input_kind told = kind_by_content(first, got > 0 ? (size_t)got : 0);
   if (!kind_by_name(input->path, &input->kind)) input->kind = told;
   else if (input->kind == INPUT_PICTURE && told != INPUT_PICTURE && got > 0) input->kind = told;
-  bool redirected = input->kind == INPUT_SCENE && strncmp(input->path, "/dev/", 5) == 0;
+  bool redirected = input->kind == INPUT_SCENE && hl_plain_is_stream(input->path);
   bool whole = descriptor >= 0 && (input->kind == INPUT_PICTURE || redirected);
   return whole ? read_whole(input, descriptor, limit) : EXIT_CODE_OK;
 }

@@ -10,6 +10,7 @@
 #include "core/door.h"
 #include "core/memory.h"
 #include "scene/label/label_table.h"
+#include "text/plain.h"
 #include "text/stem.h"
 #include "volume/load_beside.h"
 
@@ -269,7 +270,7 @@ static bool is_read_plainly(const hl_scene_volume *volume) {
 static bool is_layered(const hl_composer *composer, const hl_scene_description *description) {
   const hl_scene_volume *only = description->volume_count == 1 ? &description->volumes[0] : NULL;
   if (!composer->bare || (composer->flags & HL_COMPOSE_CHANGED) != 0 || only == NULL || only->file == NULL ||
-      only->label_count == 0 || strncmp(only->file, "/dev/", 5) == 0 || !is_read_plainly(only) ||
+      only->label_count == 0 || hl_plain_is_stream(only->file) || !is_read_plainly(only) ||
       hl_volume_segment_count(only->volume) == 0)
     return false;
   size_t layers = layers_of(only->volume);

@@ -48,3 +48,7 @@ bool hl_plain_equal_bytes(const char *a, const char *b, size_t length) {
 bool hl_plain_is_url(const char *text) {
   return strncmp(text, "http://", 7) == 0 || strncmp(text, "https://", 8) == 0;
 }
+
+bool hl_plain_is_stream(const char *path) {
+  return strcmp(path, "/dev/stdin") == 0 || strncmp(path, "/dev/fd/", 8) == 0;
+}
