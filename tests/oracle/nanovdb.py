@@ -7,6 +7,7 @@ Exit 77: python3-openvdb, numpy or nanovdb_convert (libnanovdb-tools) is missing
 import json
 import pathlib
 import shutil
+import struct
 import subprocess
 import sys
 import tempfile
@@ -100,6 +101,23 @@ def level_set(root):
     yield Case(str(path), expected, np.array(low) * 0.5, np.eye(3) * 0.5)
 
 
+def damaged_boxes(root):
+    """A box of active voxels that is damaged is cut to the regions of 128^3 voxels that the tree has."""
+    grid = vdb.FloatGrid()
+    low, high = (-3, 5, 7), (60, 50, 40)
+    grid.fill(low, high, 2.5, True)
+    path = convert([grid], root / "box.nvdb")
+    content, box = path.read_bytes(), struct.pack("<6i", *low, *high)
+    for change in ((0, 0, 0, 4000, 4000, 4000), (-4000, -4000, -4000, 0, 0, 0)):
+        wrong = [stated + more for stated, more in zip((*low, *high), change)]
+        damaged = root / ("box%d.nvdb" % wrong[5])
+        damaged.write_bytes(content.replace(box, struct.pack("<6i", *wrong)))
+        first, last = np.maximum(wrong[:3], (-128, 0, 0)), np.minimum(wrong[3:], 127)
+        expected = np.zeros(last - first + 1, np.float32)
+        expected[tuple(slice(a - f, b - f + 1) for a, b, f in zip(low, high, first))] = 2.5
+        yield Case(str(damaged), np.moveaxis(expected, [0, 1, 2], [2, 1, 0]), first)
+
+
 def check_names(program, root):
     """Of several grids, the one called density; others by their names; damaged files give errors."""
     grids = []
@@ -130,6 +148,7 @@ def main():
     root = pathlib.Path(tempfile.mkdtemp(prefix="halflight-nanovdb-"))
     try:
         failures = run(program, "NanoVDB", scalar_cases(root)) + run(program, "quantised", quantised_cases(root))
+        failures += run(program, "damaged boxes", damaged_boxes(root))
         failures += check_names(program, root)
     finally:
         shutil.rmtree(root, ignore_errors=True)

@@ -10,6 +10,7 @@
 #include <math.h>
 #include <string.h>
 
+#include "core/context.h"
 #include "volume/convert.h"
 #include "volume/formats/vdb/nanovdb_grid.h"
 #include "volume/io/parallel.h"
@@ -85,20 +86,101 @@ static void find_lower_nodes(walk *w) {
   }
 }
 
-/* Reads the box of active voxels, and finds which lower nodes meet it. Fails if the box is empty, or if a
- * side needs more than 32 bits. */
-static hl_status read_box(walk *w, hl_error *error) {
-  pnanovdb_coord_t low = pnanovdb_root_get_bbox_min(w->memory, w->root),
-                   high = pnanovdb_root_get_bbox_max(w->memory, w->root);
-  const int64_t lows[3] = {low.x, low.y, low.z}, highs[3] = {high.x, high.y, high.z};
-  for (int a = 0; a < 3; a++) {
-    w->low[a] = lows[a];
-    w->size[a] = highs[a] - lows[a] + 1;
-    if (w->size[a] < 1 || w->size[a] > INT32_MAX)
-      return hl_fail(error, HL_ERROR_INPUT, "%s: the grid has no active voxels", w->grid->path);
-  }
+/* Takes the box of active voxels, and finds which lower nodes meet it. */
+static void take_box(walk *w) {
+  memcpy(w->low, w->grid->low, sizeof w->low);
+  memcpy(w->size, w->grid->box_size, sizeof w->size);
   find_lower_nodes(w);
+}
+
+/* The box of the regions of 128^3 voxels in which the tree has nodes or active tiles, and the number of lower
+ * nodes. */
+typedef struct tree_extent {
+  int64_t low[3], high[3]; /* the first voxel, and the last one */
+  uint64_t lower_nodes;
+} tree_extent;
+
+static void add_cube(const int64_t begin[3], int64_t side, tree_extent *extent) {
+  for (int a = 0; a < 3; a++) {
+    if (begin[a] < extent->low[a]) extent->low[a] = begin[a];
+    if (begin[a] + side - 1 > extent->high[a]) extent->high[a] = begin[a] + side - 1;
+  }
+}
+
+/* Adds the regions of an upper node. A word of its masks has 32 regions along z. */
+static void add_upper(const walk *w, pnanovdb_upper_handle_t upper, const int64_t begin[3],
+                      tree_extent *extent) {
+  enum { WORDS = PNANOVDB_UPPER_TABLE_COUNT / 32 };
+  for (uint32_t n = 0; n < WORDS; n++) {
+    const pnanovdb_address_t word = pnanovdb_address_offset(upper.address, 4 * n);
+    const uint32_t children = pnanovdb_read_uint32(
+        w->memory, pnanovdb_address_offset(word, PNANOVDB_UPPER_OFF_CHILD_MASK));
+    const uint32_t any = children | pnanovdb_read_uint32(w->memory, pnanovdb_address_offset(
+                                                                        word, PNANOVDB_UPPER_OFF_VALUE_MASK));
+    extent->lower_nodes += (uint64_t)__builtin_popcount(children);
+    if (any == 0) continue;
+    int64_t at[3] = {begin[0] + LOWER * (n >> 5), begin[1] + LOWER * (n & 31),
+                     begin[2] + LOWER * __builtin_ctz(any)};
+    add_cube(at, LOWER, extent);
+    at[2] = begin[2] + LOWER * (31 - __builtin_clz(any));
+    add_cube(at, LOWER, extent);
+  }
+}
+
+/* Finds the extent of the tree. A tile's key has 21 bits for each axis: the upper bits of its first voxel. */
+static hl_status find_extent(const walk *w, tree_extent *extent, hl_error *error) {
+  enum { KEY_BITS = 21, TILE_BITS = 12 };
+  const uint32_t kind = w->grid->kind, tiles = pnanovdb_root_get_tile_count(w->memory, w->root);
+  *extent = (tree_extent){.low = {INT64_MAX, INT64_MAX, INT64_MAX},
+                          .high = {INT64_MIN, INT64_MIN, INT64_MIN}};
+  for (uint32_t n = 0; n < tiles; n++) {
+    const pnanovdb_root_tile_handle_t tile = pnanovdb_root_get_tile(kind, w->root, n);
+    const uint64_t key = pnanovdb_root_tile_get_key(w->memory, tile);
+    int64_t begin[3];
+    for (int a = 0; a < 3; a++) {
+      const uint32_t place = (uint32_t)(key >> (KEY_BITS * (2 - a)) & ((1u << KEY_BITS) - 1)) << TILE_BITS;
+      begin[a] = (int32_t)place;
+    }
+    if (pnanovdb_int64_is_zero(pnanovdb_root_tile_get_child(w->memory, tile))) {
+      if (pnanovdb_root_tile_get_state(w->memory, tile) != 0) add_cube(begin, 1 << TILE_BITS, extent);
+      continue;
+    }
+    const pnanovdb_upper_handle_t upper = pnanovdb_root_get_child(kind, w->memory, w->root, tile);
+    if (upper.address.byte_offset > w->grid->size)
+      return fail_damaged(w->grid, "a node lies outside of it", error);
+    add_upper(w, upper, begin, extent);
+  }
+  if (extent->lower_nodes > w->grid->size / pnanovdb_grid_type_constants[kind].lower_size)
+    return fail_damaged(w->grid, "its nodes name more nodes than there is room for", error);
   return HL_OK;
+}
+
+/* Finds the box of active voxels. The box that the file states is cut to the tree's extent, so that a damaged
+ * one asks for no more voxels than the tree has regions for. Fails if the box is empty, or if a side needs
+ * more than 32 bits. */
+static hl_status find_box(const walk *w, nanovdb_grid *grid, hl_error *error) {
+  const pnanovdb_coord_t low = pnanovdb_root_get_bbox_min(w->memory, w->root),
+                         high = pnanovdb_root_get_bbox_max(w->memory, w->root);
+  const int64_t lows[3] = {low.x, low.y, low.z}, highs[3] = {high.x, high.y, high.z};
+  tree_extent extent;
+  bool cut = false;
+  hl_status status = find_extent(w, &extent, error);
+  for (int a = 0; a < 3 && status == HL_OK; a++) {
+    const int64_t from = lows[a] > extent.low[a] ? lows[a] : extent.low[a],
+                  to = highs[a] < extent.high[a] ? highs[a] : extent.high[a];
+    if (lows[a] > highs[a] || from > to || to - from >= INT32_MAX)
+      return hl_fail(error, HL_ERROR_INPUT, "%s: the grid has no active voxels", grid->path);
+    cut = cut || from != lows[a] || to != highs[a];
+    grid->low[a] = from;
+    grid->box_size[a] = to - from + 1;
+  }
+  if (cut)
+    hl_log(grid->context, HL_LOG_WARNING,
+           "%.300s: the box of active voxels is larger than the grid's nodes: it is cut to them: the file "
+           "may be "
+           "damaged",
+           grid->path);
+  return status;
 }
 
 static hl_status check_root(const walk *w, hl_error *error) {
@@ -132,8 +214,7 @@ static void place(const walk *w, hl_volume_description *description) {
   }
 }
 
-hl_status nanovdb_grid_describe(const nanovdb_grid *grid, hl_volume_description *description,
-                                hl_error *error) {
+hl_status nanovdb_grid_describe(nanovdb_grid *grid, hl_volume_description *description, hl_error *error) {
   const pnanovdb_grid_handle_t handle = {pnanovdb_address_null()};
   walk w;
   begin(grid, &w);
@@ -144,8 +225,9 @@ hl_status nanovdb_grid_describe(const nanovdb_grid *grid, hl_volume_description 
   if (pnanovdb_grid_get_grid_type(w.memory, handle) != grid->kind)
     return fail_damaged(grid, "its type is not what the file says", error);
   hl_status status = check_root(&w, error);
-  if (status == HL_OK) status = read_box(&w, error);
+  if (status == HL_OK) status = find_box(&w, grid, error);
   if (status != HL_OK) return status;
+  take_box(&w);
   for (int a = 0; a < 3; a++) description->dimensions[a] = (size_t)w.size[a];
   place(&w, description);
   return HL_OK;
@@ -378,8 +460,7 @@ hl_status nanovdb_grid_read(const nanovdb_grid *grid, const hl_volume_descriptio
   walk w;
   hl_pool *pool = NULL;
   begin(grid, &w);
-  hl_status status = read_box(&w, error);
-  if (status != HL_OK) return status;
+  take_box(&w);
   w.type = description->type;
   w.bytes = hl_voxel_type_bytes(w.type);
   w.stored_bytes = hl_storage_bytes(hl_voxel_type_storage(w.type));
@@ -387,7 +468,7 @@ hl_status nanovdb_grid_read(const nanovdb_grid *grid, const hl_volume_descriptio
   w.exact = exact;
   size_t parts = w.count[0] * w.count[1] * w.count[2];
   bool parallel = w.size[0] * w.size[1] * w.size[2] >= PARALLEL_VOXELS;
-  status = hl_pool_create(grid->context, parallel ? 0 : 1, &pool, error);
+  hl_status status = hl_pool_create(grid->context, parallel ? 0 : 1, &pool, error);
   if (status == HL_OK)
     status = hl_parallel_read(grid->context, pool, grid->path, parts, read_part, &w, error);
   hl_pool_destroy(pool);
@@ -397,8 +478,9 @@ hl_status nanovdb_grid_read(const nanovdb_grid *grid, const hl_volume_descriptio
 hl_status nanovdb_grid_read_box(const nanovdb_grid *grid, const size_t first[3], const size_t size[3],
                                 float *voxels, hl_error *error) {
   walk w;
+  hl_status status = HL_OK;
   begin(grid, &w);
-  hl_status status = read_box(&w, error);
+  take_box(&w);
   for (int a = 0; a < 3; a++) {
     w.low[a] += (int64_t)first[a];
     w.size[a] = (int64_t)size[a];

@@ -14,19 +14,19 @@ typedef struct nanovdb_grid {
   const char *path;     /* for error lines */
   unsigned char *bytes; /* borrowed; [size]; aligned to 64 bytes */
   size_t size;
-  uint32_t kind; /* the kind of grid: a constant whose name begins with PNANOVDB_GRID_TYPE_ */
-  int component; /* the index of the component of vectors and colours that is read, or
-                  * HL_COMPONENT_MAGNITUDE */
+  uint32_t kind;               /* the kind of grid: a constant whose name begins with PNANOVDB_GRID_TYPE_ */
+  int component;               /* the index of the component of vectors and colours that is read, or
+                                * HL_COMPONENT_MAGNITUDE */
+  int64_t low[3], box_size[3]; /* the box of active voxels; set by nanovdb_grid_describe() */
 } nanovdb_grid;
 
 /* Finds the type and the number of components of a kind of grid. The type is 0 if grids of this kind cannot
  * be read. */
 void nanovdb_kind(uint32_t kind, hl_voxel_type *type, size_t *components);
 
-/* Checks the grid's memory, and sets the description's dimensions, origin and axes to the dimensions, origin
- * and axes of the box of active voxels. */
-hl_status nanovdb_grid_describe(const nanovdb_grid *grid, hl_volume_description *description,
-                                hl_error *error);
+/* Checks the grid's memory, finds the box of active voxels, and sets the description's dimensions, origin and
+ * axes to those of the box. */
+hl_status nanovdb_grid_describe(nanovdb_grid *grid, hl_volume_description *description, hl_error *error);
 
 /* Reads all voxels [k][j][i] of the box of active voxels, in stored form. description: the box's description,
  * with the volume's type. exact: notes the voxels' numbers. */

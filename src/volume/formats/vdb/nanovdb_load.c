@@ -273,8 +273,8 @@ static hl_status load_grid(grid_list *list, hl_load_request *request, hl_volume 
                    "another by \"array\" (--array), or rasterize it",
                    list->path, entry->kind);
   status = hl_component_choose(request, list->path, false, &payload, error);
-  nanovdb_grid grid = {request->context,          list->path,  NULL,
-                       (size_t)entry->grid_bytes, entry->kind, payload.component};
+  nanovdb_grid grid = {request->context, list->path,        NULL, (size_t)entry->grid_bytes,
+                       entry->kind,      payload.component, {0},  {0}};
   if (status == HL_OK) status = read_grid(list, entry, &grid.bytes, error);
   if (status == HL_OK) status = make_volume(list, entry, &grid, &payload, request, volume, error);
   hl_release(request->context, grid.bytes);
