@@ -544,6 +544,12 @@ HL_API HL_WARN_UNUSED hl_status hl_camera_frame_view(const hl_scene_description 
 HL_API HL_WARN_UNUSED hl_status hl_camera_reframe(const hl_scene_description *description, hl_camera *camera,
                                                   hl_error *error);
 
+/* Finds the planes through the sides of the picture of the description's camera, between which lies
+ * everything that the picture sees: a point p of the world lies inside if a x + b y + c z + d >= 0 for each
+ * plane a, b, c, d. Fails for an impossible camera or size of the picture. */
+HL_API HL_WARN_UNUSED hl_status hl_scene_seen_part(const hl_scene_description *description,
+                                                   double planes[4][4]);
+
 /* The default size of a floor (hl_scene_make_floor()). */
 #define HL_FLOOR_SIZE 3.0
 

@@ -164,6 +164,12 @@ typedef struct hl_volume_load_options {
    * number below the number of channels is never a name. Upper and lower case count only if they tell two
    * channels apart. Default null. */
   const char *channel_name;
+  /* A coarser resolution of the same data, borrowed during the call. If it is given, chunks of a store that
+   * lie outside of `seen` are not read: their voxels are interpolated linearly in `coarse`. Default null: all
+   * chunks are read. */
+  const hl_volume *coarse;
+  double seen[4][4]; /* with `coarse`: the planes around what a picture sees (hl_scene_seen_part()). A point p
+                      * of the world lies inside if a x + b y + c z + d >= 0 for each plane a, b, c, d */
 } hl_volume_load_options;
 
 HL_API void hl_volume_load_options_defaults(hl_volume_load_options *options);

@@ -153,7 +153,8 @@ static int load(animate_job *job) {
   bool bare;
   hl_error error = {0};
   int exit_code = render_load_inputs(&job->host, job->render, job->inputs, &bare, &job->scene);
-  if (exit_code == EXIT_CODE_OK) exit_code = render_change_scene(&job->host, job->render, bare, &job->scene);
+  if (exit_code == EXIT_CODE_OK)
+    exit_code = render_change_scene(&job->host, job->render, bare, 0, &job->scene);
   if (exit_code != EXIT_CODE_OK) return exit_code;
   hl_status status = overlay_check_scene(job->host.context, &job->overlay, job->scene, &error);
   return status == HL_OK ? EXIT_CODE_OK : host_fail(&job->host, PHASE_CHANGE, status, &error);

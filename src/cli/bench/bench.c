@@ -110,7 +110,7 @@ static int change_scene(bench_job *job) {
   cli_value values[RENDER_OPTION_COUNT] = {0};
   for (size_t i = 0; i < sizeof shared / sizeof shared[0]; i++)
     values[shared[i].to] = job->values[shared[i].from];
-  return render_change_scene(job->host, values, job->bare, &job->scene);
+  return render_change_scene(job->host, values, job->bare, 0, &job->scene);
 }
 
 static int load(bench_job *job, const char *path) {

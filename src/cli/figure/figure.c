@@ -254,7 +254,7 @@ static int fill_panel(figure_job *job, figure_panel *panel) {
   int exit_code = render_load_inputs(&job->host, panel->values, panel->operands, &panel->bare, &panel->scene);
   if (exit_code != EXIT_CODE_OK) return exit_code;
   size_panel(page, panel);
-  exit_code = render_change_scene(&job->host, panel->values, panel->bare, &panel->scene);
+  exit_code = render_change_scene(&job->host, panel->values, panel->bare, 0, &panel->scene);
   if (exit_code == EXIT_CODE_OK) exit_code = share(job, panel);
   return exit_code == EXIT_CODE_OK ? magnify(job, panel) : exit_code;
 }

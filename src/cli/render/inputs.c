@@ -55,15 +55,13 @@ static hl_space space_of(const hl_scene *scene) {
   return known ? info.space : HL_SPACE_UNKNOWN;
 }
 
-/* The length, in pixels, that a volume on the command line fills. The volume's resolution is chosen by it. It
- * is the picture's longer side times the zoom. */
-static int pixels_of(const cli_value *values) {
+int render_pixels(const cli_value *values, bool zoomed) {
   hl_scene_description description;
   hl_scene_description_defaults(&description);
   double width = values[RENDER_SIZE].given ? values[RENDER_SIZE].number[0] : description.width;
   double height = values[RENDER_SIZE].given ? values[RENDER_SIZE].number[1] : description.height;
-  double zoom = values[RENDER_ZOOM].given && values[RENDER_ZOOM].number[0] > 1 ? values[RENDER_ZOOM].number[0]
-                                                                               : 1;
+  zoomed = zoomed && values[RENDER_ZOOM].given && values[RENDER_ZOOM].number[0] > 1;
+  double zoom = zoomed ? values[RENDER_ZOOM].number[0] : 1;
   double pixels = ceil(fmax(width, height) * zoom);
   return pixels < INT_MAX ? (int)pixels : INT_MAX;
 }
@@ -71,7 +69,7 @@ static int pixels_of(const cli_value *values) {
 void render_load_options(const cli_value *values, hl_volume_load_options *options) {
   input_load_options(&values[RENDER_ARRAY], &values[RENDER_SPACING], options);
   if (input_has_channels(&values[RENDER_CHANNEL])) options->channel_name = NULL;
-  options->pixels = pixels_of(values);
+  options->pixels = render_pixels(values, true);
 }
 
 /* The scene of several channels of one file. */
@@ -86,6 +84,15 @@ static hl_status load_channels(cli_host *host, const cli_value *values, const cl
 
 /* Volumes on the command line that are shown as slices are not smoothed: a slice shows the voxels. */
 static const double unsmoothed = 0;
+
+/* Reads the part of a volume that a picture sees (nearer.c). */
+static void take_seen_part(const cli_host *host, hl_volume_load_options *options) {
+  options->coarse = host->seen.coarse;
+  memcpy(options->seen, host->seen.planes, sizeof options->seen);
+  options->level = host->seen.level;
+  options->time = host->seen.time;
+  if (options->channel_name == NULL) options->channel = host->seen.channel;
+}
 
 static int load_each(cli_host *host, const cli_value *values, cli_input *inputs, size_t count,
                      hl_scene **scenes) {
@@ -102,6 +109,7 @@ static int load_each(cli_host *host, const cli_value *values, cli_input *inputs,
      * read again, and --smooth is measured in voxels of the resolution that the picture shows. */
     bool is_read_once = inputs[n].bytes != NULL || inputs[n].smooth != NULL;
     options.preview_pixels = is_read_once ? 0 : host->preview_pixels;
+    if (host->seen.coarse != NULL) take_seen_part(host, &options);
     hl_status status = bare && input_has_channels(&values[RENDER_CHANNEL])
                            ? load_channels(host, values, &inputs[n], options, &scenes[n], &error)
                            : input_load(host->context, &inputs[n], bare ? &options : NULL, &scenes[n],

@@ -160,6 +160,10 @@ hl_status render_load_label_map(cli_host *host, const cli_value *values, const c
 int render_load_volumes(cli_host *host, const cli_value *values, char **operands, bool *bare,
                         hl_scene **scene);
 
+/* The length, in pixels, that a volume on the command line fills. The volume's resolution is chosen by it. It
+ * is the picture's longer side, times the zoom if `zoomed`. */
+int render_pixels(const cli_value *values, bool zoomed);
+
 /* Finds the options for loading volumes that the command line asks for. */
 void render_load_options(const cli_value *values, hl_volume_load_options *options);
 
@@ -175,8 +179,18 @@ int render_load_inputs(cli_host *host, const cli_value *values, char **operands,
 void render_name_scene(const char *input, bool bare, hl_error *error);
 
 /* Applies the options to *scene, which becomes a new scene (hl_scene_compose()). bare: whether the scene was
- * made for volume files. Returns the exit code. */
-int render_change_scene(cli_host *host, const cli_value *values, bool bare, hl_scene **scene);
+ * made for volume files. flags: further HL_COMPOSE_ flags. Returns the exit code. */
+int render_change_scene(cli_host *host, const cli_value *values, bool bare, unsigned flags, hl_scene **scene);
+
+/* The pixels for which a volume of several resolutions is read first, if the picture shows a part of it
+ * (--zoom); 0 if it is read once. count: the number of operands. */
+int render_first_pixels(const cli_value *values, int count);
+/* Returns whether a scene's only volume was read at a coarser resolution than the picture needs. */
+bool render_is_first(const hl_scene *scene);
+/* Reads the volume of such a scene at the resolution that the picture needs, where the picture shows it, and
+ * applies the options. The picture has the camera that the options give the first scene. Returns the exit
+ * code. */
+int render_go_nearer(cli_host *host, const cli_value *values, char **operands, hl_scene **scene);
 
 /* Refuses options about the scene that contradict each other or cannot be read. */
 int render_check_scene_options(const cli_value *values);

@@ -53,13 +53,15 @@ int render_check_scene_options(const cli_value *values) {
   return status == HL_OK ? EXIT_CODE_OK : fail_with(PHASE_SETUP, status, &error);
 }
 
-int render_change_scene(cli_host *host, const cli_value *values, bool bare, hl_scene **scene) {
+int render_change_scene(cli_host *host, const cli_value *values, bool bare, unsigned flags,
+                        hl_scene **scene) {
   option_list list;
   hl_error error = {0};
   hl_scene *composed = NULL;
   list_options(values, &list);
-  hl_status status = hl_scene_compose(host->context, hl_scene_describe(*scene), bare ? HL_COMPOSE_BARE : 0,
-                                      list.options, list.count, &composed, &error);
+  if (bare) flags |= HL_COMPOSE_BARE;
+  hl_status status = hl_scene_compose(host->context, hl_scene_describe(*scene), flags, list.options,
+                                      list.count, &composed, &error);
   if (status != HL_OK)
     return host_fail(host, status == HL_ERROR_ARGUMENT ? PHASE_CHANGE : PHASE_READ, status, &error);
   hl_scene_release(*scene);

@@ -187,7 +187,8 @@ static int make_scene(series_job *job) {
   size_t first = job->files.of_meshes ? 1 : 0;
   if (exit_code == EXIT_CODE_OK)
     exit_code = render_add_meshes(&job->host, job->meshes, first, bare, &job->scene);
-  if (exit_code == EXIT_CODE_OK) exit_code = render_change_scene(&job->host, job->values, bare, &job->scene);
+  if (exit_code == EXIT_CODE_OK)
+    exit_code = render_change_scene(&job->host, job->values, bare, 0, &job->scene);
   if (exit_code == EXIT_CODE_OK) exit_code = frame_all(job);
   return exit_code == EXIT_CODE_OK ? try_motion(job) : exit_code;
 }

@@ -119,7 +119,7 @@ static int load(views_job *job) {
     view->texts[0] = view->text;
     job->scenes[v] = job->loaded;
     hl_scene_retain(job->loaded);
-    exit_code = render_change_scene(&job->host, job->values, job->bare, &job->scenes[v]);
+    exit_code = render_change_scene(&job->host, job->values, job->bare, 0, &job->scenes[v]);
     if (exit_code != EXIT_CODE_OK) break;
     hl_status status = overlay_check_scene(job->host.context, &job->overlay, job->scenes[v], &error);
     if (status != HL_OK) exit_code = host_fail(&job->host, PHASE_CHANGE, status, &error);

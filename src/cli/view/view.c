@@ -74,7 +74,8 @@ typedef struct view_job {
 static int load(view_job *job, char **inputs) {
   bool bare;
   int exit_code = render_load_inputs(&job->host, job->render, inputs, &bare, &job->scene);
-  if (exit_code == EXIT_CODE_OK) exit_code = render_change_scene(&job->host, job->render, bare, &job->scene);
+  if (exit_code == EXIT_CODE_OK)
+    exit_code = render_change_scene(&job->host, job->render, bare, 0, &job->scene);
   if (exit_code != EXIT_CODE_OK) return exit_code;
   hl_error error = {0};
   hl_status status = view_name_absolutely(job->host.context, NULL, &job->scene, &error);

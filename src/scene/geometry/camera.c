@@ -33,6 +33,36 @@ bool hl_camera_basis(const hl_camera *camera, vec3 *right, vec3 *up, vec3 *forwa
   return useful;
 }
 
+/* Sets a plane through `point`. normal: points to the side that is inside. */
+static void set_plane(vec3 normal, vec3 point, double plane[4]) {
+  memcpy(plane, &normal, 3 * sizeof *plane);
+  plane[3] = -vec3_dot(normal, point);
+}
+
+/* Derived: in perspective a point at x to the side and z in front of the eye is seen if |x| <= t z, where t
+ * is the tangent of half the picture's angle: t z - x >= 0 and t z + x >= 0. In parallel projection it is
+ * seen if |x| <= h, where h is half the picture's side. */
+hl_status hl_scene_seen_part(const hl_scene_description *description, double planes[4][4]) {
+  HL_DOOR;
+  if (description == NULL || planes == NULL || description->width <= 0 || description->height <= 0)
+    return HL_ERROR_ARGUMENT;
+  const hl_camera *camera = &description->camera;
+  const bool perspective = camera->type == HL_CAMERA_PERSPECTIVE;
+  const double aspect = (double)description->width / description->height;
+  if (perspective ? !(camera->fovy_deg > 0 && camera->fovy_deg < 180) : !(camera->height > 0))
+    return HL_ERROR_ARGUMENT;
+  vec3 side[2], forward;
+  hl_camera_basis(camera, &side[0], &side[1], &forward);
+  for (int n = 0; n < 4; n++) {
+    const double tall = perspective ? hl_tan(camera->fovy_deg * HL_PI / 360) : camera->height / 2;
+    const double half = n < 2 ? tall * aspect : tall;
+    const vec3 inwards = vec3_scale(side[n / 2], n % 2 == 0 ? 1 : -1), eye = vec3_of(camera->position);
+    if (perspective) set_plane(vec3_add(inwards, vec3_scale(forward, half)), eye, planes[n]);
+    else set_plane(inwards, vec3_subtract(eye, vec3_scale(inwards, half)), planes[n]);
+  }
+  return HL_OK;
+}
+
 void hl_light_direction_beside(double azimuth_deg, double elevation_deg, double direction[3]) {
   HL_DOOR;
   if (direction == NULL) return;

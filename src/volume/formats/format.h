@@ -24,6 +24,8 @@ typedef struct hl_load_request {
                              * file; null if there is none */
   int pixels;               /* pixels of the picture's longer side; 0 if unknown */
   int preview_pixels;       /* pixels of the longer side of a first picture; 0 if there is none */
+  const hl_volume *coarse;  /* see hl_volume_load_options; null if everything is read */
+  double seen[4][4];        /* see hl_volume_load_options */
   double window[2];         /* set by readers: the data values that are shown black and white; both equal if
                              * the file does not state them */
   hl_channel *channels;     /* owned; [selection.channels]; set by readers if the file describes channels */

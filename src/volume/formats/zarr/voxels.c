@@ -35,6 +35,7 @@ typedef struct worker {
   unsigned char *index; /* owned; the shard's index: [16 * chunks_in_shard], followed by a checksum */
   void *row; /* owned; memory for a row of a chunk in stored form, or for a whole chunk if pages are sparse;
               * null if all voxels are in one array in memory from the beginning */
+  float *coarse; /* owned; memory for hl_beyond_row(); null if everything is seen */
 } worker;
 
 typedef struct reading {
@@ -56,6 +57,7 @@ typedef struct reading {
   worker *workers;                  /* owned; [threads] */
   atomic_size_t found;              /* number of chunks that exist */
   atomic_size_t absent;             /* number of chunks whose files do not exist */
+  atomic_size_t beyond;             /* number of chunks out of sight, which are not read */
 } reading;
 
 /* The place of a part: the chunk in the array, and the voxels in the volume. */
@@ -63,6 +65,7 @@ typedef struct part {
   uint64_t file[HL_ZARR_AXES_MOST];  /* coordinates of the part's file */
   uint64_t inner[HL_ZARR_AXES_MOST]; /* index of the chunk within its file */
   uint64_t begin[3], count[3];       /* the part's voxels in the volume */
+  bool is_seen;                      /* whether the chunk is read */
 } part;
 
 /* ---- which part is where ---- */
@@ -114,6 +117,7 @@ static bool place_part(const reading *r, uint64_t number, part *p) {
     uint64_t left = r->size[a] - p->begin[a];
     p->count[a] = left < array->chunk[axis] ? left : array->chunk[axis];
   }
+  p->is_seen = hl_beyond_is_seen(&r->choice->beyond, p->begin, p->count);
   return true;
 }
 
@@ -163,8 +167,8 @@ static void store_row(const reading *r, const unsigned char *from, size_t step, 
 }
 
 /* Stores the voxels of a part, row by row. chunk: the voxels of the part's chunk; null if all voxels get the
- * fill value. box: whether the rows are gathered in the worker's memory as one box, in place of the
- * volume. */
+ * fill value, or, out of sight, values of the coarser volume. box: whether the rows are gathered in the
+ * worker's memory as one box, in place of the volume. */
 static void put_rows(const reading *r, const worker *w, const part *p, const unsigned char *chunk, bool box) {
   const bool apart = hl_destination_is_apart(r->to);
   unsigned char *row = w->row;
@@ -176,14 +180,25 @@ static void put_rows(const reading *r, const worker *w, const part *p, const uns
     for (uint64_t j = 0; j < p->count[1]; j++) {
       uint64_t first = ((p->begin[2] + k) * r->size[1] + p->begin[1] + j) * r->size[0] + p->begin[0];
       if (!apart) row = r->to->voxels + first * r->stored_bytes;
-      if (chunk == NULL) fill_row(r, row, first, p->count[0]);
+      if (!p->is_seen)
+        hl_beyond_row(&r->choice->beyond, p->begin[0], p->begin[1] + j, p->begin[2] + k, p->count[0],
+                      w->coarse, row);
+      else if (chunk == NULL) fill_row(r, row, first, p->count[0]);
       else store_row(r, chunk + k * step[2] + j * step[1], step[0], first, p->count[0], row);
       if (box) row += p->count[0] * r->stored_bytes;
       else if (apart) hl_destination_store(r->to, first, p->count[0], row);
     }
 }
 
-/* Stores the voxels of a part whose chunk exists. Other voxels have the fill value already. */
+/* Returns whether all voxels of a box have the fill value. */
+static bool is_all_fill(const reading *r, const part *p, const unsigned char *box) {
+  const size_t bytes = p->count[0] * p->count[1] * p->count[2] * r->stored_bytes;
+  return memcmp(box, r->fill, r->stored_bytes) == 0 &&
+         memcmp(box, box + r->stored_bytes, bytes - r->stored_bytes) == 0;
+}
+
+/* Stores the voxels of a part whose chunk exists, or is out of sight. Other voxels have the fill value
+ * already. */
 static hl_status put_filled(reading *r, const worker *w, const part *p, const unsigned char *chunk,
                             hl_error *error) {
   const size_t begin[3] = {p->begin[0], p->begin[1], p->begin[2]},
@@ -192,7 +207,8 @@ static hl_status put_filled(reading *r, const worker *w, const part *p, const un
   pthread_rwlock_rdlock(&r->lock);
   const bool sparse = hl_destination_is_sparse(r->to);
   put_rows(r, w, p, chunk, sparse);
-  if (sparse) hl_pages_store_box(r->to->pages, begin, count, w->row);
+  if (sparse && (p->is_seen || !is_all_fill(r, p, w->row)))
+    hl_pages_store_box(r->to->pages, begin, count, w->row);
   const bool crowded = hl_destination_is_crowded(r->to);
   pthread_rwlock_unlock(&r->lock);
   if (!crowded) return HL_OK;
@@ -204,7 +220,7 @@ static hl_status put_filled(reading *r, const worker *w, const part *p, const un
 
 static hl_status put(reading *r, const worker *w, const part *p, const unsigned char *chunk,
                      hl_error *error) {
-  if (r->is_filled) return chunk != NULL ? put_filled(r, w, p, chunk, error) : HL_OK;
+  if (r->is_filled) return chunk != NULL || !p->is_seen ? put_filled(r, w, p, chunk, error) : HL_OK;
   put_rows(r, w, p, chunk, false);
   return HL_OK;
 }
@@ -263,10 +279,13 @@ static hl_status find_chunk(const reading *r, const worker *w, const part *p, ui
 }
 
 /* Returns whether any of a part's voxels is kept here. */
-static bool wants_part(const reading *r, const part *p) {
+static bool keeps_part(const reading *r, const part *p) {
   uint64_t slice = r->size[0] * r->size[1];
   return hl_destination_wants(r->to, p->begin[2] * slice, p->count[2] * slice);
 }
+
+/* Returns whether a part's chunk is read. */
+static bool wants_part(const reading *r, const part *p) { return p->is_seen && keeps_part(r, p); }
 
 static hl_status read_part(void *data, size_t number, int index, hl_error *error) {
   reading *r = data;
@@ -276,9 +295,11 @@ static hl_status read_part(void *data, size_t number, int index, hl_error *error
   const unsigned char *chunk = NULL;
   if (!place_part(r, r->first + number, &p)) return HL_OK;
   if (!wants_part(r, &p)) {
-    /* the chunk counts as found: only the rank that keeps its voxels knows whether it exists */
+    /* the chunk counts as found: only who reads it knows whether it exists */
     atomic_fetch_add_explicit(&r->found, 1, memory_order_relaxed);
-    return HL_OK;
+    if (p.is_seen || !keeps_part(r, &p)) return HL_OK;
+    atomic_fetch_add_explicit(&r->beyond, 1, memory_order_relaxed);
+    return put(r, w, &p, NULL, error);
   }
   hl_status status = open_file(r, w, &p, error);
   if (status == HL_OK) status = find_chunk(r, w, &p, &offset, &length, error);
@@ -297,9 +318,10 @@ enum { FILES_AT_A_TIME = 64 };
 static uint64_t parts_of_file(const reading *r) { return r->inner[0] * r->inner[1] * r->inner[2]; }
 
 /* Returns whether shards have chunks that are not read, because the chunks belong to other times or channels,
- * or to other ranks. */
+ * or to other ranks, or lie out of sight. */
 static bool reads_parts_of_shards(const reading *r) {
-  return r->array->shards.are_used && (parts_of_file(r) < r->array->shards.chunks || r->to->own != NULL);
+  return r->array->shards.are_used && (parts_of_file(r) < r->array->shards.chunks || r->to->own != NULL ||
+                                       r->choice->beyond.coarse != NULL);
 }
 
 /* The number of files that are read at a time. Each file, and each part of a shard, is an open descriptor, of
@@ -315,7 +337,7 @@ static uint64_t longest_file(const hl_zarr_array *array) {
   return __builtin_mul_overflow(chunk, array->shards.chunks, &length) ? UINT64_MAX : length + 64;
 }
 
-/* Returns whether any voxel of a file is kept by this process. number: the number of the file's first part.
+/* Returns whether any chunk of a file is read by this process. number: the number of the file's first part.
  * place: set to the place of one of the file's parts. */
 static bool wants_file(const reading *r, uint64_t number, part *place) {
   for (uint64_t n = 0; n < parts_of_file(r); n++)
@@ -488,6 +510,9 @@ static hl_status read_parts(reading *r, hl_pool *pool, hl_error *error) {
     w->unpacker = (hl_zarr_unpacker){.context = context, .path = r->bundle->path, .array = r->array};
     if (hl_destination_is_apart(r->to) && (w->row = hl_allocate(context, row_bytes, 1)) == NULL)
       status = hl_fail_memory(error, row_bytes, r->bundle->path);
+    const size_t floats = hl_beyond_room(&r->choice->beyond);
+    if (floats > 0 && (w->coarse = hl_allocate(context, floats, sizeof *w->coarse)) == NULL)
+      status = hl_fail_memory(error, floats * sizeof *w->coarse, r->bundle->path);
   }
   if (status == HL_OK)
     status = hl_bundle_is_on_server(r->bundle)
@@ -498,6 +523,7 @@ static hl_status read_parts(reading *r, hl_pool *pool, hl_error *error) {
     hl_source_close(r->workers[n].source);
     hl_release(context, r->workers[n].index);
     hl_release(context, r->workers[n].row);
+    hl_release(context, r->workers[n].coarse);
   }
   hl_release(context, r->workers);
   return status;
@@ -517,6 +543,15 @@ static void tell_absent(const reading *r, hl_absence *absence) {
         r->bundle->path, absent, all, r->array->folder);
 }
 
+static void tell_beyond(const reading *r) {
+  const size_t beyond = atomic_load(&r->beyond);
+  if (beyond > 0)
+    hl_log(
+        r->bundle->context, HL_LOG_INFO,
+        "%.300s: %zu of %llu chunks (array \"%.200s\") lie out of sight, and are taken from a coarser level",
+        r->bundle->path, beyond, (unsigned long long)r->parts, r->array->folder);
+}
+
 static hl_status read_all(reading *r, hl_absence *absence, hl_error *error) {
   hl_pool *pool = NULL;
   bool parallel = r->parts > 1 && r->size[0] * r->size[1] * r->size[2] >= PARALLEL_VOXELS;
@@ -524,6 +559,7 @@ static hl_status read_all(reading *r, hl_absence *absence, hl_error *error) {
   if (status == HL_OK) status = read_parts(r, pool, error);
   hl_pool_destroy(pool);
   if (status == HL_OK && atomic_load(&r->found) > 0) tell_absent(r, absence);
+  if (status == HL_OK) tell_beyond(r);
   if (status == HL_OK && atomic_load(&r->found) == 0)
     return hl_zarr_fail(r->bundle, r->array->folder, error, HL_ERROR_INPUT,
                         "not one of its %llu chunks is there: is the copy whole?",
@@ -537,6 +573,7 @@ hl_status hl_zarr_voxels_read(const hl_bundle *bundle, const hl_zarr_array *arra
   reading r = {.bundle = bundle, .array = array, .choice = choice, .to = to};
   atomic_init(&r.found, 0);
   atomic_init(&r.absent, 0);
+  atomic_init(&r.beyond, 0);
   prepare(&r);
   hl_status status = count_parts(&r, error);
   if (status == HL_OK)

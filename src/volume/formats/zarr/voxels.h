@@ -2,6 +2,7 @@
 #ifndef HL_VOLUME_ZARR_VOXELS_H
 #define HL_VOLUME_ZARR_VOXELS_H
 
+#include "volume/beyond.h"
 #include "volume/formats/zarr/array.h"
 #include "volume/io/destination.h"
 
@@ -12,6 +13,7 @@ typedef struct hl_zarr_choice {
                                       * none, so that the volume has a single voxel along it */
   uint64_t index[HL_ZARR_AXES_MOST]; /* for each axis of the array that is not in `axis`, the index that is
                                       * read */
+  hl_beyond beyond;                  /* chunks out of sight, which are not read */
 } hl_zarr_choice;
 
 /* Opens the destination and reads all voxels into it. Fails if all chunks are missing. grid: the volume's

@@ -1,0 +1,41 @@
+/* volume/beyond.h - voxels out of sight, which are interpolated in a coarser resolution of the same data in
+ * place of being read.
+ *
+ * In: a coarser volume, and the planes around what a picture sees. Out: which boxes of voxels are seen, and
+ * rows of the other voxels. Voxels that are seen, and those within HL_BEYOND_REACH of them, are never
+ * interpolated: no kernel, gradient or smoothing of a seen place takes a voxel that lies out of sight. */
+#ifndef HL_VOLUME_BEYOND_H
+#define HL_VOLUME_BEYOND_H
+
+#include <stdint.h>
+
+#include "volume/volume.h"
+
+enum { HL_BEYOND_REACH = 4 }; /* in voxels */
+
+typedef struct hl_beyond {
+  const hl_volume *coarse; /* borrowed; null if everything is seen */
+  hl_voxel_type type;      /* of the voxels in the file */
+  double planes[4][4]; /* the planes around what is seen, in indices of the grid; inside where a i + b j + c k
+                        * + d >= 0 */
+  double first[3], step[3]; /* index in `coarse` = first + step * index in the grid, along each axis */
+} hl_beyond;
+
+/* Finds the rule for a grid. coarse: may be null. seen: planes in the world. *beyond becomes a rule by which
+ * everything is seen where `coarse` cannot be used: where it is a label map or its axes are not parallel to
+ * the grid's. */
+void hl_beyond_prepare(const hl_volume *coarse, const double seen[4][4], const hl_volume_description *grid,
+                       hl_beyond *beyond);
+
+/* Returns whether any voxel of a box may be seen. */
+bool hl_beyond_is_seen(const hl_beyond *beyond, const uint64_t begin[3], const uint64_t count[3]);
+
+/* The number of floats that hl_beyond_row() needs as scratch memory. */
+size_t hl_beyond_room(const hl_beyond *beyond);
+
+/* Interpolates `count` voxels of the row (j, k), from index i on, and stores them in stored form
+ * (hl_voxels_store()). */
+void hl_beyond_row(const hl_beyond *beyond, uint64_t i, uint64_t j, uint64_t k, uint64_t count,
+                   float *scratch, void *row);
+
+#endif

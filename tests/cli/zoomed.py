@@ -1,0 +1,163 @@
+#!/usr/bin/env python3
+"""Pictures of a part of a pyramid: the chunks that the picture sees are fetched, and the picture is that of all chunks.
+
+usage: zoomed.py PROGRAM        (prints TAP)
+"""
+import array
+import json
+import os
+import pathlib
+import shutil
+import sys
+import tempfile
+import zlib
+
+import servers
+
+STORE, SHARDED, LEVEL_CHUNKS = "v2.zarr", "v3.zarr", 64
+ZOOM = ("--zoom", 4)
+
+
+def write_store(folder):
+    """As servers.py writes it, but with noise, so that no level follows from another one."""
+    servers.write_store(folder, 2)
+    for level in range(servers.LEVELS):
+        for path in sorted((folder / str(level)).rglob("*")):
+            if path.is_file() and path.name != ".zarray":
+                voxels = bytearray(zlib.decompress(path.read_bytes()))
+                state = zlib.crc32(str(path.relative_to(folder)).encode())
+                for n, voxel in enumerate(voxels):
+                    state = (1664525 * state + 1013904223) % 2**32
+                    voxels[n] = max(0, min(255, voxel + (state >> 27) - 16)) if voxel else 0
+                path.write_bytes(zlib.compress(bytes(voxels), 1))
+
+
+def write_sharded(folder):
+    """The same pyramid, in Zarr 3: each level is one shard."""
+    folder.mkdir(parents=True)
+    attributes = {"ome": {"version": "0.5", "multiscales": servers.levels_text(servers.LEVELS)}}
+    (folder / "zarr.json").write_text(json.dumps({"zarr_format": 3, "node_type": "group", "attributes": attributes}))
+    for level in range(servers.LEVELS):
+        n = 64 >> level
+        codec = {"name": "sharding_indexed", "configuration": {
+            "chunk_shape": [servers.CHUNK] * 3, "codecs": [{"name": "bytes"}], "index_location": "end",
+            "index_codecs": [{"name": "bytes", "configuration": {"endian": "little"}}, {"name": "crc32c"}]}}
+        array = folder / str(level)
+        (array / "c/0/0").mkdir(parents=True)
+        (array / "zarr.json").write_text(json.dumps({
+            "zarr_format": 3, "node_type": "array", "shape": [n] * 3, "data_type": "uint8", "fill_value": 0,
+            "chunk_grid": {"name": "regular", "configuration": {"chunk_shape": [n] * 3}},
+            "chunk_key_encoding": {"name": "default", "configuration": {"separator": "/"}}, "codecs": [codec]}))
+        side = range(n // servers.CHUNK)
+        chunks = [servers.chunk_bytes(n, (z, y, x)) for z in side for y in side for x in side]
+        index = b"".join((number * len(chunk)).to_bytes(8, "little") + len(chunk).to_bytes(8, "little")
+                         for number, chunk in enumerate(chunks))
+        (array / "c/0/0/0").write_bytes(b"".join(chunks) + index + servers.crc32c(index).to_bytes(4, "little"))
+
+
+def whole_picture(case, store, *words):
+    """The picture of the same scene, with its camera and look, for which all chunks are read."""
+    scene = case.folder / "whole.json"
+    done = case.run("render", store, "--size", "32x32", "--quiet", "--print-scene", *words)
+    scene.write_text(done.stdout)
+    return case.picture(scene)[0]
+
+
+def levels_asked(server):
+    found = {}
+    for name in server.requests:
+        parts = name.split("/")
+        if parts[-1].isdigit():
+            found.setdefault(parts[1], set()).add(name)
+    return found
+
+
+def parts(case, server):
+    folder, store = server.folder / STORE, f"{server.url}/{STORE}"
+    for shadows in ("off", "soft"):
+        words = (*ZOOM, "--shadows", shadows)
+        case.fresh()
+        server.forget()
+        picture, said = case.picture(store, *words)
+        asked = levels_asked(server)
+        case.ok(f"shadows {shadows}: the picture of the folder", picture is not None and picture == case.picture(folder, *words)[0], said)
+        case.ok(f"shadows {shadows}: chunks of the first level and a part of the finest one", sorted(asked) == ["0", "1"] and
+                0 < len(asked["0"]) < LEVEL_CHUNKS * 2 // 3, {level: len(names) for level, names in asked.items()})
+        whole = whole_picture(case, folder, *words)
+        case.ok(f"shadows {shadows}: {'the bytes' if shadows == 'off' else 'within .002'} of the picture of all chunks",
+                whole == picture if shadows == "off" else 0 < greatest_difference(whole, picture) < 2e-3 or whole == picture,
+                greatest_difference(whole, picture))
+    done = case.run("render", store, "-o", case.folder / "out.npy", "--size", "32x32", *ZOOM)
+    case.ok("the program says so", f"of {LEVEL_CHUNKS} chunks (array \"0/\") lie out of sight, and are taken from a coarser level" in
+            done.stderr, done.stderr)
+    return asked["0"]
+
+
+def shards(case, server):
+    """Of a shard the chunks that are seen are fetched."""
+    folder, store = server.folder / SHARDED, f"{server.url}/{SHARDED}"
+    words = (*ZOOM, "--shadows", "off")
+    case.fresh()
+    server.forget()
+    server.sends_ranges = True
+    picture, said = case.picture(store, *words)
+    sizes = [(folder / str(level) / "c/0/0/0").stat().st_size for level in (0, 1)]
+    case.ok("a part of a shard is fetched", sizes[1] < server.sent < sizes[1] + sizes[0] * 3 / 4, (server.sent, sizes))
+    case.ok("shards: the bytes of the picture of all chunks", picture is not None and picture == whole_picture(case, folder, *words), said)
+    server.sends_ranges = False
+
+
+def faults(case, server, seen):
+    """A chunk out of sight is not asked for, and one that is seen must be right."""
+    store = f"{server.url}/{STORE}"
+    right = case.picture(store, *ZOOM)[0]
+    every = {f"{STORE}/0/{z}/{y}/{x}" for z in range(4) for y in range(4) for x in range(4)}
+    case.fresh()
+    server.forget(**{name.replace("/", "__"): ["always", "403"] for name in every - seen})
+    picture, said = case.picture(store, *ZOOM)
+    case.ok("faults out of sight change nothing", picture is not None and picture == right, said)
+    there = sorted(name for name in seen if (server.folder / name).exists())[0]
+    for fault, words in (("403", "the server answers 403"), ("half", "a chunk does not unpack")):
+        case.fresh()
+        server.forget(**{there.replace("/", "__"): ["always", fault]})
+        case.refused(f"{fault} of a chunk that is seen: refused", server, store, words, *ZOOM)
+
+
+def read_once(case, server):
+    """What is asked for is read as it was asked for."""
+    store = f"{server.url}/{STORE}"
+    for words in (("--zoom", 1), (*ZOOM, "--level", 0), (*ZOOM, "--slice", "z=0.5")):
+        case.fresh()
+        server.forget()
+        picture, said = case.picture(store, *words)
+        asked = levels_asked(server)
+        case.ok(f"{' '.join(map(str, words))}: one level, and all of it", picture is not None and len(asked) == 1 and
+                len(next(iter(asked.values()))) in (LEVEL_CHUNKS, LEVEL_CHUNKS // 8), (said, asked.keys()))
+
+
+def greatest_difference(a, b):
+    if a is None or b is None:
+        return 1
+    return max(abs(x - y) for x, y in zip(array.array("f", a[128:]), array.array("f", b[128:])))
+
+
+def main():
+    with tempfile.TemporaryDirectory() as folder:
+        case = servers.Case(os.path.abspath(sys.argv[1]), folder)
+        if shutil.which("curl") is None:
+            print("1..0 # SKIP there is no curl")
+            return 0
+        stores = pathlib.Path(folder, "stores")
+        write_store(stores / STORE)
+        write_sharded(stores / SHARDED)
+        server = servers.Server(stores)
+        seen = parts(case, server)
+        shards(case, server)
+        faults(case, server, seen)
+        read_once(case, server)
+        print(f"1..{case.number}")
+        return 1 if case.failed else 0
+
+
+if __name__ == "__main__":
+    sys.exit(main())
