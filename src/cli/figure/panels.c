@@ -115,6 +115,20 @@ static int add_value(const page_reading *reading, figure_panel *panel, int which
               name);
 }
 
+/* Refuses a key of a panel. The words for a panel's data mean "input"; others mean what they mean as
+ * options. */
+static int refuse_key(const page_reading *reading, const char *key, const char *name) {
+  static const char *const data[] = {"file", "scene", "volume", "data", "path", "source", "render", "image"};
+  const char *meant = NULL;
+  for (size_t n = 0; n < sizeof data / sizeof *data; n++)
+    if (strcmp(name, data[n]) == 0) meant = "input";
+  if (meant == NULL) meant = synonym_of(name, option_name, NULL);
+  if (meant == NULL) meant = hl_nearest_candidate(name, option_name, NULL);
+  return fail(EXIT_CODE_INPUT, "%s: a panel has no key '%.40s'%s%s%s", reading->path, key,
+              meant != NULL ? ": did you mean '" : ": see 'halflight help figure'",
+              meant != NULL ? meant : "", meant != NULL ? "'?" : "");
+}
+
 /* Reads an option from JSON. Its value is true, a value, or a list of values if the option may be given
  * several times. A list of numbers is one value. */
 static int add_json_option(const page_reading *reading, figure_panel *panel, const char *key,
@@ -124,12 +138,7 @@ static int add_json_option(const page_reading *reading, figure_panel *panel, con
   for (char *at = name; *at != '\0'; at++)
     if (*at == '_') *at = '-';
   int which = strlen(key) < sizeof name ? find_option(name) : -1;
-  if (which < 0) {
-    const char *meant = hl_nearest_candidate(name, option_name, NULL);
-    return fail(EXIT_CODE_INPUT, "%s: a panel has no key '%.40s'%s%s%s", reading->path, key,
-                meant != NULL ? ": did you mean '" : ": see 'halflight help figure'",
-                meant != NULL ? meant : "", meant != NULL ? "'?" : "");
-  }
+  if (which < 0) return refuse_key(reading, key, name);
   if (is_of_the_page(which))
     return fail(
         EXIT_CODE_INPUT, "%s: '%s' is not for a panel: it holds for the whole page%s", reading->path, key,
