@@ -82,7 +82,8 @@ build_base_libraries() {
   mkdir -p "$root/include"
   z=$(echo "$sources"/zlib-*/) png=$(echo "$sources"/libpng*-*/) jansson=$(echo "$sources"/jansson-*/)
   cp "$z"zlib.h "$z"zconf.h "$png"png.h "$png"pngconf.h "$jansson"src/jansson.h "$jansson"android/jansson_config.h "$root/include"
-  cp "$png"scripts/pnglibconf.h.prebuilt "$root/include/pnglibconf.h"
+  # libpng's own option: it computes in integers, and takes no power or logarithm from the system.
+  sed '/PNG_FLOATING_ARITHMETIC_SUPPORTED/d' "$png"scripts/pnglibconf.h.prebuilt >"$root/include/pnglibconf.h"
   : >"$root/include/jansson_private_config.h"
   library z "$z" adler32 compress crc32 deflate inffast inflate inftrees trees uncompr zutil
   library png "$png" png pngerror pngget pngmem pngpread pngread pngrio pngrtran pngrutil pngset pngtrans pngwio pngwrite pngwtran pngwutil "$@"
@@ -105,19 +106,4 @@ build_codec_libraries() {
   library_flags=$usual_flags
   package liblz4 lz4 "$(sed -n 's/#define LZ4_VERSION_\(MAJOR\|MINOR\|RELEASE\) *\([0-9]*\).*/\2/p' "$lz4"lz4.h | paste -sd.)"
   package libzstd zstd "$(sed -n 's/#define ZSTD_VERSION_\(MAJOR\|MINOR\|RELEASE\) *\([0-9]*\).*/\2/p' "$zstd"zstd.h | paste -sd.)"
-}
-
-# musl's functions of <math.h>: the last bits of the systems' own differ, and with them pictures would. The web build's C library is musl.
-build_math_library() {
-  math=$(echo "$sources"/musl-*/)src
-  mkdir -p "$root/math"
-  : >"$root/math/fp_arch.h"
-  printf '#define __LITTLE_ENDIAN 1234\n#define __BYTE_ORDER 1234\n' >"$root/math/endian.h"
-  printf '#define hidden __attribute__((__visibility__("hidden")))\n#define weak_alias(old, new)\n' >"$root/math/features.h"
-  usual_flags=$library_flags
-  library_flags="$library_flags -I$root/math -I$math/internal -include features.h -D_GNU_SOURCE -ffp-contract=off -fno-builtin"
-  library muslmath "$math/math" __cos __expo2 __math_divzero __math_invalid __math_oflow __math_uflow __math_xflow __math_divzerof __math_invalidf __math_oflowf \
-    __math_uflowf __math_xflowf __rem_pio2 __rem_pio2_large __sin __tan acos asin atan atan2 cbrt cos cosh erf exp exp2 exp2f_data exp_data expm1 fmod hypot log \
-    log10 log1p log2 log2_data log_data pow pow_data powf powf_data sin sincos sinh tan tanh
-  library_flags=$usual_flags
 }

@@ -10,7 +10,7 @@ import shutil
 import subprocess
 import sys
 
-VARYING = "a?(sin|cos|tan)h?f?|atan2f?|cbrtf?|erff?|expm?1?2?f?|hypotf?|log(1p|2|10)?f?|powf?|sincosf?|fmodf?"
+VARYING = "a?(sin|cos|tan)h?f?|atan2f?|cbrtf?|erff?|expm?1?2?f?|hypotf?|log(1p|2|10)?f?|powf?|sincosf?"
 OF_SYSTEM = r"api-ms-win-crt-[\w-]+\.dll|(kernel32|shell32|ntdll|psapi|advapi32|bcrypt)\.dll"
 
 

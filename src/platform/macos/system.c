@@ -11,32 +11,6 @@
 
 #include "platform/processors.h"
 
-/* ---- functions of the system's mathematics that clang calls in place of sin() with cos(), and of pow() ----
- *
- * They give the bits of sin(), cos() and pow(), which the sources call. */
-
-typedef struct sine_and_cosine {
-  double sine, cosine;
-} sine_and_cosine;
-
-sine_and_cosine hl_sincos(double x) __asm__("___sincos_stret");
-double hl_exp10(double x) __asm__("___exp10");
-
-sine_and_cosine hl_sincos(double x) {
-  void sincos(double, double *, double *); /* this function is in musl, which is linked */
-  sine_and_cosine both;
-  sincos(x, &both.sine, &both.cosine);
-  return both;
-}
-
-double hl_exp10(double x) {
-  volatile double ten = 10; /* volatile, because compilers turn pow() of the constant ten into a call of this
-                             * function itself */
-  return pow(ten, x);
-}
-
-/* ---- files and processes ---- */
-
 int hl_cpu_count(void) {
   long count = sysconf(_SC_NPROCESSORS_ONLN);
   return count > 0 ? (int)count : 1;
