@@ -12,6 +12,7 @@
 #include "core/memory.h"
 #include "scene/function/function_plane.h"
 #include "scene/function/transfer_function.h"
+#include "scene/geometry/lengths.h"
 #include "scene/geometry/placement.h"
 #include "text/plain.h"
 #include "text/stem.h"
@@ -105,6 +106,7 @@ static hl_status load(const hl_composer *composer, const hl_scene_description *d
   snprintf(name, NAME_BYTES, "%.*s", (int)fmin((double)length, NAME_BYTES - 1), stem);
   if (hl_scene_volume_named(description, name) != NULL) snprintf(name, NAME_BYTES, "color-by");
   made->file = typed->file;
+  made->scale = hl_scene_file_scale(description, made->volume);
   made->name = name;
   made->visible = 0;
   memcpy(made->spacing, reading.spacing, sizeof made->spacing);

@@ -345,26 +345,36 @@ static void tell_of_units(const hl_composer *composer, const char *preset, const
            preset);
 }
 
-static hl_status load_function(const hl_composer *composer, const char *name, const hl_volume *volume,
-                               hl_transfer_function *function) {
-  const char *preset = find_known(name, preset_name);
-  if (preset != NULL) tell_of_units(composer, preset, volume);
-  if (preset != NULL)
-    return hl_transfer_function_preset(composer->context, preset, volume, function, composer->error);
+/* Loads a function from its file. */
+static hl_status load_named(const hl_composer *composer, const char *name, const hl_volume *volume,
+                            hl_transfer_function *function) {
   if (strpbrk(name, "./") != NULL || hl_file_kind(composer->context, name) != 0)
     return hl_transfer_function_load_for(composer->context, name, volume, function, composer->error);
   return refuse_name("tf", name, "preset or file", "presets", preset_name, composer->error);
+}
+
+/* Loads the function that "tf" names. Functions of a preset are made for lengths in the volume's file, and
+ * are scaled with the volume. */
+static hl_status load_function(const hl_composer *composer, const char *name, const hl_scene_volume *volume,
+                               hl_transfer_function *function) {
+  const char *preset = find_known(name, preset_name);
+  if (preset == NULL) return load_named(composer, name, volume->volume, function);
+  tell_of_units(composer, preset, volume->volume);
+  hl_status status = hl_transfer_function_preset(composer->context, preset, volume->volume, function,
+                                                 composer->error);
+  function->unit_distance *= fabs(volume->scale);
+  return status;
 }
 
 /* Makes values below the threshold transparent. Values from the threshold on become nearly opaque: light is
  * absorbed within the length of a voxel's edge. Opacity rises on a ramp below the threshold, so that surfaces
  * are shaded without stairs. The ramp is a twentieth of the volume's range wide, but at most half the way
  * from the least value to the threshold. */
-static hl_status make_opaque_from(const hl_composer *composer, const hl_volume *volume, double threshold,
-                                  hl_transfer_function *function) {
+static hl_status make_opaque_from(const hl_composer *composer, const hl_scene_volume *volume,
+                                  double threshold, hl_transfer_function *function) {
   enum { POINTS = 2 };
   hl_volume_info info = {.struct_size = sizeof info};
-  if (hl_volume_get_info(volume, &info) != HL_OK)
+  if (hl_volume_get_info(volume->volume, &info) != HL_OK)
     return hl_fail(composer->error, HL_ERROR_INTERNAL, "--threshold: the volume is not known");
   if (threshold > info.range[1] || threshold <= info.range[0])
     hl_log(composer->context, HL_LOG_WARNING,
@@ -381,7 +391,8 @@ static hl_status make_opaque_from(const hl_composer *composer, const hl_volume *
   function->opacity = points;
   function->opacity_count = POINTS;
   function->gradient_opacity_count = 0;
-  function->unit_distance = fmin(fmin(info.spacing[0], info.spacing[1]), info.spacing[2]);
+  function->unit_distance = fmin(fmin(info.spacing[0], info.spacing[1]), info.spacing[2]) *
+                            fabs(volume->scale);
   return HL_OK;
 }
 
@@ -488,9 +499,10 @@ typedef struct function_changes {
 } function_changes;
 
 /* Applies "range", "threshold" and "colormap", in this order. */
-static hl_status change_function(const hl_composer *composer, const hl_volume *volume,
+static hl_status change_function(const hl_composer *composer, const hl_scene_volume *described,
                                  const function_changes *changes, bool maximum,
                                  hl_transfer_function *function) {
+  const hl_volume *volume = described->volume;
   const char *colormap = changes->colormap;
   const bool mapped = colormap != NULL && hl_find_colormap(colormap) != NULL;
   const hl_spread_use use = maximum ? HL_SPREAD_PROJECTION : mapped ? HL_SPREAD_COLORMAP : HL_SPREAD_ALONE;
@@ -501,7 +513,7 @@ static hl_status change_function(const hl_composer *composer, const hl_volume *v
     status = spread(composer, volume, &range, use, function);
   if (status == HL_OK && changes->threshold != NULL &&
       hl_row_numbers(&hl_option_rows[HL_ASK_THRESHOLD], changes->threshold, &threshold))
-    status = make_opaque_from(composer, volume, threshold.number[0], function);
+    status = make_opaque_from(composer, described, threshold.number[0], function);
   if (status == HL_OK && colormap != NULL)
     status = color_by_name(composer, colormap, volume, range, maximum, function);
   return status;
@@ -531,13 +543,13 @@ hl_status hl_compose_function(const hl_composer *composer, const hl_scene_descri
                                        composer->error);
   if (status == HL_OK && named != NULL) {
     hl_transfer_function loaded = {0};
-    status = load_function(composer, named, volume->volume, &loaded);
+    status = load_function(composer, named, volume, &loaded);
     if (status == HL_OK) status = replace(composer, &loaded, function);
     hl_transfer_function_release(composer->context, &loaded);
   }
   if (status != HL_OK) return status;
   if (function->plane.second == HL_SECOND_NONE)
-    return change_function(composer, volume->volume, &changes, slice || hl_is_maximum(composer, description),
+    return change_function(composer, volume, &changes, slice || hl_is_maximum(composer, description),
                            function);
   if (changes.range == NULL && changes.threshold == NULL && changes.colormap == NULL) return HL_OK;
   return hl_fail(composer->error, HL_ERROR_ARGUMENT,

@@ -9,6 +9,7 @@
 #include "core/context.h"
 #include "core/door.h"
 #include "core/memory.h"
+#include "scene/geometry/lengths.h"
 #include "scene/label/label_table.h"
 #include "text/plain.h"
 #include "text/stem.h"
@@ -37,10 +38,12 @@ static void name_after_file(const char *file, hl_label_layers *layers, hl_label 
 }
 
 /* Loads one layer and its labels. reading: the options for reading the file; a layer is read as a component
- * of the file. over: the volume that the labels lie over; null if there is none. */
+ * of the file. scene: the scene whose first volume the labels lie over; null if there is none. The scene's
+ * unit of lengths becomes the layer's unit. */
 static hl_status load_layer(hl_context *context, const char *file, const char *table,
-                            const hl_volume_load_options *reading, const hl_scene_volume *over,
+                            const hl_volume_load_options *reading, const hl_scene_description *scene,
                             hl_label_layers *layers, hl_error *error) {
+  const hl_scene_volume *over = scene != NULL && scene->volume_count > 0 ? &scene->volumes[0] : NULL;
   hl_volume_load_options options = *reading;
   if (options.time < 0 && options.channel < 0) options.component = (int)layers->count;
   hl_scene_volume *made = &layers->volumes[layers->count];
@@ -52,6 +55,7 @@ static hl_status load_layer(hl_context *context, const char *file, const char *t
   if (status != HL_OK) return status;
   layers->count++;
   made->file = file;
+  if (scene != NULL) made->scale = hl_scene_file_scale(scene, made->volume);
   made->array = options.array, made->series = options.series;
   made->component = layers_of(made->volume) < 2 ? none : options.component;
   made->time = options.time, made->channel = options.channel, made->level = options.level;
@@ -65,10 +69,10 @@ static hl_status load_layer(hl_context *context, const char *file, const char *t
 
 /* Loads the layers that have labels, and shows the labels that the list names. */
 static hl_status load_layers(const hl_composer *composer, const char *path, const char *table,
-                             const hl_volume_load_options *reading, const hl_scene_volume *over,
+                             const hl_volume_load_options *reading, const hl_scene_description *scene,
                              hl_shown_list *show, hl_label_layers *layers) {
   for (size_t count = 1; layers->count < count;) {
-    hl_status status = load_layer(composer->context, path, table, reading, over, layers, composer->error);
+    hl_status status = load_layer(composer->context, path, table, reading, scene, layers, composer->error);
     if (status != HL_OK) return status;
     count = layers_of(layers->volumes[0].volume);
     if (count > HL_MOST_LABEL_LAYERS)
@@ -210,7 +214,7 @@ static hl_status add_mask(const hl_composer *composer, hl_shown_list *show, hl_l
     return hl_fail(composer->error, HL_ERROR_ARGUMENT, "--mask is for volumes: the scene has none");
   const hl_volume_load_options reading = reading_of(description, false);
   hl_status status = load_layers(composer, path, composer->asked[HL_ASK_LABEL_TABLE].text, &reading,
-                                 &description->volumes[0], show, layers);
+                                 description, show, layers);
   if (status == HL_OK) status = hl_check_shown(show, layers, composer->error);
   if (status != HL_OK) return status;
   if (layers->count > 1)
@@ -248,9 +252,8 @@ static hl_status add_map(const hl_composer *composer, hl_shown_list *show, hl_la
         "by --labels FILE",
         path, asked[HL_ASK_SHOW].given ? "show" : "label-table");
   hl_let_rest_be_all(show);
-  const hl_scene_volume *over = !itself && description->volume_count > 0 ? &description->volumes[0] : NULL;
-  hl_status status = load_layers(composer, path, asked[HL_ASK_LABEL_TABLE].text, &reading, over, show,
-                                 layers);
+  hl_status status = load_layers(composer, path, asked[HL_ASK_LABEL_TABLE].text, &reading,
+                                 itself ? NULL : description, show, layers);
   if (status == HL_OK) status = hl_check_shown(show, layers, composer->error);
   return status == HL_OK ? add_layers(composer, layers, itself ? 0 : description->volume_count, scene)
                          : status;

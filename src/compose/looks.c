@@ -51,6 +51,7 @@ hl_status hl_compose_volume_look(const hl_composer *composer, hl_scene_volume *v
                                                               &function, &shading, composer->error);
   if (status != HL_OK) return status;
   volume->transfer_function = function;
+  volume->transfer_function.unit_distance *= fabs(volume->scale);
   if (!composer->asked[HL_ASK_SHADING].given && composer->asked[HL_ASK_LOOK].choice != HL_LOOK_AUTO)
     volume->shading = shading;
   return HL_OK;

@@ -164,12 +164,12 @@ bool hl_slice_range(const hl_volume *volume, char text[HL_SLICE_TEXT]) {
   return true;
 }
 
-hl_status hl_make_slice_opaque(const hl_composer *composer, const hl_volume *volume,
+hl_status hl_make_slice_opaque(const hl_composer *composer, const hl_scene_volume *volume,
                                hl_transfer_function *function) {
   enum { POINTS = 2 };
   static const double opaque = 0.999;
   hl_volume_info info = {.struct_size = sizeof info};
-  if (hl_volume_get_info(volume, &info) != HL_OK)
+  if (hl_volume_get_info(volume->volume, &info) != HL_OK)
     return hl_fail(composer->error, HL_ERROR_INTERNAL, "--slice: the volume is not known");
   hl_opacity_point *points = hl_reallocate(composer->context, (void *)function->opacity, POINTS,
                                            sizeof *points);
@@ -179,7 +179,8 @@ hl_status hl_make_slice_opaque(const hl_composer *composer, const hl_volume *vol
   function->opacity = points;
   function->opacity_count = POINTS;
   function->gradient_opacity_count = 0;
-  function->unit_distance = fmin(fmin(info.spacing[0], info.spacing[1]), info.spacing[2]) / 2;
+  function->unit_distance = fmin(fmin(info.spacing[0], info.spacing[1]), info.spacing[2]) / 2 *
+                            fabs(volume->scale);
   return HL_OK;
 }
 

@@ -32,7 +32,7 @@ bool hl_slice_range(const hl_volume *volume, char text[HL_SLICE_TEXT]);
 
 /* Makes all values of a volume nearly opaque within half a voxel's edge. The function's points are owned by
  * the caller. */
-hl_status hl_make_slice_opaque(const hl_composer *composer, const hl_volume *volume,
+hl_status hl_make_slice_opaque(const hl_composer *composer, const hl_scene_volume *volume,
                                hl_transfer_function *function);
 
 /* Gives the picture of a slice a black background, and the exposure at which the colours of several volumes

@@ -46,7 +46,7 @@ static hl_status change_volume(const hl_composer *composer, const hl_scene_descr
       hl_text_for(composer, HL_ASK_TF, volume, index) == NULL)
     status = hl_fade_projection(composer, volume->volume, &changed->functions[index]);
   if (status == HL_OK && sliced && hl_text_for(composer, HL_ASK_TF, volume, index) == NULL)
-    status = hl_make_slice_opaque(composer, volume->volume, &changed->functions[index]);
+    status = hl_make_slice_opaque(composer, volume, &changed->functions[index]);
   volume->transfer_function = changed->functions[index];
   hl_transfer_function_release(composer->context, &look);
   if (status != HL_OK || !iso) return status;

@@ -1,10 +1,10 @@
 /* figure/bar.c - draws the scale bar, which shows the length of a line in the world.
  *
  * The unit is the one in the volumes' files, or the one that the overlay names; without either, the bar is
- * refused. All visible volumes whose files tell a unit must have the same unit, after the scales that the
- * scene gives them. A volume whose file tells none, such as a mask over a scan, lies in their world. In a
- * perspective picture the scale changes with depth. The bar is then right at one depth, which the overlay
- * chooses and the bar's text names. */
+ * refused. After the scales that the scene gives them, the lengths of all visible volumes whose files tell a
+ * unit must be in one unit. A volume whose file tells none, such as a mask over a scan, lies in their world.
+ * In a perspective picture the scale changes with depth. The bar is then right at one depth, which the
+ * overlay chooses and the bar's text names. */
 #include <stdio.h>
 #include <string.h>
 
@@ -25,12 +25,29 @@ static const char *name_of(const hl_scene_volume *volume) {
   return volume->name != NULL ? volume->name : volume->file != NULL ? volume->file : "volume";
 }
 
-/* The unit of a volume's lengths; null if neither the overlay nor the volume's file states it. */
-static const char *unit_of(const hl_overlay *overlay, const hl_scene_volume *volume) {
-  return overlay->world_unit != NULL ? overlay->world_unit : hl_volume_unit(volume->volume);
+/* Fails because the lengths of two volumes have different units in the scene's world. */
+static hl_status refuse_units(const hl_scene_volume *volume, const bar_unit *own, const bar_unit *before,
+                              hl_error *error) {
+  const bool same = strcmp(own->name, before->name) == 0;
+  char mend[64] = "another \"scale\"";
+  if (own->unit != NULL && before->unit != NULL)
+    hl_plain_print(mend, sizeof mend, "the \"scale\" %.6g",
+                   hl_length_ratio(own->unit->metres, before->unit->metres * before->per_scene));
+  return hl_fail(
+      error, HL_ERROR_ARGUMENT,
+      "scale bar: the lengths of '%.60s' are in %.20s%s, and those of the volumes before in %.20s: "
+      "give its \"transform\" in the scene %s",
+      name_of(volume), own->name, same ? " of another scale" : "", before->name, mend);
 }
 
-/* Takes the unit of the first volume, and refuses a volume whose unit is another. name: unit_of(). */
+/* Returns whether two units of the scene's lengths are the same length. */
+static bool are_equal(const bar_unit *a, const bar_unit *b) {
+  const bool known = a->unit != NULL && b->unit != NULL;
+  const double ratio = a->per_scene / b->per_scene * (known ? a->unit->metres / b->unit->metres : 1);
+  return (known || strcmp(a->name, b->name) == 0) && fabs(ratio - 1) <= 1e-9;
+}
+
+/* Takes the unit of the first volume that has one, and refuses a volume whose lengths are in another unit. */
 static hl_status add_volume(const hl_scene_volume *volume, const char *name, bar_unit *unit,
                             hl_error *error) {
   const double *axes = volume->axis_scale;
@@ -38,35 +55,36 @@ static hl_status add_volume(const hl_scene_volume *volume, const char *name, bar
     return hl_fail(error, HL_ERROR_ARGUMENT,
                    "scale bar: the scene stretches '%.60s' along its axes: no one scale is left",
                    name_of(volume));
-  double per_scene = 1 / fabs(volume->scale * axes[0]);
-  if (unit->name != NULL && (strcmp(unit->name, name) != 0 || fabs(unit->per_scene / per_scene - 1) > 1e-9))
-    return hl_fail(
-        error, HL_ERROR_ARGUMENT,
-        "scale bar: the lengths of '%.60s' have another unit or scale than those of the volumes before",
-        name_of(volume));
-  *unit = (bar_unit){name, hl_unit_find(name), per_scene};
-  return HL_OK;
+  const bar_unit own = {name, hl_unit_find(name), 1 / fabs(volume->scale * axes[0])};
+  if (unit->name == NULL) *unit = own;
+  return are_equal(unit, &own) ? HL_OK : refuse_units(volume, &own, unit, error);
 }
 
+/* Finds the unit that the files of the visible volumes tell, or that the overlay states for them. */
 static hl_status find_unit(const hl_overlay_place *place, bar_unit *unit, hl_error *error) {
+  const char *world_unit = place->overlay->world_unit;
   const hl_scene_volume *silent = NULL; /* a visible volume without a unit */
+  bar_unit stated = {0};                /* that of volumes whose files tell none */
   hl_status status = HL_OK;
   for (size_t v = 0; status == HL_OK && v < place->scene->volume_count; v++) {
     const hl_scene_volume *volume = &place->scene->volumes[v];
-    const char *name = volume->visible ? unit_of(place->overlay, volume) : NULL;
-    if (name != NULL) status = add_volume(volume, name, unit, error);
-    else if (volume->visible) silent = volume;
+    const char *told = hl_volume_unit(volume->volume);
+    if (!volume->visible) continue;
+    if (told != NULL) status = add_volume(volume, told, unit, error);
+    else if (world_unit != NULL) status = add_volume(volume, world_unit, &stated, error);
+    else silent = volume;
   }
-  if (status != HL_OK || unit->name != NULL) return status;
+  if (status != HL_OK || (unit->name != NULL && world_unit == NULL)) return status;
   if (silent != NULL)
     return hl_fail(
         error, HL_ERROR_ARGUMENT,
         "scale bar: the file of '%.60s' does not tell the unit of its lengths: say it, as --unit mm",
         name_of(silent));
-  if (place->overlay->world_unit == NULL)
+  if (world_unit == NULL)
     return hl_fail(error, HL_ERROR_ARGUMENT,
                    "scale bar: no volume tells the unit of lengths: say it, as --unit mm");
-  *unit = (bar_unit){place->overlay->world_unit, hl_unit_find(place->overlay->world_unit), 1};
+  const double per_scene = unit->name != NULL ? unit->per_scene : stated.name != NULL ? stated.per_scene : 1;
+  *unit = (bar_unit){world_unit, hl_unit_find(world_unit), per_scene};
   return HL_OK;
 }
 

@@ -8,9 +8,12 @@
 #include "core/door.h"
 #include "core/memory.h"
 #include "guess/for_volume.h"
+#include "scene/geometry/lengths.h"
+#include "scene/geometry/placement.h"
 #include "scene/scene.h"
 #include "text/plain.h"
 #include "text/stem.h"
+#include "text/units.h"
 
 enum { NAME_BYTES = 256 };
 
@@ -73,8 +76,9 @@ static void tell_of_sheets(hl_scene *const *scenes, size_t count, const hl_scene
   for (size_t n = 0; n < count; n++) {
     const hl_scene_description *own = &scenes[n]->description;
     most = fmax(most, diagonal_of(own) / sheet_distance(own));
-    greatest = fmax(greatest, hl_scene_smallest_edge(own));
   }
+  for (size_t v = 0; v < joined->volume_count; v++)
+    greatest = fmax(greatest, shortest_edge(&joined->volumes[v]));
   if (sheets > HL_MANY_SHEETS && sheets > 2 * most)
     hl_log(
         scenes[0]->description.volumes[0].volume->context, HL_LOG_WARNING,
@@ -97,14 +101,32 @@ double hl_scene_joined_spacing(const hl_scene_description *description, const do
   return round(1e6 * distance / shortest) / 1e6;
 }
 
+/* Converts the lengths of a volume to the unit of another world. */
+static void convert_lengths(double factor, hl_scene_volume *volume) {
+  if (factor == 1) return;
+  volume->scale *= factor;
+  for (int axis = 0; axis < 3; axis++) volume->translate[axis] *= factor;
+  volume->transfer_function.unit_distance *= factor;
+}
+
+/* The unit of lengths of the first scene whose files tell one, in metres; 0 if there is none. */
+static double common_metres(hl_scene *const *scenes, size_t count) {
+  double metres = 0;
+  for (size_t n = 0; n < count && !(metres > 0); n++) metres = hl_scene_world_metres(&scenes[n]->description);
+  return metres;
+}
+
 static hl_status describe_joined(hl_scene *const *scenes, size_t count, joined_volumes *joined,
                                  hl_scene_description *description, hl_error *error) {
   hl_view view;
+  const double common = common_metres(scenes, count);
   for (size_t n = 0; n < count; n++) {
     const hl_scene_description *own = &scenes[n]->description;
+    const double metres = hl_scene_world_metres(own);
     for (size_t v = 0; v < own->volume_count; v++) {
       joined->volumes[joined->count] = own->volumes[v];
       joined->spacings[joined->count] = sheet_distance(own) / shortest_edge(&own->volumes[v]);
+      if (metres > 0) convert_lengths(hl_length_ratio(metres, common), &joined->volumes[joined->count]);
       name_volume(joined, joined->count++);
     }
   }

@@ -213,6 +213,7 @@ static hl_status adopt(hl_context *context, mask_job *job, hl_volume **made, hl_
   hl_status status = hl_volume_adopt(context, &grid, "a mask", job->factors, made, error);
   job->factors = NULL;
   if (status != HL_OK) return status;
+  (*made)->unit = map->unit;
   (*made)->colors = job->colors;
   (*made)->slopes = job->slopes;
   (*made)->slope_scale = job->slope_scale;

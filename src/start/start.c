@@ -10,6 +10,7 @@
 
 #include "plane_histogram.h"
 #include "text/json_value.h"
+#include "text/units.h"
 
 void put_json_text(FILE *out, const char *text) {
   char piece[HL_JSON_PIECE_BYTES];
@@ -29,15 +30,16 @@ static void put_numbers(FILE *out, const double *numbers, size_t count) {
 }
 
 /* Writes the grid of voxels. `axes` are the steps from a voxel to its neighbours, in the world, from which
- * the page finds the box of the voxels. */
-static void put_grid(FILE *out, const hl_volume_info *info) {
+ * the page finds the box of the voxels. unit: the factor that converts the grid's lengths to the volume's. */
+static void put_grid(FILE *out, const hl_volume_info *info, double unit) {
+  const double origin[3] = {unit * info->origin[0], unit * info->origin[1], unit * info->origin[2]};
   fprintf(out, "\"dimensions\":[%zu,%zu,%zu],\"origin\":", info->dimensions[0], info->dimensions[1],
           info->dimensions[2]);
-  put_numbers(out, info->origin, 3);
+  put_numbers(out, origin, 3);
   fputs(",\"axes\":[", out);
   for (int axis = 0; axis < 3; axis++) {
     double step[3];
-    for (int row = 0; row < 3; row++) step[row] = info->direction[row][axis] * info->spacing[axis];
+    for (int row = 0; row < 3; row++) step[row] = info->direction[row][axis] * info->spacing[axis] * unit;
     if (axis > 0) fputc(',', out);
     put_numbers(out, step, 3);
   }
@@ -45,14 +47,15 @@ static void put_grid(FILE *out, const hl_volume_info *info) {
 }
 
 /* Writes the grid of the label map that masks a volume, or null if there is none. */
-static void put_mask(FILE *out, const hl_volume *mask) {
+static void put_mask(FILE *out, const hl_scene_volume *volume) {
+  const hl_volume *mask = volume->mask.volume;
   hl_volume_info info = {.struct_size = sizeof info};
   if (mask == NULL || hl_volume_get_info(mask, &info) != HL_OK) {
     fputs("null", out);
     return;
   }
   fputc('{', out);
-  put_grid(out, &info);
+  put_grid(out, &info, hl_unit_ratio(hl_volume_unit(mask), hl_volume_unit(volume->volume)));
   fputc('}', out);
 }
 
@@ -138,9 +141,9 @@ static void put_volume(FILE *out, hl_context *context, const hl_scene_volume *vo
     return;
   }
   fprintf(out, "{\"type\":\"%s\",", hl_voxel_type_name(info.type));
-  put_grid(out, &info);
+  put_grid(out, &info, 1);
   fputs(",\"mask\":", out);
-  put_mask(out, volume->mask.volume);
+  put_mask(out, volume);
   fputc(',', out);
   put_histogram(out, &info);
   put_unsmoothed(out, volume->volume);

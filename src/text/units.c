@@ -31,6 +31,18 @@ const hl_unit *hl_unit_find(const char *name) {
   return NULL;
 }
 
+double hl_length_ratio(double metres, double other_metres) {
+  const double ratio = metres / other_metres, times = round(ratio), parts = round(1 / ratio);
+  if (fabs(ratio - times) < 1e-9 * ratio) return times;
+  return fabs(1 - parts * ratio) < 1e-9 ? 1 / parts : ratio;
+}
+
+double hl_unit_ratio(const char *from, const char *to) {
+  const hl_unit *one = from != NULL ? hl_unit_find(from) : NULL,
+                *other = to != NULL ? hl_unit_find(to) : NULL;
+  return one != NULL && other != NULL ? hl_length_ratio(one->metres, other->metres) : 1;
+}
+
 const hl_unit *hl_unit_for(double metres) {
   const hl_unit *found = NULL;
   for (size_t u = 0; u < UNIT_COUNT; u++) {

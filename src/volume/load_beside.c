@@ -4,6 +4,7 @@
 #include <string.h>
 
 #include "core/context.h"
+#include "text/units.h"
 #include "volume/volume.h"
 
 static void spacing_of(const hl_volume *volume, double spacing[3]) {
@@ -41,6 +42,8 @@ static void tell_of_place(hl_context *context, const char *path, const hl_volume
   hl_volume_world_box(&info, low, high);
   if (hl_volume_get_info(map, &info) != HL_OK) return;
   hl_volume_world_box(&info, own_low, own_high);
+  const double unit = hl_unit_ratio(map->unit, volume->unit);
+  for (int axis = 0; axis < 3; axis++) own_low[axis] *= unit, own_high[axis] *= unit;
   for (int axis = 0; axis < 3; axis++)
     if (own_low[axis] >= high[axis] || own_high[axis] <= low[axis]) {
       hl_log(context, HL_LOG_WARNING,

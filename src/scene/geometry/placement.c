@@ -9,6 +9,7 @@
 #include "mesh/mesh.h"
 #include "scene/function/transfer_function.h"
 #include "scene/geometry/camera.h"
+#include "text/units.h"
 
 double hl_scene_volume_scale(const hl_scene_volume *volume, int axis) {
   return volume->scale * volume->axis_scale[axis];
@@ -44,8 +45,16 @@ void hl_scene_volume_place_point(const hl_scene_volume *volume, double point[3])
   memcpy(point, (const double[3]){placed.x, placed.y, placed.z}, sizeof(double[3]));
 }
 
+/* The lengths of the mask's file are converted to the unit of the volume's file. */
 affine3 hl_scene_mask_index_to_world(const hl_scene_volume *volume) {
-  return affine3_multiply(hl_scene_volume_file_to_world(volume), volume->mask.volume->index_to_world);
+  const hl_volume *mask = volume->mask.volume;
+  const double unit = hl_unit_ratio(mask->unit, volume->volume->unit);
+  affine3 in_file = mask->index_to_world;
+  if (unit != 1) {
+    for (int r = 0; r < 3; r++) in_file.linear.row[r] = vec3_scale(in_file.linear.row[r], unit);
+    in_file.offset = vec3_scale(in_file.offset, unit);
+  }
+  return affine3_multiply(hl_scene_volume_file_to_world(volume), in_file);
 }
 
 /* Finds the bounds, in index space, of a volume's clip box, whose corners are in the world of the volume's
