@@ -171,6 +171,15 @@ static hl_status put_on_mask(const hl_composer *composer, const hl_mask *mask, h
   return status;
 }
 
+/* Warns if the layers have no labels, so that they show nothing. */
+static void tell_of_no_labels(const hl_composer *composer, const char *path, const hl_label_layers *layers) {
+  size_t labels = 0;
+  for (size_t n = 0; n < layers->count; n++) labels += layers->volumes[n].label_count;
+  if (labels == 0)
+    hl_log(composer->context, HL_LOG_WARNING, "no voxel of '%.300s' has a label: all its numbers are 0",
+           path);
+}
+
 /* Moves the visible labels to the front of the list. Hidden labels are left out, and their matter belongs to
  * the rest. Returns the number of visible labels. */
 static size_t keep_shown(hl_label *labels, size_t count) {
@@ -217,6 +226,7 @@ static hl_status add_mask(const hl_composer *composer, hl_shown_list *show, hl_l
                                  description, show, layers);
   if (status == HL_OK) status = hl_check_shown(show, layers, composer->error);
   if (status != HL_OK) return status;
+  tell_of_no_labels(composer, path, layers);
   if (layers->count > 1)
     return hl_fail(composer->error, HL_ERROR_UNSUPPORTED,
                    "'%.300s': has %zu overlapping layers, a mask takes one: save it as one", path,
@@ -255,8 +265,9 @@ static hl_status add_map(const hl_composer *composer, hl_shown_list *show, hl_la
   hl_status status = load_layers(composer, path, asked[HL_ASK_LABEL_TABLE].text, &reading,
                                  itself ? NULL : description, show, layers);
   if (status == HL_OK) status = hl_check_shown(show, layers, composer->error);
-  return status == HL_OK ? add_layers(composer, layers, itself ? 0 : description->volume_count, scene)
-                         : status;
+  if (status != HL_OK) return status;
+  tell_of_no_labels(composer, path, layers);
+  return add_layers(composer, layers, itself ? 0 : description->volume_count, scene);
 }
 
 /* Returns whether the scene's only volume was read without options that select a part of its file. */
