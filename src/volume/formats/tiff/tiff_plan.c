@@ -6,6 +6,7 @@
  * planes of such files are ordered by channel, slice and frame. The channel changes fastest. */
 #include "volume/formats/tiff/tiff_plan.h"
 
+#include <halflight/scene.h>
 #include <math.h>
 #include <string.h>
 
@@ -430,6 +431,13 @@ static hl_status plan_sizes(hl_load_request *request, const char *path, const se
   return status;
 }
 
+/* Returns whether channels of a single slice are slices. tifffile.imwrite(..., imagej=True) takes the first
+ * of three axes as channels, whatever it is. It is taken as slices if there are more channels than a picture
+ * can show, and the caller wants none of them by its number or name. */
+static bool are_slices(const hl_load_request *request, size_t channels, size_t slices) {
+  return slices == 1 && channels > HL_CHANNELS_MOST && request->channel < 0 && request->channel_name == NULL;
+}
+
 static hl_status plan_imagej(hl_load_request *request, const char *path, const char *description,
                              size_t pages, const double resolution[2], tiff_plan *plan, hl_error *error) {
   size_t times = find_count(description, "frames"), channels = find_count(description, "channels");
@@ -437,7 +445,15 @@ static hl_status plan_imagej(hl_load_request *request, const char *path, const c
   if (whole == 0 || (whole * steps != pages && whole != find_count(description, "slices")))
     times = channels = 1;
   const size_t slices = pages / (channels * times);
-  const series_sizes sizes = {{times, slices * channels}, {channels, 1}, {slices, channels}};
+  series_sizes sizes = {{times, slices * channels}, {channels, 1}, {slices, channels}};
+  if (are_slices(request, channels, slices)) {
+    sizes = (series_sizes){{times, channels}, {1, 0}, {channels, 1}};
+    hl_log(
+        plan->context, HL_LOG_WARNING,
+        "%.300s: its description tells %zu channels of one slice: they are taken as slices: for one channel, "
+        "choose by \"channel\" (--channel)",
+        path, channels);
+  }
   plan->is_told = true;
   take_imagej_lengths(request, description, resolution, plan);
   return plan_sizes(request, path, &sizes, plan, error);
