@@ -81,6 +81,11 @@
  * matter again. For the faces of cuts, behind which matter is often even, skin is used in addition. */
 #define EVEN_VOXELS 1
 
+/* A slab's end, times this factor, is a height just beyond the end: one or two steps of a float further. Rays
+ * that no cut ends at the slab's end leave the slab at this height. So they differ from rays that end there.
+ */
+#define BEYOND_SLAB 1.00000012f
+
 /* Light may come from the matter of one surface into another surface, which begins at the value `foot`. In a
  * blurred edge, values rise through the values of the first surface to the values of the second. In such an
  * edge the two are one surface, and the light that the first surface has absorbed lights the second one, too.

@@ -90,15 +90,26 @@ LANES_INLINE lanes_int nears_edge(const run_cut *cut, lanes3 from, lanes3 to, fl
          (second > -FACE_VOXELS);
 }
 
-/* The rays of a block that come near to an inner corner of matter, in slab number `slab` of a run. */
-LANES_INLINE lanes_int nears_inner_corner(const slab_run *run, int slab, lanes u, lanes v) {
+LANES_INLINE int hollows_out(const run_cut *cut) {
+  return cut->shape->type == HL_CUT_BOX && !cut->shape->keep_inside;
+}
+
+/* Returns whether a cut's box leaves inner corners in the matter. */
+LANES_INLINE int has_inner_corners(const slab_run *run) {
+  int has = 0;
+  for (int i = 0; i < run->cut_count; i++) has |= hollows_out(&run->cuts[i]);
+  return has;
+}
+
+/* The rays of a block that come near to an inner corner of matter, in slab number `slab` of a run. The
+ * function is not inlined, so that it does not slow down the many runs without such corners. */
+static __attribute__((noinline, unused)) lanes_int nears_inner_corner(const slab_run *run, int slab, lanes u,
+                                                                      lanes v) {
   lanes_int near = lanes_set_int(0);
-  for (int i = 0; i < run->cut_count; i++) {
-    const run_cut *cut = &run->cuts[i];
-    if (cut->shape->type != HL_CUT_BOX || cut->shape->keep_inside) continue;
-    near |= nears_edge(cut, rays_positions(&run->rays[slab], u, v),
-                       rays_positions(&run->rays[slab + 1], u, v), run->voxel);
-  }
+  for (int i = 0; i < run->cut_count; i++)
+    if (hollows_out(&run->cuts[i]))
+      near |= nears_edge(&run->cuts[i], rays_positions(&run->rays[slab], u, v),
+                         rays_positions(&run->rays[slab + 1], u, v), run->voxel);
   return near;
 }
 

@@ -4,6 +4,7 @@
 #include <math.h>
 
 #include "core/memory.h"
+#include "core/sheet_constants.h"
 
 enum { INTERVAL_FLOATS = 2 * TILE_PIXELS };
 
@@ -156,16 +157,9 @@ static void remove_sections(const float *restrict from, const float *restrict to
   }
 }
 
-/* Where the rays of a block go on beyond the slab's end, `leave` is beyond this end, too. beyond: where the
- * rays leave the matter that is left of their sections, or the slab's end. top: the height of the slab's end.
- */
-static void go_on_beyond(const float *restrict beyond, float top, float *restrict leave) {
-  for (int p = 0; p < BLOCK_PIXELS; p++) leave[p] = leave[p] == top ? beyond[p] : leave[p];
-}
-
 /* The places where a patch's rays enter and leave the part of a slab that no cut removes, in these blocks. A
- * ray that goes on beyond the slab's end leaves beyond this end. Null in the same cases as for entries_of().
- */
+ * ray that goes on leaves just beyond the slab's end; see BEYOND_SLAB. Null in the same cases as for
+ * entries_of(). */
 static const float *entries_of_slab(view_sheets *sheets, slab_place place, uint32_t blocks) {
   float *enter = entries_of(sheets, place), *here = enter + INTERVAL_FLOATS,
         *removed = here + INTERVAL_FLOATS;
@@ -177,24 +171,19 @@ static const float *entries_of_slab(view_sheets *sheets, slab_place place, uint3
   const sheet_stack *stack = sheets->content->sheets;
   /* The ends of the slab are rounded as in covered(). So rays that nothing cuts get the same sums as in a
    * slab that nothing cuts. */
-  float top = (float)(place.sheet * stack->spacing), bottom = top - (float)stack->spacing;
+  float top = (float)(place.sheet * stack->spacing), bottom = top - (float)stack->spacing,
+        beyond = top * BEYOND_SLAB;
   for (uint32_t left = blocks; left != 0; left &= left - 1) {
     size_t at = (size_t)__builtin_ctz(left) * BLOCK_PIXELS;
-    float beyond[BLOCK_PIXELS];
-    for (size_t p = 0; p < BLOCK_PIXELS; p++) {
-      const float leave = enter[TILE_PIXELS + at + p];
-      here[at + p] = enter[at + p] > bottom ? enter[at + p] : bottom;
-      here[TILE_PIXELS + at + p] = leave < top ? leave : top;
-      beyond[p] = leave > top ? leave : top;
+    for (size_t p = at; p < at + BLOCK_PIXELS; p++) {
+      here[p] = enter[p] > bottom ? enter[p] : bottom;
+      here[TILE_PIXELS + p] = enter[TILE_PIXELS + p] < beyond ? enter[TILE_PIXELS + p] : beyond;
     }
     for (size_t i = 0; i < count; i++) {
       const float *from = removed + i * INTERVAL_FLOATS + at;
-      if (ranges[i].low > top || ranges[i].high <= bottom) continue;
-      remove_sections(from, from + TILE_PIXELS, here + at, here + TILE_PIXELS + at);
-      for (size_t p = 0; p < BLOCK_PIXELS; p++)
-        beyond[p] = (from[p] <= top) & (from[TILE_PIXELS + p] > top) ? top : beyond[p];
+      if (ranges[i].low < beyond && ranges[i].high > bottom)
+        remove_sections(from, from + TILE_PIXELS, here + at, here + TILE_PIXELS + at);
     }
-    go_on_beyond(beyond, top, here + TILE_PIXELS + at);
   }
   return here;
 }

@@ -86,7 +86,12 @@ typedef struct attenuate_job {
  * the values behind it are: k = k' = 1 for visible matter up to a voxel behind a face through which the light
  * comes in. Deeper, the k that follows from the values is raised to the power 1 - skin. The skin is 1 up to a
  * voxel behind the face, and falls to 0 at FACE_VOXELS behind the face. Over the same distance the eye sees
- * less and less of the face (render/slab_lanes.h). */
+ * less and less of the face (render/slab_lanes.h).
+ *
+ * Where two faces of a cut meet in an inner corner, light that comes through matter to the corner lights
+ * neither of them as light at an outside: k = k' = 0 within FACE_VOXELS of the corner, on the way to it.
+ * Otherwise pixels whose light passes below the corner would keep Y, and the face in shade would be read from
+ * them, too. */
 
 /* Marks of surfaces in the dark. A surface in the dark absorbs no light. But a method that blurs absorbed
  * light needs to know where the surface is, because blurs move light from beside the shadow to the surface,

@@ -253,7 +253,7 @@ LANES_INLINE attenuated_block attenuate_block(const attenuate_job *job, int volu
     if (volume->surface) {
       own = kept_by_values(job, volume, a, b, &to, span, path, extinction, (size_t)y * job->stride + x);
       if (volume->faces != NULL) own = kept_by_face(volume, own, b, corner);
-      if (volume->faces != NULL && volume->faces->cut_count > 0)
+      if (volume->faces != NULL && has_inner_corners(volume->faces))
         own = kept_by_inner_corner(volume, own, corner);
       own = kept_in_span(volume, own, block, job->height);
     }

@@ -105,6 +105,7 @@ MADE = {
     "cuts, surfaces": scene(opacity=AROUND, shading="phong",
                             volume={"cuts": [plane(1, 0.3, 0.2), BALL, {**BLOCK, "keep": "inside"}]}),
     "cuts in one another, runs of 3": scene(volume={"cuts": [BLOCK, BALL]}, render={"slabs_at_once": 3}),
+    "an inner corner of surfaces": scene(opacity=DENSE, shading="phong", direction=(1, 0.15, -0.5), volume={"cuts": [BLOCK]}),
     "a ball is left, near light": scene(opacity=LAYERS, shading="phong", volume={"cuts": [{**BALL, "keep": "inside"}]},
                                         light={"type": "point", "position": [40, 50, -50]}),
     "cuts with shadows, light from behind": scene(opacity=DENSE, shading="phong", direction=(0.2, -0.3, -0.9),
@@ -172,6 +173,8 @@ MADE = {
     "the paper's soft shadows of a wide light from behind, cuts": scene(
         shadows="soft", shading="phong", opacity=DENSE, light={**BEHIND, "angular_diameter_deg": 30},
         volume={"cuts": [BALL, plane(1, 0.4, -0.2)]}, render={**PAPER, "slabs_at_once": 3}),
+    "the paper's soft shadows of an inner corner, a mask": scene(
+        shadows="soft", shading="phong", opacity=DENSE, light=SUN, volume={"mask": {**ORGANS, "rest": 0}, "cuts": [BLOCK]}, render=PAPER),
     "an even sky": scene(sky=EVEN_SKY),
     "a sky, surfaces": scene(sky=SKY, shading="phong", opacity=DENSE),
     "a sky, soft shadows of surfaces, colours": scene(sky=SKY, shadows="soft", shading="phong", opacity=LAYERS, light=SUN,

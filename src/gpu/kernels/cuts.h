@@ -34,19 +34,16 @@ DEVICE void remove_section(float from, float to, heights_in_box *left) {
 }
 
 /* The heights between which a pixel's ray runs through a slab outside of all cuts that keep their outside. A
- * ray that goes on beyond the slab's end leaves beyond this end. left: the result of heights_left(). */
+ * ray that goes on leaves just beyond the slab's end; see BEYOND_SLAB. left: the result of heights_left(). */
 DEVICE heights_in_box heights_in_slab(heights_in_box left, GLOBAL const plan_cut *cuts, int count, float u,
                                       float v, float height, float spacing) {
-  float beyond = left.leave;
   left.enter = greater(left.enter, height - spacing);
-  left.leave = lesser(left.leave, height);
+  left.leave = lesser(left.leave, height * BEYOND_SLAB);
   for (int i = 0; i < count && left.enter < left.leave; i++) {
     if (cuts[i].keep_inside) continue;
     const heights_in_box removed = heights_of(&cuts[i].rays, u, v);
     remove_section(removed.enter, removed.leave, &left);
-    if (removed.enter <= height && removed.leave > height) beyond = height;
   }
-  if (left.leave == height && beyond > height) left.leave = beyond;
   return left;
 }
 
