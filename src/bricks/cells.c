@@ -264,7 +264,7 @@ static const double CONTINUED = 4;
 /* A continued value leaves the range of its cell's corners by this many ranges at most. */
 static const double CONTINUED_RANGES = 2;
 
-/* The value at a point in front of a cell's wall: that of the affine function near the cell's values. In
+/* The value at a point in front of a cell's wall, by the affine function near the cell's values. In
  * front of a cell that is much thinner than the spacing this function may be steep, so the value is held near
  * the range of the corners. */
 static float continued_value(const cell_field *field, uint32_t n, const double point[3]) {

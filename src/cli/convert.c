@@ -300,8 +300,8 @@ static bool are_pictures(const char *in, const char *out) {
   return has_extension(in, ".png") || has_extension(in, ".exr") || (tiff && has_extension(in, ".npy"));
 }
 
-/* Refuses options that are not for what OUT is: options of volumes if OUT is a picture or a mesh, those of
- * meshes if it is none, and those of pictures if it is none, or if it keeps light as numbers. */
+/* Refuses options that do not suit OUT: options of volumes if OUT is a picture or a mesh, options of meshes
+ * if OUT is no mesh, and options of pictures if OUT is no picture, or if OUT keeps light as numbers. */
 static int check_kind_of_options(const cli_value *values, bool picture, bool mesh, const char *out) {
   const bool coded = picture && !output_is_linear(out);
   for (int row = 0; row < CONVERT_OPTION_COUNT; row++) {

@@ -10,7 +10,7 @@ typedef struct hl_coloring {
   hl_volume *other;         /* owned */
   char *file;               /* owned */
   char name[64];
-  hl_transfer_function colors; /* owned; its colours are those of the other volume's values */
+  hl_transfer_function colors; /* owned; the colours of the other volume's values */
 } hl_coloring;
 
 /* Adds the other volume to the scene, and gives the volumes of values its colours. Does nothing if the option

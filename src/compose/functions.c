@@ -336,7 +336,7 @@ static hl_status copy_item(const hl_composer *composer, const hl_scene_descripti
 
 /* ---- functions ---- */
 
-/* Logs that a preset of CT is fitted to values that are no Hounsfield units, as those of MR. */
+/* Logs that a preset of CT is fitted to values that are no Hounsfield units, as the values of MR are. */
 static void tell_of_units(const hl_composer *composer, const char *preset, const hl_volume *volume) {
   if (strncmp(preset, "ct-", 3) == 0 && !hl_is_hounsfield(volume))
     hl_log(composer->context, HL_LOG_INFO,

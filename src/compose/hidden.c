@@ -22,7 +22,8 @@ enum { PLACES = 256, FEWEST_PLACES = 16, ALL_PLACES = 32768 };
 
 /* What is found about one label, seen from one side. */
 typedef struct label_sight {
-  uint64_t voxels, facing; /* examined voxels of the label; those of them at whose near side no label lies */
+  uint64_t voxels,
+      facing; /* examined voxels of the label; examined voxels at whose near side no label lies */
   uint64_t met, tried, seen; /* the chosen voxels: how many were met, were tried, and are seen */
   bool present, hidden; /* whether the label has voxels; whether hardly any of them are seen from the sides so
                          * far */
@@ -85,7 +86,7 @@ static void try_voxel(const sought_map *sought, const sought_voxel *voxel) {
   sight->seen += left >= HL_SCREEN_SEEN;
 }
 
-/* Looks for labels from one side. Afterwards `hidden` is set for those of them that are hardly seen. */
+/* Looks for labels from one side. Afterwards `hidden` is set for the labels that are hardly seen. */
 static void look_from(sought_map *sought, int side) {
   const hl_scene_volume *map = sought->own->volume;
   const size_t *size = map->volume->dimension;

@@ -61,7 +61,7 @@ size_t hl_count_isosurfaces(const hl_asked *iso) {
   size_t count = 0;
   for (int n = 0; n < iso->count; n++) {
     const char *text = text_of_surface(iso->texts[n]);
-    const size_t length = strcspn(text, ":"); /* the commas behind it are those of a colour */
+    const size_t length = strcspn(text, ":"); /* the commas behind the colon belong to a colour */
     count++;
     for (size_t at = 0; at < length; at++) count += text[at] == ',';
   }

@@ -312,7 +312,7 @@ hl_status film_scene(const film *f, int frame, hl_scene **scene, hl_error *error
 
 /* ---- the film ---- */
 
-/* Returns whether the values of a key are directions: those of a setting that is one. */
+/* Returns whether the values of a key are directions, because the key's setting is a direction. */
 static bool is_direction(const film_key *key) {
   return key->components == 3 && has_type(setting_of(key->path, strlen(key->path)), HL_SETTING_DIRECTION);
 }

@@ -1,4 +1,4 @@
-/* mesh/measure.c - hl_mesh_measure: the area and the enclosed volume of a mesh's triangles. */
+/* mesh/measure.c - measures the area of a mesh's triangles and the volume that they enclose. */
 #include <halflight/mesh.h>
 #include <math.h>
 #include <stdlib.h>

@@ -126,7 +126,7 @@ static void write_sky_shadow(const layer_grid *grid, int row, const layer_pixels
 }
 
 /* Whether the alpha of one of the frame's pixels reaches FIRST_OPACITY. If not, its first depth and its
- * object are those of a faint mesh, and do not count. */
+ * object belong to a faint mesh, and do not count. */
 static bool is_seen(const layer_grid *grid, const float *pixels, int column, int row) {
   return *value_at(grid, pixels, MEASURES, column, row, MEASURE_ALPHA) >= FIRST_OPACITY;
 }

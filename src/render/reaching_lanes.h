@@ -176,8 +176,8 @@ LANES_INLINE color_lanes passing_to_media(const shade_job *job, const light_plac
 typedef struct way_begin {
   lanes start, change; /* start: the value at the beginning of the way; change: the change of the value per
                         * unit of the way */
-  lanes first, foot;   /* first: the value at which the surface begins that `start` belongs to; foot: the
-                        * value at which the sample's own surface begins */
+  lanes first, foot;   /* first: the value at which the surface of `start` begins; foot: the value at
+                        * which the sample's own surface begins */
   lanes_int there;     /* the lanes in which some of the volume's matter may be visible at the beginning of
                         * the way */
 } way_begin;

@@ -13,7 +13,7 @@
 
 /* A model of the sky's light: even light from all directions, plus more light from a cap of directions. */
 typedef struct sky_cap {
-  lanes even, more; /* two means over all directions: of the even light, and of the light that the cap adds */
+  lanes even, more; /* the mean of the even light over all directions, and the mean of the cap's light */
   lanes cosine;     /* cosine of the angle from the cap's middle to its edge */
   lanes3 middle;    /* unit */
 } sky_cap;

@@ -1,4 +1,4 @@
-/* platform/wasi/wasi.c - see wasi.h. */
+/* platform/wasi/wasi.c - defines the functions of POSIX that WebAssembly lacks (wasi.h). */
 #define _GNU_SOURCE /* madvise */
 #include "platform/wasi/wasi.h"
 

@@ -53,8 +53,8 @@ static bool is_digit(char c) { return c >= '0' && c <= '9'; }
 static bool cut_name(const hl_bundle_entry *entry, numbered_name *name) {
   const char *slash = strrchr(entry->name, '/'), *base = slash == NULL ? entry->name : slash + 1;
   const char *dot = strrchr(base, '.'), *end = dot == NULL ? base + strlen(base) : dot;
-  hl_raw_slice raw; /* size and type of bare voxels in the name; the numbers in them do not count as the
-                     * slice's number */
+  hl_raw_slice raw; /* the size and the type of bare voxels, where the name tells them; their numbers are
+                     * not the slice's number */
   hl_payload whole;
   if (hl_slice_is_raw(base) && hl_raw_name(base, &whole) && whole.grid.dimensions[2] != 1) return false;
   if (hl_slice_is_raw(base) && hl_raw_slice_name(base, strlen(base), &raw)) {
