@@ -236,6 +236,20 @@ def try_held_scene(kind, what, page, program, folder):
               f"{what}: it has the scene's name and no problem in the console: {browser.problems}")
 
 
+def try_alone(kind, what, page, program, folder):
+    """A page that is loaded asks its server for nothing more: the server has ended when a file is chosen."""
+    modules = sorted(file.name for file in page.glob("*.wasm"))
+    with serve(page, IsolatingHandler) as (server, url), kind(size=(900, 500)) as browser:
+        browser.open(url)
+        browser.wait(f"{json.dumps(modules)}.every((name) => performance.getEntriesByName(new URL(name, location).href).length > 0)")
+        server.shutdown()
+        server.server_close()
+        choose_files(browser, [folder / "labels.nrrd"])
+        browser.wait("globalThis.halflight?.frames.statistics.finals > 0")
+        saved_scene(browser, folder, "saved.json")
+        check(same_pixels(program, folder, final_picture(browser), "saved.json"), f"{what}: the page renders after its server has ended")
+
+
 class Handler(http.server.SimpleHTTPRequestHandler):
     """The page's folder; POST: what a browser tells, for the test."""
 
@@ -353,6 +367,7 @@ def main():
                 try_chromium(url, "Chromium, a folder", program, folder)
             with serve(web / "page", IsolatingHandler) as (_, url):
                 try_chromium(url, "Chromium, an isolated folder", program, folder)
+            try_alone(Browser, "Chromium", web / "page", program, folder)
             compare_hashes(lambda profile: ["chromium", "--headless=new", "--no-sandbox", "--disable-gpu", f"--user-data-dir={profile}"],
                            "Chromium", folder / "page", expected)
         else:
@@ -362,6 +377,7 @@ def main():
             try_firefox(firefox, (web / "halflight.html").as_uri(), "Firefox, one file", program, folder)
             with serve(web / "page", IsolatingHandler) as (_, url):
                 try_firefox(firefox, url, "Firefox, an isolated folder", program, folder)
+            try_alone(functools.partial(Firefox, firefox), "Firefox", web / "page", program, folder)
             try_held_scene(functools.partial(Firefox, firefox), "Firefox", web / "halflight.html", program, folder)
             compare_hashes(lambda profile: [firefox, "--headless", "--no-remote", "--profile", profile], "Firefox", folder / "page", expected)
         else:
