@@ -203,8 +203,8 @@ def declarations(folder):
 def argument(text):
     """(type, name); an array is a pointer."""
     text = " ".join(text.split())
-    kind, name, array = re.fullmatch(r"(.*?[\s*])(\w+)(\[\w*\])?", text).groups()
-    stars = kind.count("*") + (array is not None)
+    kind, name, array = re.fullmatch(r"(.*?[\s*])(\w+)((?:\[\w*\])*)", text).groups()
+    stars = kind.count("*") + (array != "")
     return (kind.replace("*", "").strip() + (" " + "*" * stars if stars else "")), name
 
 
