@@ -1,10 +1,11 @@
-"""Adaptive grids and cells beside yt and PyVista: the first two rows of docs/pictures/peers-fields.png, and what each
-picture cost. Not part of the tests.
+"""Adaptive grids, cells and particles beside yt, PyVista and pynbody: docs/pictures/peers-fields.png, and what each picture
+cost. Not part of the tests. The third row, of SPLASH, is not made here.
 
     python3 tests/peers/fields.py FOLDER [PICTURE]
 
-FOLDER has DD0010/moving7_0010 (Enzo, from the data of PyVista's and yt's tests) and disk_out_ref.ex2 (from VTK's test
-data). Python needs yt, pyvista, h5py and halflight. A picture that is there keeps what lies below the two rows."""
+FOLDER has DD0010/moving7_0010 (Enzo, from the data of PyVista's and yt's tests), disk_out_ref.ex2 (from VTK's test
+data) and 12M.00001 (ChaNGa, from the data of pynbody's tests). Python needs yt, pyvista, h5py, pynbody and halflight. A
+picture that is there keeps the rows of which the data are not there."""
 from __future__ import annotations
 
 import os
@@ -17,7 +18,10 @@ from typing import Any
 import numpy as np
 
 SIZE, TILE, GAP = (800, 600), (292, 219), 4
-JOBS = ("yt", "shells", "shells-soft", "pyvista", "cells", "cells-soft", "shells-all")
+JOBS = ("yt", "shells", "shells-soft", "pyvista", "cells", "cells-soft", "pynbody", "columns", "particles-soft", "shells-all")
+ROWS = (0, 1, 3)  # of the picture; the third row is SPLASH's
+DATA = {"pynbody": "12M.00001", "columns": "12M.00001", "particles-soft": "12M.00001", "pyvista": "disk_out_ref.ex2",
+        "cells": "disk_out_ref.ex2", "cells-soft": "disk_out_ref.ex2"}
 
 # Shells at five logarithms of density: extinction STRENGTH exp(-((log d - place) / WIDTH)^2)
 LOGARITHMS, PLACES, WIDTH, STRENGTH = (-0.6, 5.2), np.array([1.2, 2.0, 2.8, 3.6, 4.4]), 0.2, 3.5
@@ -27,6 +31,9 @@ CENTRE, HEIGHT = (0.7507, 0.7502, 0.7502), 0.27
 COLD, HOT, OPAQUE_WAY = 293.15, 913.15, 2.0
 OPACITY = [(COLD, 0), (COLD + 0.06 * (HOT - COLD), 0.02), ((COLD + HOT) / 2, 0.2), (HOT, 0.5)]
 VIEW, ANGLE = ((0, -26, 10), (0, 0, 2.6), (0, 0, 1)), 30
+# The gas of a galaxy: the edge of the cube around its middle and the spacing of its voxels (kpc), the darkest and the
+# brightest column (in the file's units of mass, by kpc^2), and the optical depth of the brightest one
+CUBE, SPACING, COLUMNS, DEPTH = 100.0, 0.2, (0.3, 9000.0), 9.0
 
 
 def draw_by_yt(data: Path, out: str) -> None:
@@ -94,9 +101,69 @@ def draw_cells(data: Path, kind: str, out: str) -> None:
     hl.render(volume, size=SIZE, camera=camera, background="black", shadows="soft" if soft else "off").save(out)
 
 
+def gas_of_galaxy(data: Path) -> Any:
+    """Places about the middle of the 500 densest particles, masses, smoothing lengths and temperatures, in the cube."""
+    import pynbody
+
+    gas = pynbody.load(str(data / "12M.00001")).gas
+    places = np.array(gas["pos"], float)
+    places -= places[np.argsort(np.array(gas["rho"]))[-500:]].mean(0)
+    kept = np.all(abs(places) < CUBE / 2, axis=1)
+    return (places[kept], *(np.array(gas[name], float)[kept] for name in ("mass", "smooth", "temp")))
+
+
+def save_columns(columns: Any, out: str) -> None:
+    """The logarithm of columns, as a picture and as numbers. columns: [y][x], y up."""
+    import matplotlib
+    from PIL import Image
+
+    low, high = np.log10(COLUMNS)
+    shown = (np.log10(np.maximum(columns, 1e-9)) - low) / (high - low)
+    codes = matplotlib.colormaps["inferno"](np.clip(shown, 0, 1))[::-1, :, :3]
+    wide = np.zeros((SIZE[1], SIZE[0], 3), "u1")
+    wide[:, (SIZE[0] - SIZE[1]) // 2 :][:, : SIZE[1]] = np.round(255 * codes)
+    Image.fromarray(wide).save(out)
+    np.save(Path(out).with_suffix(".npy"), columns)
+
+
+def draw_by_pynbody(data: Path, out: str) -> None:
+    import pynbody
+
+    places, masses, lengths, _ = gas_of_galaxy(data)
+    made = pynbody.new(gas=len(places))
+    made["pos"], made["mass"], made["smooth"], made["rho"] = places, masses, lengths, masses / lengths**3
+    for name, unit in (("pos", "kpc"), ("mass", "Msol"), ("smooth", "kpc"), ("rho", "Msol kpc^-3")):
+        made[name].units = unit
+    save_columns(np.asarray(pynbody.plot.sph.image(made.gas, qty="rho", units="Msol kpc^-2", width=f"{CUBE} kpc", resolution=SIZE[1],
+                                                   noplot=True, ret_im=False)), out)
+
+
+def draw_particles(data: Path, kind: str, out: str) -> None:
+    import halflight as hl
+
+    places, masses, lengths, temperatures = gas_of_galaxy(data)
+    gas = hl.Particles(places, masses, h=lengths)
+    if kind == "particles-soft":
+        camera = hl.Camera(position=(0, -160, 120), target=(0, 0, 0), up=(0, 0, 1), fovy_deg=16)
+        hl.render(gas.colored(np.log10(temperatures), "inferno", spacing=SPACING), size=SIZE, camera=camera, background="black", shadows="soft").save(out)
+        return
+    volume = gas.volume("density", spacing=SPACING)
+    thin = DEPTH / COLUMNS[1]
+    values = np.geomspace(1e-6, 1, 2000) * volume.info().range[1]
+    function = hl.TransferFunction([(0, 0), *zip(values, -np.expm1(-thin * values), strict=True)], unit_distance=1.0)
+    camera = hl.Camera(position=(0, 0, 500), target=(0, 0, 0), up=(0, 1, 0), height=CUBE)
+    seen = np.asarray(hl.render(volume.replace(transfer_function=function, shading="flat"), size=(SIZE[1], SIZE[1]), camera=camera,
+                                background="transparent", shadows="off"))
+    save_columns(-np.log1p(-np.minimum(seen[::-1, :, 3].astype(float), 1 - 1e-7)) / thin, out)
+
+
 def draw(data: Path, kind: str, out: str) -> None:
     if kind == "yt":
         draw_by_yt(data, out)
+    elif kind == "pynbody":
+        draw_by_pynbody(data, out)
+    elif kind in ("columns", "particles-soft"):
+        draw_particles(data, kind, out)
     elif kind == "pyvista":
         draw_by_pyvista(data, out)
     elif kind.startswith("cells"):
@@ -118,11 +185,14 @@ def measured(command: list[str]) -> str:
 def compose(pictures: list[str], picture: Path) -> None:
     from PIL import Image
 
-    made: Any = Image.open(picture).convert("RGB") if picture.exists() else Image.new(
-        "RGB", (3 * TILE[0] + 2 * GAP, 2 * TILE[1] + GAP), "white")
+    made: Any = Image.new("RGB", (3 * TILE[0] + 2 * GAP, 4 * TILE[1] + 3 * GAP), "white")
+    if picture.exists():
+        made.paste(Image.open(picture).convert("RGB"))
     for n, path in enumerate(pictures):
+        if not Path(path).exists():
+            continue
         tile = Image.open(path).convert("RGB").resize(TILE, Image.Resampling.LANCZOS)
-        made.paste(tile, (n % 3 * (TILE[0] + GAP), n // 3 * (TILE[1] + GAP)))
+        made.paste(tile, (n % 3 * (TILE[0] + GAP), ROWS[n // 3] * (TILE[1] + GAP)))
     made.save(picture, optimize=True)
 
 
@@ -131,13 +201,15 @@ def main(arguments: list[str]) -> None:
         draw(Path(arguments[0]), arguments[1], arguments[2])
         return
     data = Path(arguments[0])
-    if not (data / "disk_out_ref.vtu").exists():
+    if (data / "disk_out_ref.ex2").exists() and not (data / "disk_out_ref.vtu").exists():
         import pyvista
 
         pyvista.read(data / "disk_out_ref.ex2").combine().save(data / "disk_out_ref.vtu")
     for kind in JOBS:
+        if not (data / DATA.get(kind, "DD0010")).exists():
+            continue
         print(f"{kind:12}", measured([sys.executable, __file__, str(data), kind, str(data / f"{kind}.png")]), flush=True)
-    compose([str(data / f"{kind}.png") for kind in JOBS[:6]], Path(arguments[1] if len(arguments) > 1 else data / "peers-fields.png"))
+    compose([str(data / f"{kind}.png") for kind in JOBS[:9]], Path(arguments[1] if len(arguments) > 1 else data / "peers-fields.png"))
 
 
 main(sys.argv[1:])
