@@ -157,8 +157,8 @@ def _options(settings: Mapping[str, Any], volumes: Sequence[Volume], flags: int)
         options["slice"] = at
         if settings.get("sheet_spacing") is not None:
             options["sheet-spacing"] = repr(_settings.number("sheet_spacing", settings["sheet_spacing"]))
-    if flags & lib.HL_COMPOSE_BARE and _are_projected(volumes):
-        options["look"] = "mip"  # several volumes get a colour each, and one fits its greys to the background
+    if flags & lib.HL_COMPOSE_BARE and (look := _fitted_look(volumes)) is not None:
+        options["look"] = look  # several projected volumes get a colour each, and one volume's greys fit the background
         if (background := settings.get("background")) is not None:
             named = background if isinstance(background, str) and background in ("transparent", "sky") else None
             options["background"] = named or ",".join(map(repr, map(float, colors.linear_color("background", background))))
@@ -174,10 +174,11 @@ def _have_labels_within(volumes: Sequence[Volume], flags: int) -> bool:
         one._base is None and one._changes.get("transfer_function") is None and one._changes.get("iso") is None for one in others)
 
 
-def _are_projected(volumes: Sequence[Volume]) -> bool:
-    """Whether all volumes are maximum projections whose transfer functions are the look's."""
-    return bool(volumes) and all(one._base is None and one._changes.get("look") == "mip" and
-                                 one._changes.get("transfer_function") is None for one in volumes)
+def _fitted_look(volumes: Sequence[Volume]) -> str | None:
+    """The look whose greys fit the background, if the transfer functions of all volumes are those of this look."""
+    looks = {one._changes.get("look") if one._base is None and one._changes.get("transfer_function") is None else None
+             for one in volumes}
+    return next((look for look in ("mip", "xray") if looks == {look}), None)
 
 
 def _flags(volumes: Sequence[Volume], settings: Mapping[str, Any]) -> int:

@@ -7,9 +7,11 @@
 #include "compose/composer.h"
 #include "compose/slice.h"
 #include "core/context.h"
+#include "elementary/elementary.h"
 #include "image/srgb.h"
 
-/* The linear value of middle grey. On a background brighter than this, a maximum projection ends in black. */
+/* The linear value of middle grey. On a background brighter than this, a maximum projection ends in black,
+ * and the matter of a film is black. */
 #define MIDDLE_GREY 0.18
 
 static bool is_maximum(const hl_asked *asked) {
@@ -73,18 +75,43 @@ static void mix_encoded(const double from[3], const double to[3], double t, doub
   }
 }
 
+static bool is_bright(const double color[3]) {
+  return 0.2126 * color[0] + 0.7152 * color[1] + 0.0722 * color[2] > MIDDLE_GREY;
+}
+
 /* Derived: a grey of the preset, when encoded, lies at the fraction t of the way from black to white. The new
  * colour lies at the same fraction of the way from the background to the end colour, also in encoded values.
  * For a black background and a white end, the new colour is the grey itself. */
 void hl_fit_projection(const hl_composer *composer, hl_transfer_function *function) {
   double from[3];
   if (!composer->asked[HL_ASK_BACKGROUND].given || !find_background(composer, from)) return;
-  const double luminance = 0.2126 * from[0] + 0.7152 * from[1] + 0.0722 * from[2];
-  const double end = luminance > MIDDLE_GREY ? 0 : 1;
+  const double end = is_bright(from) ? 0 : 1;
   for (size_t n = 0; n < function->color_count; n++) {
     double *color = ((hl_color_point *)function->color)[n].color;
     mix_encoded(from, (double[3]){end, end, end}, hl_srgb_encode_number(color[0]), color);
   }
+}
+
+bool hl_is_film(const hl_composer *composer, const hl_scene_description *description, size_t index) {
+  const hl_asked *look = &composer->asked[HL_ASK_LOOK], *background = &composer->asked[HL_ASK_BACKGROUND];
+  const bool keyed = background->given ? background->chosen
+                                       : description->background_transparent || description->background_sky;
+  const hl_scene_volume *volume = &description->volumes[index];
+  return look->given && look->choice == HL_LOOK_XRAY && !keyed && volume->label_count == 0 &&
+         is_bright(background->given ? background->number : description->background) &&
+         hl_text_for(composer, HL_ASK_COLORMAP, volume, index) == NULL &&
+         hl_text_for(composer, HL_ASK_TF, volume, index) == NULL;
+}
+
+/* Derived: before black a path of transmittance T shows 1 - T, and on the film T^f. Both are the middle grey
+ * g if T = 1 - g and f = ln g / ln(1 - g). */
+void hl_make_film(hl_transfer_function *function) {
+  for (size_t n = 0; n < function->color_count; n++)
+    for (int c = 0; c < 3; c++)
+      if (function->color[n].color[c] != 1) return;
+  for (size_t n = 0; n < function->color_count; n++)
+    for (int c = 0; c < 3; c++) ((hl_color_point *)function->color)[n].color[c] = 0;
+  function->unit_distance *= hl_log2(1 - MIDDLE_GREY) / hl_log2(MIDDLE_GREY);
 }
 
 hl_status hl_fade_projection(const hl_composer *composer, const hl_volume *volume,

@@ -24,6 +24,16 @@ hl_status hl_compose_volume_look(const struct hl_composer *composer, hl_scene_vo
  * more from the background. */
 void hl_fit_projection(const struct hl_composer *composer, hl_transfer_function *function);
 
+/* Returns whether volume number `index` is shown as on a printed film: the look is xray, the background is
+ * bright, and no option gives the volume other colours. White matter before a white background would not be
+ * seen. */
+bool hl_is_film(const struct hl_composer *composer, const hl_scene_description *description, size_t index);
+
+/* Makes the look's white matter black, so that it only absorbs the light of the background, and so dense that
+ * what is middle grey before black is middle grey on the film. Matter of other colours, as that of channels,
+ * stays. */
+void hl_make_film(hl_transfer_function *function);
+
 /* Adapts a colormap in a bare volume's maximum projection to the background: values around the objects, from
  * the map's least value to the value from which the automatic function shows objects, fade into the
  * background. The map's first colour would else surround the objects as a box or ring of noise. A map whose

@@ -27,10 +27,13 @@ static hl_status change_volume(const hl_composer *composer, const hl_scene_descr
     changed->cuts_used += volume->cut_count;
   }
   const bool left_out = hl_is_left_out(composer, description, index);
+  const bool named = hl_text_for(composer, HL_ASK_TF, volume, index) != NULL,
+             mapped = hl_text_for(composer, HL_ASK_COLORMAP, volume, index) != NULL;
   const bool sliced = asked[HL_ASK_SLICE].given && volume->label_count == 0;
   bool looks = hl_look_replaces_functions(composer) && (sliced || !asked[HL_ASK_SLICE].given),
-       iso = asked[HL_ASK_ISO].given && !left_out, functions = hl_asks_for_functions(asked) && !left_out;
-  if (status != HL_OK || (!looks && !iso && !functions)) return status;
+       iso = asked[HL_ASK_ISO].given && !left_out, functions = hl_asks_for_functions(asked) && !left_out,
+       film = hl_is_film(composer, description, index);
+  if (status != HL_OK || (!looks && !iso && !functions && !film)) return status;
   hl_transfer_function look = {0};
   if (looks) status = hl_compose_volume_look(composer, volume);
   if (status != HL_OK) return status;
@@ -41,12 +44,11 @@ static hl_status change_volume(const hl_composer *composer, const hl_scene_descr
   bool colored = looks && hl_projected_color(composer, description, index, color);
   status = hl_compose_function(composer, description, index, colored ? color : NULL,
                                &changed->functions[index]);
-  if (status == HL_OK && projected && !sliced &&
-      hl_text_for(composer, HL_ASK_COLORMAP, volume, index) != NULL &&
-      hl_text_for(composer, HL_ASK_TF, volume, index) == NULL)
+  if (status == HL_OK && projected && !sliced && mapped && !named)
     status = hl_fade_projection(composer, volume->volume, &changed->functions[index]);
-  if (status == HL_OK && sliced && hl_text_for(composer, HL_ASK_TF, volume, index) == NULL)
+  if (status == HL_OK && sliced && !named)
     status = hl_make_slice_opaque(composer, volume, &changed->functions[index]);
+  if (status == HL_OK && film) hl_make_film(&changed->functions[index]);
   volume->transfer_function = changed->functions[index];
   hl_transfer_function_release(composer->context, &look);
   if (status != HL_OK || !iso) return status;
@@ -94,6 +96,12 @@ static bool changes_any(const hl_composer *composer) {
          asked[HL_ASK_CUT_CASTS_SHADOW].given || asked[HL_ASK_DENSITY].given;
 }
 
+static bool shows_film(const hl_composer *composer, const hl_scene_description *description) {
+  bool found = false;
+  for (size_t v = 0; v < description->volume_count; v++) found |= hl_is_film(composer, description, v);
+  return found;
+}
+
 /* Applies "density": matter absorbs and sends this number of times as much light on the same path. Derived:
  * opacity o per distance u is the extinction -ln(1 - o) / u. Labels keep their own opacities. */
 static void change_density(const hl_composer *composer, hl_scene_volume *volume) {
@@ -131,7 +139,7 @@ hl_status hl_compose_volumes(const hl_composer *composer, hl_scene_description *
   tell_of_holders(composer, description);
   hl_tell_of_function(composer);
   if (description->volume_count == 0) return refuse_looks(composer, description);
-  if (!changed->seen && !masked) return HL_OK;
+  if (!changed->seen && !masked && !shows_film(composer, description)) return HL_OK;
   hl_status status = make_room(composer, description, changed);
   if (status != HL_OK) return status;
   description->volumes = changed->volumes;

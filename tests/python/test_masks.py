@@ -78,7 +78,7 @@ def test_looks_are_the_programs(program, tmp_path):
     assert looked["shading"] == Scene.from_json(printed).volumes[0].look["shading"]
 
 
-def test_a_maximum_projection_is_the_programs(program, tmp_path):
+def test_a_maximum_projection_and_a_film_are_the_programs(program, tmp_path):
     z, y, x = np.mgrid[-1:1:24j, -1:1:24j, -1:1:24j]
     np.save(tmp_path / "ball.npy", np.exp(-4 * (x**2 + 2 * y**2 + z**2)).astype(np.float32))
     path = str(tmp_path / "ball.npy")
@@ -90,6 +90,10 @@ def test_a_maximum_projection_is_the_programs(program, tmp_path):
                         "-o", str(tmp_path / "ball.png")], check=True)
         halflight.render(path, size=(48, 32), look="mip", **asked).save(tmp_path / "own.png", metadata=False)
         assert (tmp_path / "own.png").read_bytes() == (tmp_path / "ball.png").read_bytes(), words
+    subprocess.run([program, "render", path, "--look", "xray", "--background", "white", "--size", "48x32", "--quiet", "--no-metadata",
+                    "-o", str(tmp_path / "film.png")], check=True)
+    halflight.render(path, size=(48, 32), look="xray", background="white").save(tmp_path / "own.png", metadata=False)
+    assert (tmp_path / "own.png").read_bytes() == (tmp_path / "film.png").read_bytes()
     subprocess.run([program, "render", path, path, "--look", "mip", "--size", "48x32", "--quiet", "-o", str(tmp_path / "two.npy")], check=True)
     assert np.array_equal(np.load(tmp_path / "two.npy"), halflight.render([path, path], size=(48, 32), look="mip"))
     Scene(path, size=(48, 32)).save(tmp_path / "ball.json")
