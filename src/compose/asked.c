@@ -82,6 +82,7 @@ const hl_option_row hl_option_rows[HL_ASK_COUNT] = {
     TEXT(HL_ASK_MASK, "mask"),
     TEXT(HL_ASK_LABEL_TABLE, "label-table"),
     TEXTS(HL_ASK_SHOW, "show"),
+    TEXT(HL_ASK_UNIT, "unit"),
     [HL_ASK_AMBIENT] = {.name = "ambient", .kind = HL_OPTION_COLOR, .setting_kind = HL_SETTINGS_SCENE,
                         .setting = "ambient"},
     TEXT(HL_ASK_SKY, "sky"),

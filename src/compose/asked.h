@@ -44,6 +44,7 @@ typedef enum hl_ask {
   HL_ASK_MASK,
   HL_ASK_LABEL_TABLE,
   HL_ASK_SHOW,
+  HL_ASK_UNIT,
   HL_ASK_AMBIENT,
   HL_ASK_SKY,
   HL_ASK_LIGHT_RIG,

@@ -4,10 +4,12 @@
  * A bare number is a fraction of the box around the volume's voxels; a number with a unit is a coordinate. An
  * end that is left out stays where the scene's own clip box has it; without a clip box it is the end of the
  * volume. NAME=AXIS=LO:HI clips the volume NAME alone. */
+#include <math.h>
 #include <string.h>
 
 #include "compose/composer.h"
 #include "compose/coordinates.h"
+#include "core/context.h"
 
 /* Reads a box that may begin with NAME=. Returns the part of the text after NAME=, or null if the text is no
  * box. */
@@ -43,23 +45,35 @@ hl_status hl_check_clip_names(const hl_composer *composer, const hl_scene_descri
   return status;
 }
 
-hl_status hl_compose_clip(const hl_composer *composer, hl_scene_volume *volume, size_t index) {
+/* Judges the ends between which a clip keeps a volume along an axis. Refuses ends that leave nothing of the
+ * picture's only volume. Of several volumes, one may be clipped away, with a warning. */
+static hl_status judge_ends(const hl_composer *composer, const char *text, const double ends[2], int axis,
+                            const hl_world_box *bounds, bool alone) {
+  char place[HL_BOX_TEXT];
+  if (fmax(ends[0], bounds->low[axis]) < fmin(ends[1], bounds->high[axis])) return HL_OK;
+  hl_describe_box(bounds, "volume", place);
+  if (alone || !(ends[0] < ends[1]))
+    return hl_fail(composer->error, HL_ERROR_ARGUMENT,
+                   "--clip: '%.300s': nothing is left between %.9g and %.9g: %s", text, ends[0], ends[1],
+                   place);
+  hl_log(composer->context, HL_LOG_WARNING, "--clip '%.300s' leaves nothing of a volume: %s", text, place);
+  return HL_OK;
+}
+
+hl_status hl_compose_clip(const hl_composer *composer, hl_scene_volume *volume, size_t index, bool alone) {
   const hl_asked *clip = &composer->asked[HL_ASK_CLIP];
-  hl_error *error = composer->error;
-  double low[3], high[3];
-  const double metres = hl_metres_of_volume(volume->volume);
-  hl_volume_info info = {.struct_size = sizeof info};
-  if (hl_volume_get_info(volume->volume, &info) != HL_OK)
-    return hl_fail(error, HL_ERROR_INTERNAL, "--clip: the volume's place is not known");
-  hl_volume_world_box(&info, low, high);
+  hl_world_box bounds;
+  if (!hl_world_box_of(volume->volume, composer->asked[HL_ASK_UNIT].text, &bounds))
+    return hl_fail(composer->error, HL_ERROR_INTERNAL, "--clip: the volume's place is not known");
+  const double *low = bounds.low, *high = bounds.high, metres = hl_metres_of_box(&bounds);
   for (int n = 0; n < clip->count; n++) {
     hl_axis_range box[3];
     const char *rest, *text = read_clip(clip->texts[n], box);
     if (text == NULL) continue; /* hl_check_clip() has refused such a text before */
     if (text != clip->texts[n] && !hl_text_is_for(composer, clip->texts[n], volume, index, &rest)) continue;
     if (!volume->clipped) {
-      memcpy(volume->clip_min, low, sizeof low);
-      memcpy(volume->clip_max, high, sizeof high);
+      memcpy(volume->clip_min, low, sizeof volume->clip_min);
+      memcpy(volume->clip_max, high, sizeof volume->clip_max);
       volume->clipped = 1;
     }
     for (int axis = 0; axis < 3; axis++) {
@@ -68,11 +82,9 @@ hl_status hl_compose_clip(const hl_composer *composer, hl_scene_volume *volume, 
       if (!hl_range_is_given(&box[axis])) continue;
       *least = hl_coordinate_of(&ends[0], *least, low[axis], high[axis], metres);
       *greatest = hl_coordinate_of(&ends[1], *greatest, low[axis], high[axis], metres);
-      if (!(*least < *greatest))
-        return hl_fail(
-            error, HL_ERROR_ARGUMENT,
-            "--clip: '%.300s': nothing is left between %.9g and %.9g; the volume goes from %.9g to %.9g",
-            clip->texts[n], *least, *greatest, low[axis], high[axis]);
+      const hl_status status = judge_ends(composer, clip->texts[n], (double[]){*least, *greatest}, axis,
+                                          &bounds, alone);
+      if (status != HL_OK) return status;
     }
   }
   return HL_OK;

@@ -92,8 +92,9 @@ hl_status hl_compose_isosurfaces(const hl_composer *composer, size_t index, hl_s
 
 hl_status hl_check_clip(const hl_asked *clip, hl_error *error);
 
-/* Clips volume number `index` by the values of "clip" that are for it. */
-hl_status hl_compose_clip(const hl_composer *composer, hl_scene_volume *volume, size_t index);
+/* Clips volume number `index` by the values of "clip" that are for it. alone: the scene has no other volume.
+ */
+hl_status hl_compose_clip(const hl_composer *composer, hl_scene_volume *volume, size_t index, bool alone);
 
 /* Refuses values of "clip" with a NAME= that no volume has. */
 hl_status hl_check_clip_names(const hl_composer *composer, const hl_scene_description *description);

@@ -85,9 +85,24 @@ hl_status hl_refuse_side(const char *option, const char *text, hl_error *error) 
       option, text, option, 'x' + axis, option, 'x' + axis);
 }
 
-double hl_metres_of_volume(const hl_volume *volume) {
-  const char *name = hl_volume_unit(volume);
-  const hl_unit *unit = name != NULL ? hl_unit_find(name) : NULL;
+bool hl_world_box_of(const hl_volume *volume, const char *given, hl_world_box *box) {
+  hl_volume_info info = {.struct_size = sizeof info};
+  if (hl_volume_get_info(volume, &info) != HL_OK) return false;
+  hl_volume_world_box(&info, box->low, box->high);
+  box->unit = given != NULL ? given : hl_volume_unit(volume);
+  return true;
+}
+
+const char *hl_describe_box(const hl_world_box *box, const char *what, char text[HL_BOX_TEXT]) {
+  const double *low = box->low, *high = box->high;
+  hl_plain_print(text, HL_BOX_TEXT, "the %s goes from %.6g,%.6g,%.6g to %.6g,%.6g,%.6g %.60s", what, low[0],
+                 low[1], low[2], high[0], high[1], high[2],
+                 box->unit != NULL ? box->unit : "of a unit that is not known (--unit tells it)");
+  return text;
+}
+
+double hl_metres_of_box(const hl_world_box *box) {
+  const hl_unit *unit = box->unit != NULL ? hl_unit_find(box->unit) : NULL;
   return unit != NULL ? unit->metres : 0;
 }
 

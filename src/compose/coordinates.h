@@ -18,11 +18,26 @@ typedef struct hl_coordinate {
  * "u" stands for the file's own unit. */
 bool hl_read_coordinate(const char **text, hl_coordinate *coordinate);
 
-/* The length of a unit of the volume's world in metres; 0 if the volume's file does not tell its unit. */
-double hl_metres_of_volume(const hl_volume *volume);
+/* A box in a world, and the world's unit. */
+typedef struct hl_world_box {
+  double low[3], high[3];
+  const char *unit; /* a name of the unit of lengths; null if it is not known */
+} hl_world_box;
+
+/* The box around a volume's voxels in the world of its file. given: the unit that "unit" names; null if the
+ * file tells it. Returns false if the volume's place is not known. */
+bool hl_world_box_of(const hl_volume *volume, const char *given, hl_world_box *box);
+
+/* Writes where a box lies, as "the volume goes from 0,0,0 to 1,1,1 m". what: the name of what lies there. If
+ * the unit is not known, the text says by which option it is told. */
+enum { HL_BOX_TEXT = 240 };
+const char *hl_describe_box(const hl_world_box *box, const char *what, char text[HL_BOX_TEXT]);
+
+/* The length of a unit of a box's world in metres; 0 if the unit is not known, or is no length. */
+double hl_metres_of_box(const hl_world_box *box);
 
 /* Converts a number with a unit to the unit of the file's world. metres: the length of the world's unit, as
- * hl_metres_of_volume() gives it. If metres is 0, the number is taken to be in the world's unit already. */
+ * hl_metres_of_box() gives it. If metres is 0, the number is taken to be in the world's unit already. */
 double hl_length_of(const hl_coordinate *coordinate, double metres);
 
 /* The coordinate in the file's world. otherwise: the result if the text has no number. low, high: the ends of

@@ -7,6 +7,7 @@
 
 #include "compose/composer.h"
 #include "compose/coordinates.h"
+#include "core/context.h"
 #include "text/plain.h"
 
 /* The option that makes each type of cut. */
@@ -126,11 +127,10 @@ bool hl_cuts_bare_volume(const hl_composer *composer, const hl_scene_description
          (hl_count_cuts(composer->asked) > 0 || composer->asked[HL_ASK_CLIP].given);
 }
 
-/* Places a cut. low, high: the box around the volume's voxels. metres: as hl_metres_of_volume() gives it; 0
- * in the world of a scene. If the text gives no end for a side of a cut box, the box ends beyond the voxels
- * on this side. */
-static void place_cut(const typed_cut *typed, const double low[3], const double high[3], double metres,
-                      hl_cut *cut) {
+/* Places a cut. box: the box around the voxels. If the text gives no end for a side of a cut box, the cut box
+ * ends beyond the voxels on this side. */
+static void place_cut(const typed_cut *typed, const hl_world_box *box, hl_cut *cut) {
+  const double *low = box->low, *high = box->high, metres = hl_metres_of_box(box);
   double longest = 0;
   for (int a = 0; a < 3; a++) {
     double side = high[a] - low[a];
@@ -143,6 +143,63 @@ static void place_cut(const typed_cut *typed, const double low[3], const double 
   }
   cut->radius = typed->radius.fraction ? typed->radius.number * longest
                                        : hl_length_of(&typed->radius, metres);
+}
+
+/* The parts of a box that a cut reaches. */
+typedef enum cut_reach { CUT_REACHES_SOME, CUT_REACHES_NONE, CUT_REACHES_ALL } cut_reach;
+
+/* Finds the part of a box that a plane cuts away. Derived: a linear function is least and greatest at
+ * corners. A plane through a face of the box, to a billionth of its sides, still reaches some of the box. */
+static cut_reach reach_of_plane(const hl_cut *cut, const hl_world_box *box, double *least, double *tiny) {
+  double ends[2] = {0, 0}, scale = 0;
+  for (int a = 0; a < 3; a++) {
+    const double at[2] = {(box->low[a] - cut->point[a]) * cut->normal[a],
+                          (box->high[a] - cut->point[a]) * cut->normal[a]};
+    ends[0] += fmin(at[0], at[1]), ends[1] += fmax(at[0], at[1]);
+    scale += fabs(cut->normal[a]) * (box->high[a] - box->low[a]);
+  }
+  *least = ends[0], *tiny = 1e-9 * scale;
+  return ends[0] > *tiny ? CUT_REACHES_ALL : ends[1] < -*tiny ? CUT_REACHES_NONE : CUT_REACHES_SOME;
+}
+
+/* Finds whether a cut's box or sphere meets the box. */
+static cut_reach reach_of_body(const hl_cut *cut, const hl_world_box *box) {
+  double squares = 0;
+  for (int a = 0; a < 3; a++) {
+    const bool ball = cut->type == HL_CUT_SPHERE;
+    const double low = ball ? cut->center[a] : cut->min[a], high = ball ? cut->center[a] : cut->max[a];
+    const double apart = fmax(fmax(box->low[a] - high, low - box->high[a]), 0);
+    squares += apart * apart;
+  }
+  const double reach = cut->type == HL_CUT_SPHERE ? cut->radius : 0;
+  return squares > reach * reach ? CUT_REACHES_NONE : CUT_REACHES_SOME;
+}
+
+/* Whether number n of the cut planes is the one that "slice" stands for: the last one. */
+static bool is_slice(const hl_composer *composer, hl_cut_type type, int n) {
+  return composer->asked[HL_ASK_SLICE].given && type == HL_CUT_PLANE &&
+         n + 1 == composer->asked[HL_ASK_CUT_PLANE].count;
+}
+
+/* Warns of cuts that lie outside of the box, and refuses a slice that does or that leaves nothing. what: what
+ * lies in the box. */
+static hl_status judge_cut(const hl_composer *composer, const hl_cut *cut, const hl_world_box *box,
+                           const char *what, int n) {
+  char place[HL_BOX_TEXT];
+  double least = 0, tiny = 0;
+  const cut_reach reach = cut->type == HL_CUT_PLANE ? reach_of_plane(cut, box, &least, &tiny)
+                                                    : reach_of_body(cut, box);
+  hl_describe_box(box, what, place);
+  if (is_slice(composer, cut->type, n))
+    return reach == CUT_REACHES_SOME && least < -tiny
+               ? HL_OK
+               : hl_fail(composer->error, HL_ERROR_ARGUMENT, "--slice: '%.200s' lies outside: %s",
+                         composer->asked[HL_ASK_SLICE].text, place);
+  if (reach != CUT_REACHES_SOME)
+    hl_log(composer->context, HL_LOG_WARNING, "--%s '%.200s' cuts %s away: %s",
+           hl_option_rows[option_of[cut->type]].name, composer->asked[option_of[cut->type]].texts[n],
+           reach == CUT_REACHES_ALL ? "everything" : "nothing", place);
+  return HL_OK;
 }
 
 /* The target to which the options' cuts are added: a volume or a scene. */
@@ -160,10 +217,12 @@ static bool takes(const hl_composer *composer, const cut_target *target, const c
 }
 
 /* Converts the options' cuts to places in the box, and adds them as far as they are for the target. */
-static void add_cuts(const hl_composer *composer, const cut_target *target, const double low[3],
-                     const double high[3], double metres, hl_cut *cuts, size_t *count) {
+static hl_status add_cuts(const hl_composer *composer, const cut_target *target, const hl_world_box *box,
+                          hl_cut *cuts, size_t *count) {
+  const char *what = target->volume != NULL ? "volume" : "scene";
+  hl_status status = HL_OK;
   for (int type = 0; type < CUT_TYPES; type++)
-    for (int n = 0; n < composer->asked[option_of[type]].count; n++) {
+    for (int n = 0; n < composer->asked[option_of[type]].count && status == HL_OK; n++) {
       const char *text = composer->asked[option_of[type]].texts[n];
       hl_cut *cut = &cuts[*count];
       typed_cut typed;
@@ -172,23 +231,29 @@ static void add_cuts(const hl_composer *composer, const cut_target *target, cons
       if (read == NULL || !takes(composer, target, text, read != text)) continue;
       hl_cut_defaults(cut);
       cut->type = (hl_cut_type)type;
-      place_cut(&typed, low, high, metres, cut);
+      place_cut(&typed, box, cut);
+      status = judge_cut(composer, cut, box, what, n);
       ++*count;
     }
+  return status;
 }
 
-/* Extends a box in the scene's world so that it contains the box of a volume. */
-static hl_status extend_box(const hl_scene_volume *volume, double low[3], double high[3], hl_error *error) {
-  double ends[2][3];
-  hl_volume_info info = {.struct_size = sizeof info};
-  if (hl_volume_get_info(volume->volume, &info) != HL_OK)
-    return hl_fail(error, HL_ERROR_INTERNAL, "--cut-plane: the volume's place is not known");
-  hl_volume_world_box(&info, ends[0], ends[1]);
+static const char *given_unit(const hl_composer *composer) { return composer->asked[HL_ASK_UNIT].text; }
+
+/* Extends a box in the scene's world so that it contains the box of a volume. The scene's world has the unit
+ * of its first volume. */
+static hl_status extend_box(const hl_composer *composer, const hl_scene_volume *volume, bool first,
+                            hl_world_box *box) {
+  hl_world_box own;
+  if (!hl_world_box_of(volume->volume, given_unit(composer), &own))
+    return hl_fail(composer->error, HL_ERROR_INTERNAL, "--cut-plane: the volume's place is not known");
+  if (first) box->unit = own.unit;
   for (int corner = 0; corner < 8; corner++) {
     double p[3];
-    for (int a = 0; a < 3; a++) p[a] = ends[corner >> a & 1][a];
+    for (int a = 0; a < 3; a++) p[a] = corner >> a & 1 ? own.high[a] : own.low[a];
     hl_scene_volume_place_point(volume, p);
-    for (int a = 0; a < 3; a++) low[a] = fmin(low[a], p[a]), high[a] = fmax(high[a], p[a]);
+    for (int a = 0; a < 3; a++)
+      box->low[a] = fmin(box->low[a], p[a]), box->high[a] = fmax(box->high[a], p[a]);
   }
   return HL_OK;
 }
@@ -196,30 +261,28 @@ static hl_status extend_box(const hl_scene_volume *volume, double low[3], double
 hl_status hl_compose_cuts(const hl_composer *composer, hl_scene_volume *volume, size_t index, bool alone,
                           hl_cut *cuts) {
   const cut_target target = {volume, index, alone};
-  double low[3], high[3];
-  hl_volume_info info = {.struct_size = sizeof info};
+  hl_world_box box;
   size_t count = volume->cut_count;
-  if (hl_volume_get_info(volume->volume, &info) != HL_OK)
+  if (!hl_world_box_of(volume->volume, given_unit(composer), &box))
     return hl_fail(composer->error, HL_ERROR_INTERNAL, "--cut-plane: the volume's place is not known");
-  hl_volume_world_box(&info, low, high);
   if (count > 0) memcpy(cuts, volume->cuts, count * sizeof *cuts);
-  add_cuts(composer, &target, low, high, hl_metres_of_volume(volume->volume), cuts, &count);
+  const hl_status status = add_cuts(composer, &target, &box, cuts, &count);
   volume->cuts = cuts;
   volume->cut_count = count;
-  return HL_OK;
+  return status;
 }
 
 hl_status hl_compose_scene_cuts(const hl_composer *composer, hl_scene_description *scene, hl_cut *cuts) {
   const cut_target target = {.nameless = true};
-  double low[3] = {INFINITY, INFINITY, INFINITY}, high[3] = {-INFINITY, -INFINITY, -INFINITY};
+  hl_world_box box = {{INFINITY, INFINITY, INFINITY}, {-INFINITY, -INFINITY, -INFINITY}, NULL};
   size_t count = scene->cut_count;
   hl_status status = HL_OK;
   for (size_t v = 0; v < scene->volume_count && status == HL_OK; v++)
-    status = extend_box(&scene->volumes[v], low, high, composer->error);
+    status = extend_box(composer, &scene->volumes[v], v == 0, &box);
   if (status != HL_OK) return status;
   if (count > 0) memcpy(cuts, scene->cuts, count * sizeof *cuts);
-  add_cuts(composer, &target, low, high, 0, cuts, &count);
+  status = add_cuts(composer, &target, &box, cuts, &count);
   scene->cuts = cuts;
   scene->cut_count = count;
-  return HL_OK;
+  return status;
 }

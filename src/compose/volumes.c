@@ -20,10 +20,11 @@ static hl_status change_volume(const hl_composer *composer, const hl_scene_descr
   }
   if (asked[HL_ASK_CUT_SHADING].given) volume->cut_shading = (hl_cut_shading)asked[HL_ASK_CUT_SHADING].choice;
   if (asked[HL_ASK_CUT_CASTS_SHADOW].given) volume->cut_casts_shadow = 1;
-  hl_status status = asked[HL_ASK_CLIP].given ? hl_compose_clip(composer, volume, index) : HL_OK;
+  const bool alone = description->volume_count == 1;
+  hl_status status = asked[HL_ASK_CLIP].given ? hl_compose_clip(composer, volume, index, alone) : HL_OK;
   if (status == HL_OK && changed->cuts != NULL) {
     hl_cut *cuts = changed->cuts + changed->cuts_used;
-    status = hl_compose_cuts(composer, volume, index, description->volume_count == 1, cuts);
+    status = hl_compose_cuts(composer, volume, index, alone, cuts);
     changed->cuts_used += volume->cut_count;
   }
   const bool left_out = hl_is_left_out(composer, description, index);

@@ -31,11 +31,12 @@ static const cli_choice axes_choices[] = {
                         .help =                                                                              \
                             "a bar with its length, as 50um; in a perspective\npicture (not --ortho) "       \
                             "it holds at the target (@target)\nor at this distance from the eye"},           \
-  [RENDER_UNIT] =                                                                                            \
-      {.name = "unit",                                                                                       \
-       .kind = OPTION_TEXT,                                                                                  \
-       .argument = "UNIT",                                                                                   \
-       .help = "unit of lengths in the volumes' files, where these do\nnot tell it: mm, um, nm, ..."},       \
+  [RENDER_UNIT] = {.name = "unit",                                                                           \
+                   .kind = OPTION_TEXT,                                                                      \
+                   .argument = "UNIT",                                                                       \
+                   .help =                                                                                   \
+                       "unit of lengths in the volumes' files, where these do\nnot tell it: mm, um, nm, "    \
+                       "...; lengths with a unit, as\n--slice z=40mm, are converted to it"},                 \
   [RENDER_LEGEND] = {.name = "legend",                                                                       \
                      .kind = OPTION_TEXT,                                                                    \
                      .argument = "auto|TITLE",                                                               \
