@@ -1,6 +1,10 @@
-/* compose/color_by.c - applies the option "color-by" FILE[:MAP[:LO,HI]]: the volumes keep their opacities,
- * and get the colours of the values that another volume has at the same place. The other volume joins the
- * scene, and is not visible. */
+/* compose/color_by.c - applies the option "color-by" FILE[:ARRAY][:MAP[:LO,HI]]: the volumes keep their
+ * opacities, and get the colours of the values that another volume has at the same place. The other volume
+ * joins the scene, and is not visible. ARRAY alone is an array of a volume's own file.
+ *
+ * The value is read from its end. A last part of two numbers is the range, and then a last part that is the
+ * name of a colormap is the map. The rest is a file if there is one of this name. Else it is a file and one
+ * of its arrays, or an array of a volume of the scene. */
 #include <math.h>
 #include <stdio.h>
 #include <string.h>
@@ -14,6 +18,7 @@
 #include "scene/function/transfer_function.h"
 #include "scene/geometry/lengths.h"
 #include "scene/geometry/placement.h"
+#include "text/edit_distance.h"
 #include "text/plain.h"
 #include "text/stem.h"
 #include "volume/load_beside.h"
@@ -24,7 +29,10 @@ static const char *const colormap_of_fields = "viridis";
 
 /* The value of the option in its parts. */
 typedef struct typed_coloring {
-  char *file; /* owned */
+  char *text;                    /* owned; the value without its range and its map */
+  const char *file;              /* points into `text`, or is the name of the source's file */
+  const char *array;             /* points into `text`; null: the array that the file reads by default */
+  const hl_scene_volume *source; /* the scene's volume whose file has the array; null: another file */
   const char *map;
   double range[2]; /* [0] < [1] if a range was typed */
 } typed_coloring;
@@ -42,30 +50,72 @@ static void take_range(char *text, double range[2]) {
   *colon = '\0';
 }
 
-/* Takes the last part after ':' off the file's name, if the part is the name of a colormap. If only the name
- * before this part is that of a file, the part was meant for a colormap, and is refused. */
-static hl_status take_map(const hl_composer *composer, typed_coloring *typed) {
-  char *colon = strrchr(typed->file, ':');
-  typed->map = colormap_of_fields;
-  if (colon == NULL) return HL_OK;
-  const char *map = hl_find_colormap(colon + 1);
-  if (map == NULL && hl_file_kind(composer->context, typed->file) != 0) return HL_OK;
-  *colon = '\0';
-  if (map != NULL) typed->map = map;
-  else if (hl_file_kind(composer->context, typed->file) != 0)
-    return hl_refuse_colormap("color-by", colon + 1, composer->error);
-  else *colon = ':';
-  return HL_OK;
+/* Takes the last part after ':' off the text, if the part is the name of a colormap. */
+static void take_map(typed_coloring *typed) {
+  char *colon = strrchr(typed->text, ':');
+  const char *map = colon != NULL ? hl_find_colormap(colon + 1) : NULL;
+  typed->map = map != NULL ? map : colormap_of_fields;
+  if (map != NULL) *colon = '\0';
 }
 
-/* Reads the option's value. typed->file is owned by the caller, also after a failure. */
-static hl_status read_coloring(const hl_composer *composer, const char *text, typed_coloring *typed) {
-  *typed = (typed_coloring){.file = hl_copy_text(composer->context, text)};
-  if (typed->file == NULL) return hl_fail_memory(composer->error, strlen(text) + 1, "a name");
-  take_range(typed->file, typed->range);
+static bool is_input(const hl_composer *composer, const char *file) {
+  return hl_plain_is_url(file) || hl_file_kind(composer->context, file) != 0;
+}
+
+/* Reads the text as a file, or as a file and one of its arrays. Returns false if there is no such file. */
+static bool find_file(const hl_composer *composer, typed_coloring *typed) {
+  typed->file = typed->text;
+  if (is_input(composer, typed->text)) return true;
+  for (char *colon = typed->text + strlen(typed->text); colon > typed->text; colon--) {
+    if (*colon != ':') continue;
+    *colon = '\0';
+    typed->array = colon + 1;
+    if (is_input(composer, typed->text)) return true;
+    *colon = ':';
+  }
+  typed->array = NULL;
+  return false;
+}
+
+/* Reads the text as an array of the file of a volume of values. names: receives the arrays of the first one,
+ * as far as there is room; [ARRAY_NAMES + 1]. */
+enum { ARRAY_NAMES = 32 };
+static void find_source(const hl_composer *composer, const hl_scene_description *description,
+                        typed_coloring *typed, const char *names[ARRAY_NAMES + 1]) {
+  size_t named = 0;
+  for (size_t v = 0; v < description->volume_count && typed->source == NULL; v++) {
+    const hl_scene_volume *volume = &description->volumes[v];
+    if (volume->label_count > 0 || volume->file == NULL || !is_input(composer, volume->file)) continue;
+    for (size_t n = 0; n < hl_volume_array_count(volume->volume); n++) {
+      hl_volume_array array = {.struct_size = sizeof array};
+      if (hl_volume_get_array(volume->volume, n, &array) != HL_OK || array.name == NULL || array.name[0] == 0)
+        continue;
+      if (strcmp(array.name, typed->text) == 0) typed->source = volume;
+      if (named < ARRAY_NAMES) names[named++] = array.name;
+    }
+  }
+  if (typed->source == NULL) return;
+  typed->array = typed->text;
+  typed->file = typed->source->file;
+}
+
+/* Reads the option's value. typed->text is owned by the caller, also after a failure. */
+static hl_status read_coloring(const hl_composer *composer, const hl_scene_description *description,
+                               const char *text, typed_coloring *typed) {
+  const char *names[ARRAY_NAMES + 1] = {NULL};
+  *typed = (typed_coloring){.text = hl_copy_text(composer->context, text)};
+  if (typed->text == NULL) return hl_fail_memory(composer->error, strlen(text) + 1, "a name");
+  take_range(typed->text, typed->range);
   if (typed->range[0] > typed->range[1])
     return hl_fail(composer->error, HL_ERROR_ARGUMENT, "--color-by: '%.200s': LO must be below HI", text);
-  return take_map(composer, typed);
+  take_map(typed);
+  if (find_file(composer, typed)) return HL_OK;
+  find_source(composer, description, typed, names);
+  if (typed->source != NULL || names[0] == NULL || names[1] == NULL) return HL_OK;
+  char mend[300];
+  hl_suggest_name(typed->text, names, mend, sizeof mend);
+  return hl_fail(composer->error, HL_ERROR_ARGUMENT,
+                 "--color-by: '%.200s' is neither a file nor an array of the input: %s", typed->text, mend);
 }
 
 /* Refuses scenes whose matter cannot have the colours of another volume. */
@@ -90,22 +140,41 @@ static hl_status check_scene(const hl_composer *composer, const hl_scene_descrip
   return HL_OK;
 }
 
-/* Loads the other volume into *made. typed: keeps the text of the file's name. name: [NAME_BYTES]. */
+/* Says of a last part that is no array of its file that it is no colormap either. */
+static hl_status refuse_part(const hl_composer *composer, const typed_coloring *typed, hl_status status,
+                             const hl_error *own) {
+  hl_error map = {0};
+  if (status != HL_ERROR_INPUT || typed->array == NULL || typed->source != NULL)
+    return hl_fail(composer->error, status, "%s", own->message);
+  (void)hl_refuse_colormap("color-by", typed->array, &map);
+  return hl_fail(composer->error, status, "%.300s; nor is it an array: %.600s", map.message, own->message);
+}
+
+/* Loads the other volume into *made. typed: keeps the texts of its names. name: [NAME_BYTES]. */
 static hl_status load(const hl_composer *composer, const hl_scene_description *description,
                       const typed_coloring *typed, char *name, hl_scene_volume *made) {
-  const hl_scene_volume *first = &description->volumes[0];
+  const hl_scene_volume *first = &description->volumes[0], *source = typed->source;
   hl_volume_load_options reading;
+  hl_error own = {0};
   hl_volume_load_options_defaults(&reading);
+  reading.array = typed->array;
   reading.space = first->volume->space;
   hl_scene_volume_defaults(made);
+  if (source != NULL) {
+    reading.series = made->series = source->series;
+    reading.time = made->time = source->time;
+    reading.level = made->level = source->level;
+    memcpy(reading.spacing, source->spacing, sizeof reading.spacing);
+  }
   hl_status status = hl_volume_load_beside(composer->context, typed->file, first->volume, first->spacing,
-                                           &reading, &made->volume, composer->error);
-  if (status != HL_OK) return hl_blame_options(status);
-  size_t length;
-  const char *stem = hl_stem(typed->file, &length);
+                                           &reading, &made->volume, &own);
+  if (status != HL_OK) return hl_blame_options(refuse_part(composer, typed, status, &own));
+  size_t length = typed->array != NULL ? strlen(typed->array) : 0;
+  const char *stem = typed->array != NULL ? typed->array : hl_stem(typed->file, &length);
   snprintf(name, NAME_BYTES, "%.*s", (int)fmin((double)length, NAME_BYTES - 1), stem);
   if (hl_scene_volume_named(description, name) != NULL) snprintf(name, NAME_BYTES, "color-by");
   made->file = typed->file;
+  made->array = typed->array;
   made->scale = hl_scene_file_scale(description, made->volume);
   made->name = name;
   made->visible = 0;
@@ -134,8 +203,8 @@ hl_status hl_compose_color_by(const hl_composer *composer, hl_scene_description 
   if (!asked->given) return HL_OK;
   hl_status status = check_scene(composer, description);
   if (status != HL_OK) return status;
-  status = read_coloring(composer, asked->text, &typed);
-  made->file = typed.file;
+  status = read_coloring(composer, description, asked->text, &typed);
+  made->text = typed.text;
   if (status != HL_OK) return status;
   made->volumes = hl_allocate(composer->context, count + 1, sizeof *made->volumes);
   if (made->volumes == NULL)
@@ -162,5 +231,5 @@ void hl_coloring_release(hl_context *context, hl_coloring *made) {
   hl_transfer_function_release(context, &made->colors);
   hl_volume_release(made->other);
   hl_release(context, made->volumes);
-  hl_release(context, made->file);
+  hl_release(context, made->text);
 }

@@ -8,7 +8,7 @@
 typedef struct hl_coloring {
   hl_scene_volume *volumes; /* owned; the scene's volumes, of which the last one gives the colours */
   hl_volume *other;         /* owned */
-  char *file;               /* owned */
+  char *text;               /* owned; the names of the file and the array */
   char name[64];
   hl_transfer_function colors; /* owned; the colours of the other volume's values */
 } hl_coloring;

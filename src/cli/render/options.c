@@ -198,13 +198,14 @@ const cli_option render_options[RENDER_OPTION_COUNT] = {
                  "(a COLOR); or one for "
                  "each volume or\nchannel, in order (magma,viridis)",
          .repeatable = true},
-    [RENDER_COLOR_BY] = {.name = "color-by",
-                         .kind = OPTION_TEXT,
-                         .argument = "FILE[:MAP[:LO,HI]]",
-                         .help = "colours of the values that another volume, FILE, has at\nthe same place; "
-                                 "opacity stays; MAP: a colormap (default\nviridis) over the values LO to HI "
-                                 "(default: all of FILE's)",
-                         .hint = ", as temperature.nrrd:inferno:300,2000"},
+    [RENDER_COLOR_BY] =
+        {.name = "color-by",
+         .kind = OPTION_TEXT,
+         .argument = "FILE[:ARRAY][:MAP[:LO,HI]]",
+         .help = "colours of the values that another volume, FILE, has at\nthe same place; "
+                 "opacity stays; ARRAY, of FILE, or alone of\nthe input; MAP: a colormap (default "
+                 "viridis) over the\nvalues LO to HI (default: all)",
+         .hint = ", as temperature.nrrd:inferno:300,2000"},
     [RENDER_RANGE] =
         {.name = "range",
          .kind = OPTION_NUMBERS,

@@ -94,8 +94,9 @@ hl_status hl_arrays_choose(hl_load_request *request, const char *path, int activ
   list_arrays(request, list, sizeof list);
   const char *name = request->arrays[request->chosen].name;
   snprintf(request->array_told, sizeof request->array_told,
-           "%.200s: of %zu arrays%s, %s is taken: name another by \"array\" (--array): %s", path,
-           request->array_count, request->more ? " and more" : "",
+           "%.200s: of %zu arrays%s, %s is taken: name another by \"array\" (--array, or --color-by "
+           "FILE:ARRAY): %s",
+           path, request->array_count, request->more ? " and more" : "",
            name[0] != 0 ? hl_text_printable(shown, name) : "the one without a name", list);
   return HL_OK;
 }

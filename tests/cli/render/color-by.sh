@@ -30,8 +30,29 @@ ball --color-by heat.nrrd --size 32 --legend "Heat (K)" -o legend.png
 ball --color-by heat.nrrd --size 12 --sky 0 --shadows off -o sheets.npy
 ball --color-by heat.nrrd --size 12 --sky 0 --shadows off --reference -o exact.npy
 halflight diff exact.npy sheets.npy --max-rmse 0.02 >/dev/null
+# An array of the input's own file, by its name or its file's; a part that is a map is the map.
+cat >flame.vti <<'END'
+<VTKFile type="ImageData"><ImageData WholeExtent="0 1 0 1 0 1"><PointData>
+<DataArray type="UInt8" Name="heat">0 2 3 4 5 6 7 200</DataArray><DataArray type="UInt8" Name="OH">8 7 6 5 4 3 2 10</DataArray>
+<DataArray type="UInt8" Name="a:b">8 7 6 5 4 3 2 20</DataArray>
+</PointData></ImageData></VTKFile>
+END
+for by in OH OH:hot:2,9 flame.vti:OH flame.vti:OH:inferno:2,9 flame.vti:a:b a:b:inferno; do
+  halflight render flame.vti --array heat --threshold 100 --color-by $by --print-scene >arrays.json
+  tool json arrays.json "[(v.get('array'), v['file'], v['name']) for v in d['volumes'][1:]], (lambda c: (c[0][0], c[-1][0], [round(x, 2) for x in c[-1][1:]]))(d['volumes'][0]['transfer_function']['curves']['color'])"
+done
+halflight render flame.vti --array heat --threshold 100 --color-by OH --size 24 --quiet -o named.npy
+halflight render flame.vti --array heat --threshold 100 --color-by flame.vti:OH --size 24 --quiet -o filed.npy
+cmp named.npy filed.npy
+# A scene keeps the array.
+halflight render arrays.json --size 24 --quiet -o kept.npy
+for by in OHH flame.vti:OHH; do
+  code=0
+  halflight render flame.vti --array heat --color-by $by -o no.png 2>message || code=$?
+  echo $code "$(cut -c12-200 message)"
+done
 for wrong in "no.nrrd" "heat.nrrd:90,20" "heat.nrrd --look mip" "heat.nrrd --iso 90" "heat.nrrd:infernoo"; do
   code=0
   ball --color-by $wrong -o no.png 2>message || code=$?
-  echo $code "$(cut -c12-120 message)"
+  echo $code "$(cut -c12-180 message)"
 done
