@@ -17,6 +17,8 @@
 
 /* A label counts as seen if this fraction of its places is seen. */
 #define SEEN 0.05
+/* Of two screens that both let less light pass, the first counts as the one that hides a place. */
+#define LEAST 1e-6
 
 enum { PLACES = 256, FEWEST_PLACES = 16, ALL_PLACES = 32768 };
 
@@ -38,6 +40,7 @@ typedef struct sought_map {
   const hl_scene_description *scene;
   const hl_screen *own; /* the map with its cuts */
   const hl_screen *screens;
+  uint64_t *hides; /* owned; [screen_count]; how many of the places that are not seen a screen hides most */
   size_t screen_count;
   affine3 to_world;
   uint64_t places;     /* the number of voxels of a label that are tried */
@@ -63,7 +66,7 @@ static bool find_voxel(const sought_map *sought, uint64_t voxel, sought_voxel *f
   const vec3 place = {(double)at[0], (double)at[1], (double)at[2]};
   found->label = hl_screen_label(map, hl_volume_value_within(map->volume, at[0], at[1], at[2]));
   if (found->label == map->label_count || (sought->side > FROM_EYE && !sought->sights[found->label].hidden) ||
-      !hl_cuts_leave(sought->own->cuts, sought->own->cut_count, place))
+      !hl_screen_leaves(sought->own, place))
     return false;
   found->point = affine3_apply(sought->to_world, place);
   found->towards = sought->side == FROM_EYE && camera->type == HL_CAMERA_PERSPECTIVE
@@ -79,11 +82,16 @@ static void try_voxel(const sought_map *sought, const sought_voxel *voxel) {
   label_sight *sight = &sought->sights[voxel->label];
   const uint64_t all = sight->facing > 0 ? sight->facing : sight->voxels, every = all / sought->places + 1;
   if ((sight->facing > 0 && !voxel->facing) || sight->met++ % every != 0) return;
-  double left = 1;
-  for (size_t s = 0; s < sought->screen_count && left >= HL_SCREEN_SEEN; s++)
-    left *= hl_screen_passing(&sought->screens[s], voxel->point, voxel->towards, HL_SCREEN_SEEN);
+  double left = 1, least = 1;
+  size_t most = 0;
+  for (size_t s = 0; s < sought->screen_count; s++) {
+    const double passing = hl_screen_passing(&sought->screens[s], voxel->point, voxel->towards, LEAST);
+    left *= passing;
+    if (passing < least) least = passing, most = s;
+  }
   sight->tried++;
   sight->seen += left >= HL_SCREEN_SEEN;
+  sought->hides[most] += left < HL_SCREEN_SEEN;
 }
 
 /* Looks for labels from one side. Afterwards `hidden` is set for the labels that are hardly seen. */
@@ -159,16 +167,24 @@ static void tell(const hl_composer *composer, const hl_scene_volume *map, const 
          one ? "is" : "are", (int)lengths[1], names[1], (int)lengths[1], names[1], (int)lengths[1], names[1]);
 }
 
+/* The volume that hides the most places from the eye and from the other sides. */
+static const hl_scene_volume *find_hiding(const sought_map *sought) {
+  size_t most = 0;
+  for (size_t s = 1; s < sought->screen_count; s++)
+    if (sought->hides[s] > sought->hides[most]) most = s;
+  return sought->screens[most].volume;
+}
+
 /* Tells that a map is hidden from the eye, or else which of its labels are enclosed in the screens. A label
  * at the far side of matter is no surprise while other labels are seen. */
 static void tell_of_map(const hl_composer *composer, sought_map *sought) {
-  const hl_scene_volume *map = sought->own->volume, *screen = sought->screens[0].volume;
+  const hl_scene_volume *map = sought->own->volume;
   char names[300];
   size_t present = 0;
   look_from(sought, FROM_EYE);
   size_t hidden = count_hidden(sought, &present);
   if (hidden > 0 && hidden == present) {
-    tell(composer, map, NULL, hidden, screen);
+    tell(composer, map, NULL, hidden, find_hiding(sought));
     return;
   }
   for (int side = FROM_EYE + 1; side < SIDES && hidden > 0; side++) {
@@ -177,7 +193,7 @@ static void tell_of_map(const hl_composer *composer, sought_map *sought) {
   }
   if (hidden == 0) return;
   name_hidden(map, sought->sights, hidden, names, sizeof names);
-  tell(composer, map, names, hidden, screen);
+  tell(composer, map, names, hidden, find_hiding(sought));
 }
 
 static hl_status look_at_map(const hl_composer *composer, sought_map *sought) {
@@ -191,11 +207,14 @@ static hl_status look_at_map(const hl_composer *composer, sought_map *sought) {
   sought->places = ALL_PLACES / (map->label_count + 1) + FEWEST_PLACES;
   if (sought->places > PLACES) sought->places = PLACES;
   sought->sights = hl_allocate_zeroed(composer->context, map->label_count, sizeof *sought->sights);
-  if (sought->sights == NULL)
-    return hl_fail_memory(composer->error, map->label_count * sizeof *sought->sights, "labels that are seen");
-  tell_of_map(composer, sought);
+  sought->hides = hl_allocate_zeroed(composer->context, sought->screen_count, sizeof *sought->hides);
+  const bool whole = sought->sights != NULL && sought->hides != NULL;
+  if (whole) tell_of_map(composer, sought);
   hl_release(composer->context, sought->sights);
-  return HL_OK;
+  hl_release(composer->context, sought->hides);
+  return whole ? HL_OK
+               : hl_fail_memory(composer->error, map->label_count * sizeof *sought->sights,
+                                "labels that are seen");
 }
 
 hl_status hl_tell_of_hidden_labels(const hl_composer *composer, const hl_scene_description *scene) {

@@ -43,8 +43,8 @@ hl_status hl_screen_begin(hl_context *context, const hl_scene_description *scene
   const hl_transfer_function *function = &volume->transfer_function;
   const double least = volume->volume->minimum, range = volume->volume->maximum - least;
   *screen = (hl_screen){.volume = volume, .step = mat3_shortest_column(to_world.linear)};
+  hl_scene_volume_box(volume, screen->low, screen->high);
   if (affine3_invert(to_world, &screen->to_index) && volume->label_count == 0) {
-    hl_scene_volume_box(volume, screen->low, screen->high);
     for (int n = 0; n < HL_SCREEN_TABLE; n++) {
       const double opacity = hl_transfer_function_opacity(function,
                                                           least + range * n / (HL_SCREEN_TABLE - 1));
@@ -55,6 +55,17 @@ hl_status hl_screen_begin(hl_context *context, const hl_scene_description *scene
 }
 
 void hl_screen_release(hl_context *context, hl_screen *screen) { hl_release(context, screen->cuts); }
+
+static bool is_in_box(const hl_screen *screen, vec3 place) {
+  const double at[3] = {place.x, place.y, place.z};
+  bool within = true;
+  for (int a = 0; a < 3; a++) within &= at[a] > screen->low[a] && at[a] < screen->high[a];
+  return within;
+}
+
+bool hl_screen_leaves(const hl_screen *screen, vec3 place) {
+  return is_in_box(screen, place) && hl_cuts_leave(screen->cuts, screen->cut_count, place);
+}
 
 size_t hl_screen_label(const hl_scene_volume *map, double value) {
   size_t low = 0, high = map->label_count;
@@ -70,12 +81,9 @@ size_t hl_screen_label(const hl_scene_volume *map, double value) {
 
 bool hl_screen_label_faces(const hl_screen *screen, vec3 place, vec3 towards) {
   const hl_scene_volume *map = screen->volume;
-  const size_t *size = map->volume->dimension;
   const vec3 before = vec3_add(place, mat3_apply(screen->to_index.linear, vec3_scale(towards, screen->step)));
   const long next[3] = {lround(before.x), lround(before.y), lround(before.z)};
-  bool within = true;
-  for (int a = 0; a < 3; a++) within &= next[a] >= 0 && next[a] < (long)size[a];
-  return !within || !hl_cuts_leave(screen->cuts, screen->cut_count, before) ||
+  return !hl_screen_leaves(screen, before) ||
          hl_screen_label(map, hl_volume_value_within(map->volume, (size_t)next[0], (size_t)next[1],
                                                      (size_t)next[2])) == map->label_count;
 }
@@ -95,10 +103,7 @@ double hl_screen_passing(const hl_screen *screen, vec3 point, vec3 towards, doub
   const long most = 4L * (long)(volume->dimension[0] + volume->dimension[1] + volume->dimension[2]);
   for (long n = 0; n < most && left >= least; n++) {
     at = vec3_add(at, step);
-    const double place[3] = {at.x, at.y, at.z};
-    bool within = true;
-    for (int a = 0; a < 3; a++) within &= place[a] > screen->low[a] && place[a] < screen->high[a];
-    if (!within) continue;
+    if (!is_in_box(screen, at)) continue;
     const double opacity = hl_screen_opacity(
         screen,
         hl_volume_value_within(volume, (size_t)lround(at.x), (size_t)lround(at.y), (size_t)lround(at.z)));

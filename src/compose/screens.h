@@ -38,6 +38,9 @@ hl_status hl_screen_begin(hl_context *context, const hl_scene_description *scene
                           const hl_scene_volume *volume, hl_screen *screen, hl_error *error);
 void hl_screen_release(hl_context *context, hl_screen *screen);
 
+/* Whether the clip box and the cuts leave a volume's matter at a place in its index space. */
+bool hl_screen_leaves(const hl_screen *screen, vec3 place);
+
 /* The index of the label of a map that a value is, if the label is visible; the number of labels if there is
  * no such label. */
 size_t hl_screen_label(const hl_scene_volume *map, double value);

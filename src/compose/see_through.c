@@ -57,7 +57,7 @@ static bool find_matter(const hl_screen *screen, uint64_t voxel, double most, ve
                k = (size_t)(voxel / size[0] / size[1]);
   const vec3 at = {(double)i, (double)j, (double)k};
   if (!(2 * hl_screen_opacity(screen, hl_volume_value_within(volume, i, j, k)) > most) ||
-      !hl_cuts_leave(screen->cuts, screen->cut_count, at))
+      !hl_screen_leaves(screen, at))
     return false;
   *point = affine3_apply(hl_scene_volume_index_to_world(screen->volume), at);
   return true;
@@ -93,8 +93,7 @@ static void find_label_places(channel_views *views, const hl_screen *screen) {
                  k = (size_t)(voxel / size[0] / size[1]);
     const vec3 at = {(double)i, (double)j, (double)k}, point = affine3_apply(to_world, at);
     const size_t label = hl_screen_label(map, hl_volume_value_within(map->volume, i, j, k));
-    if (label < map->label_count && !map->labels[label].unlisted &&
-        hl_cuts_leave(screen->cuts, screen->cut_count, at) &&
+    if (label < map->label_count && !map->labels[label].unlisted && hl_screen_leaves(screen, at) &&
         hl_screen_label_faces(screen, at, towards_eye(views, point)))
       keep_place(views, &kept, point);
   }
@@ -199,17 +198,17 @@ static void make_thin(const hl_composer *composer, const channel_views *views, h
   }
 }
 
-static hl_status thin_all(const hl_composer *composer, channel_views *views, hl_scene_volume *volumes) {
+/* of_maps: whether label maps must be seen; else the volumes of values must see each other. */
+static hl_status thin_all(const hl_composer *composer, bool of_maps, channel_views *views,
+                          hl_scene_volume *volumes) {
   hl_context *context = composer->context;
   hl_status status = HL_OK;
   for (size_t v = 0; v < views->count && status == HL_OK; v++) {
     status = hl_screen_begin(context, views->scene, &volumes[v], &views->screens[v], composer->error);
     views->thin[v] = 1;
   }
-  bool with_maps = false;
-  for (size_t v = 0; v < views->count; v++) with_maps |= is_map(views, v);
   for (size_t v = 0; v < views->count && status == HL_OK; v++)
-    if (!with_maps || is_map(views, v)) status = thin_before(context, views, v, composer->error);
+    if (is_map(views, v) == of_maps) status = thin_before(context, views, v, composer->error);
   if (status == HL_OK) make_thin(composer, views, volumes);
   for (size_t v = 0; v < views->count; v++) hl_screen_release(context, &views->screens[v]);
   return status;
@@ -224,17 +223,22 @@ static bool has_chosen_opacities(const hl_composer *composer, const hl_scene_des
          !asked[HL_ASK_ISO].given;
 }
 
-/* Returns whether the scene consists of channels of one file, without a look that an option chooses. */
+/* Returns whether the scene's volumes of values are channels of one file, without a look that an option
+ * chooses. */
 static bool has_channels(const hl_composer *composer, const hl_scene_description *scene) {
   const hl_asked *look = &composer->asked[HL_ASK_LOOK];
   const hl_scene_volume *first = scene->volumes;
+  size_t channels = 0;
   if (look->given && look->choice != HL_LOOK_AUTO) return false;
-  for (size_t v = 0; v < scene->volume_count; v++)
-    if (!hl_screen_can_hide(&scene->volumes[v]) || first->file == NULL || scene->volumes[v].file == NULL ||
-        strcmp(scene->volumes[v].file, first->file) != 0 ||
-        (v > 0 && scene->volumes[v].channel == first->channel))
+  for (size_t v = 0; v < scene->volume_count; v++) {
+    const hl_scene_volume *volume = &scene->volumes[v];
+    if (volume->label_count > 0) continue;
+    if (!hl_screen_can_hide(volume) || first->file == NULL || volume->file == NULL ||
+        strcmp(volume->file, first->file) != 0 || (v > 0 && volume->channel == first->channel))
       return false;
-  return true;
+    channels++;
+  }
+  return channels >= 2;
 }
 
 /* Returns whether the scene consists of label maps and of matter that an option's look lets be seen through.
@@ -260,8 +264,8 @@ hl_status hl_see_through(const hl_composer *composer, hl_scene_description *scen
   const size_t count = scene->volume_count;
   vec3 right, up;
   channel_views views = {.scene = scene, .count = count};
-  if (!has_chosen_opacities(composer, scene) ||
-      (!has_channels(composer, scene) && !has_labels_in_glass(composer, scene)) ||
+  const bool of_maps = has_labels_in_glass(composer, scene);
+  if (!has_chosen_opacities(composer, scene) || (!of_maps && !has_channels(composer, scene)) ||
       !hl_camera_basis(&scene->camera, &right, &up, &views.forward))
     return HL_OK;
   *changed = hl_allocate(context, count, sizeof **changed);
@@ -274,7 +278,7 @@ hl_status hl_see_through(const hl_composer *composer, hl_scene_description *scen
                                           "channels that are seen");
   if (status == HL_OK) {
     memcpy(*changed, scene->volumes, count * sizeof **changed);
-    status = thin_all(composer, &views, *changed);
+    status = thin_all(composer, of_maps, &views, *changed);
     scene->volumes = *changed;
   }
   hl_release(context, views.screens);

@@ -19,10 +19,12 @@ left, right = [(name, lambda x, y, z, at=at: ball(x, y, z, at, 6)) for name, at 
 write("within.zarr", core, skin)
 write("around.zarr", skin, core)
 write("beside.zarr", left, right)
+with open("map_32x32x32_uint8.raw", "wb") as file:
+    file.write(bytes(core[1](x, y, z) > 128 for z in range(32) for y in range(32) for x in range(32)))
 END
 told() {
   echo "$*: $(halflight render "$@" --channel all --print-scene 2>&1 >scene.json)"
-  tool json scene.json '[(v["name"], "translucent" if v["transfer_function"].get("unit_distance", 1) > 5 else "opaque") for v in d["volumes"]]'
+  tool json scene.json '[(v["name"], "translucent" if v["transfer_function"].get("unit_distance", 1) > 5 else "opaque") for v in d["volumes"] if "labels" not in v]'
 }
 told within.zarr
 told around.zarr
@@ -34,6 +36,12 @@ told within.zarr --threshold 100
 told within.zarr --range 1%,99%
 told within.zarr --colormap cyan,magenta
 told within.zarr --cut-box z=0.5: --view top
+# Matter that is clipped away counts no more: the skin hides what is left of the core.
+told within.zarr --clip x=:0.5 --view front
+# Labels beside the channels change nothing; where they are hidden, the line names the channel that hides them.
+told within.zarr --labels map_32x32x32_uint8.raw
+told within.zarr --labels map_32x32x32_uint8.raw --look surface
+told around.zarr --labels map_32x32x32_uint8.raw --look surface
 # The core is seen in the picture: pixels in its colour, magenta, over the skin's green.
 halflight render around.zarr --channel all --size 64 --quiet -o around.png 2>/dev/null
 tool png-pixel around.png 32 32 | "$PYTHON" -c 'red, green, blue = map(int, input().split()); print("magenta:", red > 1.1 * green and blue > 1.1 * green)'
