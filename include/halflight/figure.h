@@ -41,8 +41,8 @@ typedef enum hl_corner {
 /* A text over a picture. */
 typedef struct hl_annotation {
   const char *text;
-  double at[3]; /* the place in the picture, as fractions of the picture's width and height, measured from its
-                 * upper left corner; at[2] is not used */
+  double at[3]; /* the place in the picture, as fractions of its width and height, from its upper left corner;
+                 * at[0] NAN: below one another at the upper left, clear of other parts; at[2] is not used */
   int in_world; /* non-zero if `at` is a point of the scene's world instead. A ring is drawn around the point,
                  * and the text stands beside the ring, clear of other parts */
 } hl_annotation;

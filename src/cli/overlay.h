@@ -12,7 +12,6 @@ typedef struct cli_overlay {
   hl_overlay overlay; /* the overlay, whose texts are borrowed from the options, or from `texts` and `unit` */
   hl_annotation notes[MAXIMUM_REPEATS];
   char *texts[MAXIMUM_REPEATS]; /* owned; of `notes` */
-  int placeless;                /* the number of texts that state no place */
   char unit[40];                /* unit of --scale-bar */
   double width;                 /* the width from --width, in millimetres; 0 if it is not given */
   double pixels_per_inch;       /* the pixels per inch that files state, from --dpi; 0 if they follow from

@@ -62,6 +62,32 @@ hl_line_of_text hl_overlay_beside(const hl_ink *ink, const hl_taken *taken, hl_l
 static double ring_of(const hl_ink *ink) { return 0.3 * ink->size; }
 static double apart_of(const hl_ink *ink) { return 2.2 * ring_of(ink); }
 
+/* How an annotation finds its place: it states one in the picture, has none, or states a point of the world.
+ */
+typedef enum place_kind { STATED, FREE, AT_POINT, PLACE_KINDS } place_kind;
+
+static place_kind kind_of(const hl_annotation *note) {
+  return note->in_world ? AT_POINT : isnan(note->at[0]) ? FREE : STATED;
+}
+
+/* Finds the text of the n-th annotation without a place: at the upper left below those before it, or further
+ * down where something stands there. */
+static hl_line_of_text lay_free(const hl_ink *ink, const hl_overlay_place *place, const char *text, int n) {
+  static const double left = 0.03, top = 0.05;
+  const hl_rectangle picture = place->picture;
+  hl_line_of_text line = {.text = text,
+                          .x = picture.left + left * picture.width,
+                          .y = picture.top + top * (1 + n) * picture.height,
+                          .align_y = 0.5,
+                          .paragraphs = true};
+  hl_search search = {.taken = &place->taken, .unit = 1};
+  hl_rectangle usual = hl_ink_box(ink, &line), lowest = usual;
+  lowest.top = picture.top + picture.height - usual.height;
+  hl_search_edge(&search, usual, lowest, 0.25 * ink->size);
+  if (search.found) line.y += search.box.top - usual.top;
+  return line;
+}
+
 /* Finds the text of an annotation, at the place or the point that the annotation states. */
 static hl_status lay_annotation(const hl_overlay_place *place, const hl_annotation *note,
                                 hl_line_of_text *line, hl_error *error) {
@@ -75,20 +101,22 @@ static hl_status lay_annotation(const hl_overlay_place *place, const hl_annotati
   return HL_OK;
 }
 
-/* Finds the texts of all annotations: of those that state places in the picture first. The texts of points
- * keep clear of them. lines: [annotation_count]. */
+/* Finds the texts of all annotations: of those that state places in the picture first. The others keep clear
+ * of them. lines: [annotation_count]. */
 static hl_status place_annotations(const hl_ink *ink, hl_overlay_place *place, hl_line_of_text *lines,
                                    hl_error *error) {
   const hl_overlay *overlay = place->overlay;
   const double ring = ring_of(ink);
   hl_status status = HL_OK;
-  for (int in_world = 0; in_world <= 1; in_world++)
+  int free_count = 0;
+  for (place_kind kind = STATED; kind < PLACE_KINDS; kind++)
     for (size_t a = 0; a < overlay->annotation_count && status == HL_OK; a++) {
       const hl_annotation *note = &overlay->annotations[a];
-      if ((note->in_world != 0) != in_world) continue;
-      status = lay_annotation(place, note, &lines[a], error);
+      if (kind_of(note) != kind) continue;
+      if (kind == FREE && note->text != NULL) lines[a] = lay_free(ink, place, note->text, free_count++);
+      else status = lay_annotation(place, note, &lines[a], error);
       if (status != HL_OK) break;
-      if (in_world) {
+      if (kind == AT_POINT) {
         const hl_rectangle point = {lines[a].x, lines[a].y, 0, 0};
         lines[a] = hl_overlay_beside(ink, &place->taken, lines[a], apart_of(ink));
         hl_take(&place->taken, hl_rectangle_widened(point, ring));

@@ -61,15 +61,13 @@ static int keep_annotation(const char *text, size_t length, hl_annotation *note,
   return note->text != NULL ? EXIT_CODE_OK : fail(EXIT_CODE_FAILURE, "out of memory");
 }
 
-/* Reads the value of --annotate: "TEXT@X,Y" with fractions of the picture, or "TEXT@X,Y,Z" with a point of
- * the world. Texts without a place stand below one another at the upper left. */
+/* Reads the value of --annotate: "TEXT@X,Y" with fractions of the picture, "TEXT@X,Y,Z" with a point of the
+ * world, or a text without a place. */
 static int read_annotation(const char *text, cli_overlay *made) {
-  static const double left = 0.03, top = 0.05;
   const char *at = strrchr(text, '@');
   hl_annotation *note = &made->notes[made->overlay.annotation_count];
   if (at == NULL) {
-    note->at[0] = left;
-    note->at[1] = top * (1 + made->placeless++);
+    note->at[0] = NAN;
     return keep_annotation(text, strlen(text), note, made);
   }
   size_t numbers = 0;

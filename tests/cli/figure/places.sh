@@ -38,3 +38,10 @@ beside 'lower right' '"axes": "arrows"'
 beside 'upper right' '"legend": "auto"'
 beside 'lower left' '"scale-bar": "auto", "unit": "mm"'
 beside 'upper left' '"letter": "a"'
+# A text without a place keeps clear of the panel's letter, and of another such text.
+panel '"letter": ""' plain
+panel '"letter": "a"' letter
+panel '"letter": "a", "annotate": "first"' both
+tool drawn-over plain.png letter.png both.png | awk '{ print ($1 > 0), ($2 > 0), $3 }'
+panel '"letter": "a", "annotate": ["first", "second"]' three
+tool drawn-over plain.png both.png three.png | awk '{ print ($1 > 0), ($2 > 0), $3 }'
