@@ -68,11 +68,12 @@ static void size_panel(const figure_page *page, figure_panel *panel) {
   render_set_size(&panel->values[RENDER_SIZE], width, width / aspect, panel->size_text);
 }
 
-/* Copies everything that the first panel shares into the description of another panel. */
-static void take_shared(const figure_page *page, hl_scene_description *description,
+/* Copies everything that the first panel shares into the description of another panel. inset: whether that
+ * panel is an inset, which has a camera of its own. */
+static void take_shared(const figure_page *page, bool inset, hl_scene_description *description,
                         hl_scene_volume *volumes) {
   const hl_scene_description *first = hl_scene_describe(page->panels[0].scene);
-  if (page->share_camera) {
+  if (page->share_camera && !inset) {
     description->camera = first->camera;
     memcpy(description->sky.up, first->sky.up, sizeof first->sky.up);
   }
@@ -106,14 +107,13 @@ static int share(figure_job *job, figure_panel *panel) {
   const figure_page *page = &job->page;
   if (panel == page->panels || (!page->share_camera && !page->share_light && !page->share_function))
     return EXIT_CODE_OK;
-  if (panel->inset.of >= 0 && page->share_camera) return EXIT_CODE_OK; /* an inset has a camera of its own */
   hl_scene_description description = *hl_scene_describe(panel->scene);
   hl_scene_volume *volumes = calloc(description.volume_count + 1, sizeof *volumes);
   if (volumes == NULL) return fail(EXIT_CODE_FAILURE, "out of memory");
   if (description.volume_count > 0)
     memcpy(volumes, description.volumes, description.volume_count * sizeof *volumes);
   description.volumes = volumes;
-  take_shared(page, &description, volumes);
+  take_shared(page, panel->inset.of >= 0, &description, volumes);
   int exit_code = replace_scene(job, panel, &description);
   free(volumes);
   return exit_code;
