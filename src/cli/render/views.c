@@ -1,7 +1,8 @@
 /* cli/render/views.c - implements `halflight render INPUT --views front,left,top`, which renders one scene
  * from several sides. The pictures are on one sheet or, if OUT has a %s, in a file for each side.
  *
- * The input is loaded once. The picture of each side is the same that --view makes. */
+ * The input is loaded once. A file's picture is the same that --view makes. The pictures of a sheet have one
+ * scale. */
 #define _GNU_SOURCE
 #include <math.h>
 #include <stdio.h>
@@ -107,8 +108,46 @@ static int check_options(views_job *job) {
 
 /* ---- pictures ---- */
 
+/* The height that a camera shows at its target, up to a factor that all views of a scene share. */
+static double seen_height(const hl_camera *camera) {
+  if (camera->type == HL_CAMERA_ORTHOGRAPHIC) return camera->height;
+  double sum = 0;
+  for (int n = 0; n < 3; n++) {
+    const double way = camera->position[n] - camera->target[n];
+    sum += way * way;
+  }
+  return sqrt(sum);
+}
+
+/* Gives a camera another height at its target. A perspective eye moves. */
+static void show_height(hl_camera *camera, double height) {
+  const double factor = height / seen_height(camera);
+  if (camera->type == HL_CAMERA_ORTHOGRAPHIC) camera->height = height;
+  else
+    for (int n = 0; n < 3; n++)
+      camera->position[n] = camera->target[n] + factor * (camera->position[n] - camera->target[n]);
+}
+
+/* Gives all views of a sheet one scale, the smallest of theirs. */
+static int share_scale(views_job *job) {
+  double most = 0;
+  for (size_t v = 0; v < job->count; v++)
+    most = fmax(most, seen_height(&hl_scene_describe(job->scenes[v])->camera));
+  for (size_t v = 0; v < job->count; v++) {
+    hl_scene_description description = *hl_scene_describe(job->scenes[v]);
+    hl_scene *made = NULL;
+    hl_error error = {0};
+    if (!(seen_height(&description.camera) < most)) continue;
+    show_height(&description.camera, most);
+    hl_status status = hl_scene_create(job->host.context, &description, &made, &error);
+    if (status != HL_OK) return host_fail(&job->host, PHASE_CHANGE, status, &error);
+    hl_scene_release(job->scenes[v]);
+    job->scenes[v] = made;
+  }
+  return EXIT_CODE_OK;
+}
+
 static int load(views_job *job) {
-  hl_error error = {0};
   render_overlay_set_size(job->values, NULL, job->size_text);
   int exit_code = render_load_inputs(&job->host, job->values, job->inputs, &job->bare, &job->loaded);
   if (exit_code == EXIT_CODE_OK) render_overlay_set_size(job->values, job->loaded, job->size_text);
@@ -120,10 +159,14 @@ static int load(views_job *job) {
     job->scenes[v] = job->loaded;
     hl_scene_retain(job->loaded);
     exit_code = render_change_scene(&job->host, job->values, job->bare, 0, &job->scenes[v]);
-    if (exit_code != EXIT_CODE_OK) break;
+    job->host.quiet = true; /* the warnings were printed for the first side */
+  }
+  if (exit_code == EXIT_CODE_OK && !job->files) exit_code = share_scale(job);
+  for (size_t v = 0; v < job->count && exit_code == EXIT_CODE_OK; v++) {
+    hl_error error = {0};
+    job->host.quiet = v > 0 || job->values[RENDER_QUIET].given;
     hl_status status = overlay_check_scene(job->host.context, &job->overlay, job->scenes[v], &error);
     if (status != HL_OK) exit_code = host_fail(&job->host, PHASE_CHANGE, status, &error);
-    job->host.quiet = true; /* the warnings were printed for the first side */
   }
   job->host.quiet = job->values[RENDER_QUIET].given;
   return exit_code;
