@@ -369,12 +369,11 @@ HL_API HL_WARN_UNUSED hl_status hl_scene_for_meshes(hl_context *context, const h
                                                     size_t count, hl_scene **scene, hl_error *error);
 
 /* Joins several scenes that hl_scene_for_volume() has made of one volume each. All volumes stand in one
- * world, each with its own look. Where the files of two scenes tell different units of length, the volumes of
- * the later one are scaled to the unit of the first. Light, background and render settings are taken from the first scene. The
- * distance between sheets is the least distance of all scenes, and the camera shows all volumes. A volume
- * without a name is named after its file, without folder and extensions. If another volume has this name
- * already, "-2", "-3" and so on is appended. scenes: [count], each scene has one volume; the caller may
- * release the scenes afterwards. */
+ * world, each with its own look. Its unit of length is the first that a file tells; volumes of other units
+ * are scaled. Light, background and render settings are the first scene's. The distance between sheets is
+ * the least of all scenes, and the camera shows all volumes. A volume without a name is named after its
+ * file, without folder and extensions. If another volume has this name already, "-2", "-3" and so on is
+ * appended. scenes: [count], each scene has one volume; the caller may release them afterwards. */
 HL_API HL_WARN_UNUSED hl_status hl_scene_join(hl_context *context, hl_scene *const *scenes, size_t count,
                                               hl_scene **scene, hl_error *error);
 
