@@ -13,9 +13,9 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
-#include "core/beneath.h"
 #include "core/context.h"
 #include "core/memory.h"
+#include "platform/beneath.h"
 #include "platform/paths.h"
 #include "text/plain.h"
 

@@ -13,8 +13,8 @@
 
 #include <halflight/formats.h>
 
-#include "core/beneath.h"
 #include "parts.h"
+#include "platform/beneath.h"
 #include "start/start.h"
 
 enum { MOST_ENTRIES = 2000 };

@@ -14,8 +14,8 @@
 #include <halflight/scene.h>
 #include <halflight/volume.h>
 
-#include "core/beneath.h"
 #include "core/file.h"
+#include "platform/beneath.h"
 #include "small_volume.h"
 
 static const char header[] = "NRRD0004\ntype: uint8\ndimension: 3\nsizes: 2 2 2\nencoding: raw\n";

@@ -11,10 +11,10 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
-#include "core/beneath.h"
 #include "core/context.h"
 #include "core/file.h"
 #include "core/memory.h"
+#include "platform/beneath.h"
 #include "volume/io/bundle.h"
 
 hl_status hl_bundle_open_folder(hl_context *context, const char *path, hl_bundle *bundle, hl_error *error) {

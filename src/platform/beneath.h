@@ -1,7 +1,7 @@
-/* core/beneath.h - opens files below a folder. Neither a file's name nor a link can lead out of the
+/* platform/beneath.h - opens files below a folder. Neither a file's name nor a link can lead out of the
  * folder. */
-#ifndef HL_CORE_BENEATH_H
-#define HL_CORE_BENEATH_H
+#ifndef HL_PLATFORM_BENEATH_H
+#define HL_PLATFORM_BENEATH_H
 
 /* Opens the file `name` relative to a folder's descriptor, with the flags of open(). Returns the file's
  * descriptor, or -1 and sets errno. The name "" stands for the folder itself. Absolute names are refused, and

@@ -1,7 +1,7 @@
-/* core/beneath.c - opens files below a folder (beneath.h). Linux's openat2() resolves a whole name below a
- * folder in one step, so that nobody can put a link into the path while it is resolved. */
+/* platform/posix/beneath.c - opens files below a folder (beneath.h). Linux's openat2() resolves a whole name
+ * below a folder in one step, so that nobody can put a link into the path while it is resolved. */
 #define _GNU_SOURCE
-#include "core/beneath.h"
+#include "platform/beneath.h"
 
 #include <errno.h>
 #include <fcntl.h>
