@@ -62,6 +62,9 @@ hl_status hl_color_meshes(const hl_composer *composer, const hl_scene_descriptio
 const char *hl_text_for(const hl_composer *composer, hl_ask option, const hl_scene_volume *volume,
                         size_t index);
 
+/* Returns whether "colormap" gives volume number `index` a colormap, and not one colour. */
+bool hl_has_colormap(const hl_composer *composer, const hl_scene_description *description, size_t index);
+
 /* Returns whether options of values without NAME= leave volume number `index` out: it is a label map beside
  * volumes of values, and no "tf", "colormap" or "iso" names it. */
 bool hl_is_left_out(const hl_composer *composer, const hl_scene_description *description, size_t index);

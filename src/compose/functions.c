@@ -334,6 +334,16 @@ static hl_status copy_item(const hl_composer *composer, const hl_scene_descripti
   return HL_OK;
 }
 
+bool hl_has_colormap(const hl_composer *composer, const hl_scene_description *description, size_t index) {
+  const hl_asked *colormap = &composer->asked[HL_ASK_COLORMAP];
+  const char *text = hl_text_for(composer, HL_ASK_COLORMAP, &description->volumes[index], index);
+  char item[256];
+  if (text == NULL || !is_list(composer, colormap)) return text != NULL && hl_find_colormap(text) != NULL;
+  return count_items(text) == description->volume_count &&
+         copy_item(composer, description, text, index, item, sizeof item) == HL_OK &&
+         hl_find_colormap(item) != NULL;
+}
+
 /* ---- functions ---- */
 
 /* Logs that a preset of CT is fitted to values that are no Hounsfield units, as the values of MR are. */

@@ -25,8 +25,8 @@ bool hl_projected_color(const hl_composer *composer, const hl_scene_description 
   const bool slice = composer->asked[HL_ASK_SLICE].given;
   bool alone = slice ? hl_count_values(description) < 2 : description->volume_count < 2,
        named = hl_text_for(composer, HL_ASK_TF, volume, index) != NULL;
-  if (alone || named || !(slice || is_maximum(composer->asked)) ||
-      hl_scene_channel_color(description, index, srgb) != HL_OK)
+  if (alone || named || (slice && hl_slice_layer(composer, description, index) == 1) ||
+      !(slice || is_maximum(composer->asked)) || hl_scene_channel_color(description, index, srgb) != HL_OK)
     return false;
   snprintf(color, 8, "#%02x%02x%02x", (unsigned)lround(255 * srgb[0]) & 255U,
            (unsigned)lround(255 * srgb[1]) & 255U, (unsigned)lround(255 * srgb[2]) & 255U);

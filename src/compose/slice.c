@@ -184,11 +184,36 @@ hl_status hl_make_slice_opaque(const hl_composer *composer, const hl_scene_volum
   return HL_OK;
 }
 
+size_t hl_slice_layer(const hl_composer *composer, const hl_scene_description *description, size_t index) {
+  bool mapped = false;
+  size_t before = 0, values = 0;
+  for (size_t v = 0; v < description->volume_count; v++) {
+    if (description->volumes[v].label_count > 0) continue;
+    mapped |= values > 0 && hl_has_colormap(composer, description, v);
+    before += v < index;
+    values++;
+  }
+  return mapped ? before + 1 : 0;
+}
+
+/* Derived: where several volumes are at one place, their colours are mixed by their extinctions. At DENSER
+ * times the extinction of all that lies below, a layer's colour is the picture's to a ten-thousandth. */
+void hl_lay_slice_over(size_t below, hl_transfer_function *function) {
+  static const double denser = 1e4;
+  hl_opacity_point *points = (hl_opacity_point *)function->opacity;
+  if (function->color_count > 1) {
+    points[1] = (hl_opacity_point){function->color[0].value, points[0].opacity};
+    points[0] = (hl_opacity_point){nextafter(points[1].value, -INFINITY), 0};
+  }
+  for (size_t n = 0; n < below; n++) function->unit_distance /= denser;
+}
+
 /* Derived: where n volumes are equally opaque, the picture has the mean of their colours; n times the mean is
  * their sum. */
 void hl_compose_slice(const hl_composer *composer, hl_scene_description *description) {
   if (!composer->asked[HL_ASK_SLICE].given || !composer->bare) return;
   for (int c = 0; c < 3; c++) description->background[c] = 0;
   const size_t values = hl_count_values(description);
-  if (values > 1) description->exposure = hl_log2((double)values);
+  if (values > 1 && hl_slice_layer(composer, description, 0) == 0)
+    description->exposure = hl_log2((double)values);
 }

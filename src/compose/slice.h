@@ -35,6 +35,15 @@ bool hl_slice_range(const hl_volume *volume, char text[HL_SLICE_TEXT]);
 hl_status hl_make_slice_opaque(const hl_composer *composer, const hl_scene_volume *volume,
                                hl_transfer_function *function);
 
+/* The number of volume `index` among volumes of values that lie over each other on a slice, from 1. They do
+ * so if one after the first has a colormap. Otherwise their colours add up, as those of channels, and the
+ * number is 0. */
+size_t hl_slice_layer(const hl_composer *composer, const hl_scene_description *description, size_t index);
+
+/* Lays an opaque volume over `below` others: it hides them from the least value of its colours on, and is
+ * clear below this value. */
+void hl_lay_slice_over(size_t below, hl_transfer_function *function);
+
 /* Gives the picture of a slice a black background, and the exposure at which the colours of several volumes
  * of values add up. */
 void hl_compose_slice(const hl_composer *composer, hl_scene_description *description);

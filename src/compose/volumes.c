@@ -9,6 +9,29 @@
 #include "core/memory.h"
 #include "scene/function/transfer_function.h"
 
+static bool is_sliced(const hl_composer *composer, const hl_scene_volume *volume) {
+  return composer->asked[HL_ASK_SLICE].given && volume->label_count == 0;
+}
+
+/* Fits a volume's function to a maximum projection (`projected`), a slice or a film. */
+static hl_status fit_function(const hl_composer *composer, const hl_scene_description *description,
+                              size_t index, bool projected, hl_transfer_function *function) {
+  const hl_scene_volume *volume = &description->volumes[index];
+  const bool named = hl_text_for(composer, HL_ASK_TF, volume, index) != NULL,
+             mapped = hl_text_for(composer, HL_ASK_COLORMAP, volume, index) != NULL,
+             sliced = is_sliced(composer, volume);
+  hl_status status = HL_OK;
+  if (projected && !sliced && mapped && !named)
+    status = hl_fade_projection(composer, volume->volume, function);
+  if (status == HL_OK && sliced && !named) {
+    const size_t layer = hl_slice_layer(composer, description, index);
+    status = hl_make_slice_opaque(composer, volume, function);
+    if (status == HL_OK && layer > 1) hl_lay_slice_over(layer - 1, function);
+  }
+  if (status == HL_OK && hl_is_film(composer, description, index)) hl_make_film(function);
+  return status;
+}
+
 static hl_status change_volume(const hl_composer *composer, const hl_scene_description *description,
                                hl_changed_volumes *changed, size_t index) {
   const hl_asked *asked = composer->asked;
@@ -28,9 +51,7 @@ static hl_status change_volume(const hl_composer *composer, const hl_scene_descr
     changed->cuts_used += volume->cut_count;
   }
   const bool left_out = hl_is_left_out(composer, description, index);
-  const bool named = hl_text_for(composer, HL_ASK_TF, volume, index) != NULL,
-             mapped = hl_text_for(composer, HL_ASK_COLORMAP, volume, index) != NULL;
-  const bool sliced = asked[HL_ASK_SLICE].given && volume->label_count == 0;
+  const bool sliced = is_sliced(composer, volume);
   bool looks = hl_look_replaces_functions(composer) && (sliced || !asked[HL_ASK_SLICE].given),
        iso = asked[HL_ASK_ISO].given && !left_out, functions = hl_asks_for_functions(asked) && !left_out,
        film = hl_is_film(composer, description, index);
@@ -45,11 +66,8 @@ static hl_status change_volume(const hl_composer *composer, const hl_scene_descr
   bool colored = looks && hl_projected_color(composer, description, index, color);
   status = hl_compose_function(composer, description, index, colored ? color : NULL,
                                &changed->functions[index]);
-  if (status == HL_OK && projected && !sliced && mapped && !named)
-    status = hl_fade_projection(composer, volume->volume, &changed->functions[index]);
-  if (status == HL_OK && sliced && !named)
-    status = hl_make_slice_opaque(composer, volume, &changed->functions[index]);
-  if (status == HL_OK && film) hl_make_film(&changed->functions[index]);
+  if (status == HL_OK)
+    status = fit_function(composer, description, index, projected, &changed->functions[index]);
   volume->transfer_function = changed->functions[index];
   hl_transfer_function_release(composer->context, &look);
   if (status != HL_OK || !iso) return status;

@@ -260,16 +260,17 @@ const cli_option render_options[RENDER_OPTION_COUNT] = {
                         .low = 0,
                         .above = true,
                         .high = 1e9},
-    [RENDER_SLICE] = {.name = "slice",
-                      .kind = OPTION_TEXT,
-                      .argument = "AXIS[=AT]",
-                      .help =
-                          "a slice across x, y or z, as in radiology: its values in\ngrey, or as "
-                          "--colormap and --range say, with labels of\n--labels or --mask over them; AXIS: "
-                          "also axial, coronal or\nsagittal; AT: "
-                          "a fraction (z=0.5; the middle if it is\nleft out), or a length (z=40mm; u: the "
-                          "file's own unit)",
-                      .hint = ", as z=0.5"},
+    [RENDER_SLICE] =
+        {.name = "slice",
+         .kind = OPTION_TEXT,
+         .argument = "AXIS[=AT]",
+         .help = "a slice across x, y or z, as in radiology: its values in\ngrey, or as "
+                 "--colormap and --range say, with labels of\n--labels or --mask over them; AXIS: "
+                 "also axial, coronal or\nsagittal; AT: "
+                 "a fraction (z=0.5; the middle if it is\nleft out), or a length (z=40mm; u: the "
+                 "file's own unit);\na volume with a --colormap lies over those before it,\nfrom the "
+                 "low end of its --range on",
+         .hint = ", as z=0.5"},
     [RENDER_CLIP] = {.name = "clip",
                      .kind = OPTION_TEXT,
                      .argument = "[NAME=]AXIS=LO:HI,...",
