@@ -165,6 +165,7 @@ typedef struct corner_part {
   hl_rectangle box; /* where the part lies before it is moved */
   double x, y;      /* the way that it is moved by, points */
   double covered;   /* the area of what the picture shows that it covers, points squared */
+  size_t left_out;  /* the number of a legend's rows that find no room */
 } corner_part;
 
 static bool is_right(hl_corner corner) {
@@ -252,7 +253,7 @@ static hl_status shape_legend(const hl_ink *ink, hl_overlay_place *place, const 
     if (!found.found || (best.found && !is_better)) continue;
     give_place(part, box, &found);
     best = found;
-    best_left_out = left_out;
+    best_left_out = part->left_out = left_out;
     best_shape = place->legend;
   }
   place->rows_left_out = NULL;
@@ -376,7 +377,8 @@ static hl_status draw_part(const hl_ink *ink, const hl_overlay_place *place, con
   return status;
 }
 
-/* Tells the context's log which parts are left out, because they find no room. */
+/* Tells the context's log which parts, and how many rows of the legend, are left out, because they find no
+ * room. */
 static void tell_left_out(const hl_overlay_ground *ground, const corner_part parts[PARTS]) {
   char panel[40] = "";
   if (ground->panel > 0) snprintf(panel, sizeof panel, "panel %zu: ", ground->panel);
@@ -387,6 +389,12 @@ static void tell_left_out(const hl_overlay_ground *ground, const corner_part par
           "%sthe %s finds no room in the picture and is left out: smaller letters or a larger picture make "
           "room",
           panel, parts[n].name);
+  const corner_part *legend = &parts[LEGEND];
+  if (ground->is_told && legend->is_placed && legend->left_out > 0 && legend->asked == HL_CORNER_FREE)
+    hl_log(
+        ground->context, HL_LOG_INFO,
+        "%sthe legend has no room for %zu rows: --place legend=below shows all in a strip below the picture",
+        panel, legend->left_out);
 }
 
 /* Draws all parts at the places that are found. lines: [annotation_count]; the texts of annotations. */
