@@ -177,6 +177,15 @@ HL_API HL_WARN_UNUSED hl_status hl_transfer_function_spread_over(hl_context *con
                                                                  const double range[2], hl_range_scale scale,
                                                                  hl_spread_use use, hl_transfer_function *to,
                                                                  hl_error *error);
+/* Makes the function *to, whose colours fit the background of a maximum projection: from the least value of
+ * `from` up to the value from which the automatic function shows objects, the colours fade into the
+ * background. The first colour would else surround the objects as a box or ring of noise. Where the least
+ * value belongs to an object, or the function ends before objects begin, *to is a copy. background: linear
+ * RGB. The caller owns the points of *to. */
+HL_API HL_WARN_UNUSED hl_status hl_transfer_function_fade(hl_context *context, const hl_volume *volume,
+                                                          const double background[3],
+                                                          const hl_transfer_function *from,
+                                                          hl_transfer_function *to, hl_error *error);
 /* Replaces the colours as hl_transfer_function_colormap() does, but spreads the colormap over the values from
  * range[0] to range[1] evenly or by their logarithms. */
 HL_API HL_WARN_UNUSED hl_status hl_transfer_function_colormap_scaled(hl_context *context, const char *name,

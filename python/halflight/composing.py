@@ -6,7 +6,7 @@ from typing import Any
 
 import numpy
 
-from . import _settings, colors, cuts
+from . import _settings, colors, cuts, transfer
 from . import marks as scene_marks
 from ._library import call, composed, context, ffi, lib, made
 from ._words import check_keywords, choice
@@ -181,6 +181,17 @@ def _fitted_look(volumes: Sequence[Volume]) -> str | None:
     return next((look for look in ("mip", "xray") if looks == {look}), None)
 
 
+def _fade_into_background(struct: Any, volumes: Sequence[Volume], settings: Mapping[str, Any], keep: list[Any]) -> None:
+    """Fit the colormap of a single volume's maximum projection to a background of one colour."""
+    if len(volumes) != 1 or settings.get("slice") is not None or struct.background_transparent or struct.background_sky:
+        return
+    if isinstance(volumes[0]._changes.get("transfer_function"), transfer.MappedProjection):
+        background = list(struct.background) if settings.get("background") is not None else [0.0, 0.0, 0.0]
+        function = transfer.faded(volumes[0]._handle, background, struct.volumes[0].transfer_function)
+        struct.volumes[0].transfer_function = function[0]
+        keep.append(function)
+
+
 def _flags(volumes: Sequence[Volume], settings: Mapping[str, Any]) -> int:
     """What the library is told of a scene whose camera and light were chosen for its first volume."""
     flags: int = lib.HL_COMPOSE_BARE
@@ -230,6 +241,8 @@ def build_scene(base: Any, volumes: Sequence[Volume], settings: Mapping[str, Any
     _settings.fill("", struct, lib.HL_SETTINGS_IMAGE, _settings.taken(rest, _IMAGE))
     _settings.fill("", struct, lib.HL_SETTINGS_SCENE, _settings.taken(rest, _TOP))
     _settings.fill("", struct.render, lib.HL_SETTINGS_RENDER, _settings.taken(rest, _RENDER))
+    if chosen:
+        _fade_into_background(struct, volumes, settings, keep)
     options = _options(settings, volumes, flags)
     if (camera := settings.get("camera")) is not None and "view" not in options and not isinstance(camera, Mapping):
         if "size" in options:

@@ -238,6 +238,17 @@ def seen_range(function: TransferFunction, volume: Any) -> tuple[float, float]:
     return float(seen[0]), float(seen[1])
 
 
+class MappedProjection(TransferFunction):
+    """The function of a maximum projection in the colours of a colormap. The picture fits them to its background."""
+
+    __slots__ = ()
+
+
+def faded(volume: Any, background: list[float], function: Any) -> Any:
+    """The hl_transfer_function whose colours fade into the background of a maximum projection."""
+    return _made(lib.hl_transfer_function_fade, volume, background, ffi.new("hl_transfer_function *", function))
+
+
 def recolored(function: TransferFunction, cmap: Any, clim: list[float] | None, log: bool, volume: Any, projected: bool) -> TransferFunction:
     """The function with the colours of `cmap` over `clim`, by default over the values that are seen. projected:
     whether the function is for a maximum projection, in which a single colour becomes a ramp that begins at black.

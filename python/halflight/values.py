@@ -90,4 +90,6 @@ def function_for(volume: Volume, projected: bool, *, cmap: Any = None, clim: Any
                                              function.gradient_opacity)
     if cmap is not None:
         function = transfer.recolored(function, cmap, range_wanted, log, volume._handle, projected)
+        if projected and tf is None:
+            function = transfer.MappedProjection(function.opacity, function.color, function.unit_distance, function.gradient_opacity)
     return function

@@ -7,8 +7,10 @@
 #include "compose/composer.h"
 #include "compose/slice.h"
 #include "core/context.h"
+#include "core/door.h"
 #include "elementary/elementary.h"
 #include "image/srgb.h"
+#include "scene/function/transfer_function.h"
 
 /* The linear value of middle grey. On a background brighter than this, a maximum projection ends in black,
  * and the matter of a film is black. */
@@ -114,21 +116,44 @@ void hl_make_film(hl_transfer_function *function) {
   function->unit_distance *= hl_log2(1 - MIDDLE_GREY) / hl_log2(MIDDLE_GREY);
 }
 
+/* Fades the colours of values below `begin` into the background. */
+static void fade_below(double begin, const double background[3], hl_transfer_function *function) {
+  const double low = function->color[0].value, high = function->color[function->color_count - 1].value;
+  if (begin >= high) return;
+  for (size_t n = 0; n < function->color_count && function->color[n].value < begin; n++) {
+    hl_color_point *point = &((hl_color_point *)function->color)[n];
+    mix_encoded(background, point->color, (point->value - low) / (begin - low), point->color);
+  }
+}
+
+hl_status hl_transfer_function_fade(hl_context *context, const hl_volume *volume, const double background[3],
+                                    const hl_transfer_function *from, hl_transfer_function *to,
+                                    hl_error *error) {
+  HL_DOOR;
+  double seen[2];
+  hl_transfer_function objects = {0}, faded = {0};
+  if (context == NULL || volume == NULL || background == NULL || from == NULL || to == NULL)
+    return hl_fail(error, HL_ERROR_ARGUMENT, "hl_transfer_function_fade: null argument");
+  hl_status status = hl_transfer_function_automatic(context, volume, &objects, error);
+  if (status == HL_OK) status = hl_transfer_function_visible_range(volume, &objects, seen, error);
+  if (status == HL_OK) status = hl_transfer_function_copy(context, from, &faded, error);
+  hl_transfer_function_release(context, &objects);
+  if (status != HL_OK) return status;
+  if (faded.color_count > 1) fade_below(seen[0], background, &faded);
+  *to = faded;
+  return HL_OK;
+}
+
 hl_status hl_fade_projection(const hl_composer *composer, const hl_volume *volume,
                              hl_transfer_function *function) {
-  double background[3], seen[2];
-  hl_transfer_function objects = {0};
-  if (function->color_count < 2 || !find_background(composer, background)) return HL_OK;
-  hl_status status = hl_transfer_function_automatic(composer->context, volume, &objects, composer->error);
-  if (status == HL_OK) status = hl_transfer_function_visible_range(volume, &objects, seen, composer->error);
-  hl_transfer_function_release(composer->context, &objects);
+  double background[3];
+  hl_transfer_function faded = {0};
+  if (!find_background(composer, background)) return HL_OK;
+  hl_status status = hl_transfer_function_fade(composer->context, volume, background, function, &faded,
+                                               composer->error);
   if (status != HL_OK) return hl_blame_options(status);
-  const double low = function->color[0].value, high = function->color[function->color_count - 1].value;
-  if (seen[0] >= high) return HL_OK;
-  for (size_t n = 0; n < function->color_count && function->color[n].value < seen[0]; n++) {
-    hl_color_point *point = &((hl_color_point *)function->color)[n];
-    mix_encoded(background, point->color, (point->value - low) / (seen[0] - low), point->color);
-  }
+  hl_transfer_function_release(composer->context, function);
+  *function = faded;
   return HL_OK;
 }
 

@@ -34,10 +34,8 @@ bool hl_is_film(const struct hl_composer *composer, const hl_scene_description *
  * stays. */
 void hl_make_film(hl_transfer_function *function);
 
-/* Adapts a colormap in a bare volume's maximum projection to the background: values around the objects, from
- * the map's least value to the value from which the automatic function shows objects, fade into the
- * background. The map's first colour would else surround the objects as a box or ring of noise. A map whose
- * least value belongs to an object, or that ends before objects begin, stays as it is. */
+/* Fits a colormap in a bare volume's maximum projection to the background, if the background has one colour
+ * (hl_transfer_function_fade()). */
 hl_status hl_fade_projection(const struct hl_composer *composer, const hl_volume *volume,
                              hl_transfer_function *function);
 

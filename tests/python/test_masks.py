@@ -84,6 +84,7 @@ def test_a_maximum_projection_and_a_film_are_the_programs(program, tmp_path):
     path = str(tmp_path / "ball.npy")
     for words, asked in (([], {}), (["--background", "white"], {"background": "white"}), (["--view", "left"], {"camera": "left"}),
                          (["--colormap", "red", "--background", "navy"], {"cmap": "red", "background": "navy"}),
+                         (["--colormap", "inferno", "--background", "white"], {"cmap": "inferno", "background": "white"}),
                          (["--range", "0.2,0.6", "--colormap", "viridis"], {"clim": (0.2, 0.6), "cmap": "viridis"}),
                          (["--range", "0.2,0.6"], {"clim": (0.2, 0.6)})):
         subprocess.run([program, "render", path, "--look", "mip", *words, "--size", "48x32", "--quiet", "--no-metadata",
