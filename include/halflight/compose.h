@@ -99,6 +99,21 @@ HL_API HL_WARN_UNUSED hl_status hl_labels_show(hl_context *context, const char *
  * colours are ivory, blue, ochre, green, rose and violet, and then the same again. */
 HL_API void hl_surface_color(size_t index, double color[3]);
 
+/* The default size of a floor (hl_scene_make_floor()). */
+#define HL_FLOOR_SIZE 3.0
+
+/* Fills a mesh of a scene with the defaults of a floor: matt and grey, and left whole by the scene's cuts. */
+HL_API void hl_scene_floor_defaults(hl_scene_mesh *floor);
+
+/* Makes the triangles of a floor: a square, perpendicular to `up`, that touches everything visible from
+ * below. up: null means the camera's up. size: the length of the floor's sides divided by the width of
+ * everything that stands on the floor, from 1 to 1000. *mesh is owned by the caller, who adds it to the
+ * description's meshes and releases it. */
+HL_API HL_WARN_UNUSED hl_status hl_scene_make_floor(hl_context *context,
+                                                    const hl_scene_description *description,
+                                                    const double up[3], double size, hl_mesh **mesh,
+                                                    hl_error *error);
+
 #ifdef __cplusplus
 }
 #endif

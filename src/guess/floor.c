@@ -1,6 +1,8 @@
 /* guess/floor.c - makes a floor below everything that a scene shows. */
 #include <math.h>
 
+#include <halflight/compose.h>
+
 #include "core/door.h"
 #include "core/error.h"
 #include "guess/outline.h"

@@ -1,6 +1,8 @@
 /* json/meshes.c - reads the meshes of a scene from JSON. */
 #include <string.h>
 
+#include <halflight/compose.h>
+
 #include "core/file.h"
 #include "core/memory.h"
 #include "json/parts.h"

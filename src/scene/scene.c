@@ -6,6 +6,8 @@
 
 #include <string.h>
 
+#include <halflight/compose.h>
+
 #include "core/door.h"
 #include "core/key.h"
 #include "core/memory.h"

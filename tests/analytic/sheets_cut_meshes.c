@@ -4,6 +4,8 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include <halflight/compose.h>
+
 #include "../asserts.h"
 #include "mesh_stage.h"
 

@@ -7,6 +7,8 @@
 
 #include <cmocka.h>
 
+#include <halflight/compose.h>
+
 #include "mesh/mesh.h"
 #include "scene/scene.h"
 
