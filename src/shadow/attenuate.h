@@ -89,9 +89,9 @@ typedef struct attenuate_job {
  * less and less of the face (render/slab_lanes.h).
  *
  * Where two faces of a cut meet in an inner corner, light that comes through matter to the corner lights
- * neither of them as light at an outside: k = k' = 0 within FACE_VOXELS of the corner, on the way to it.
- * Otherwise pixels whose light passes below the corner would keep Y, and the face in shade would be read from
- * them, too. */
+ * neither of them as light at an outside: k = k' = 0 within FACE_VOXELS of the corner, on the way to it,
+ * where T < DARK. Otherwise pixels whose light passes below the corner would keep Y, and the face in shade
+ * would be read from them, too. */
 
 /* Marks of surfaces in the dark. A surface in the dark absorbs no light. But a method that blurs absorbed
  * light needs to know where the surface is, because blurs move light from beside the shadow to the surface,

@@ -130,11 +130,15 @@ LANES_INLINE kept_light kept_by_face(const attenuate_volume *volume, kept_light 
 }
 
 /* Finds the fractions k and k' of attenuate.h near an inner corner of a cut. Light that goes through matter
- * to one of the corner's faces has left the surface through which it came in. It does not light the corner's
- * other face as light at an outside: k = k' = 0. corner: the block's first pixel. */
-LANES_INLINE kept_light kept_by_inner_corner(const attenuate_volume *volume, kept_light kept,
-                                             const int corner[2]) {
-  lanes_int ends = nears_inner_corner(volume->faces, volume->slab, block_u(corner[0]), block_v(corner[1]));
+ * to one of the corner's faces has left the surface through which it came in, once the matter has absorbed
+ * nearly all of it. It does not light the corner's other face as light at an outside: k = k' = 0. corner: the
+ * block's first pixel. at: its offset. */
+LANES_INLINE kept_light kept_by_inner_corner(const attenuate_job *job, const attenuate_volume *volume,
+                                             kept_light kept, const int corner[2], size_t at) {
+  lanes_int dark = lanes_load_block(job->transmittance[0] + at, job->stride) < DARK;
+  if (lanes_bits(dark) == 0) return kept;
+  lanes_int ends = dark &
+                   nears_inner_corner(volume->faces, volume->slab, block_u(corner[0]), block_v(corner[1]));
   return (kept_light){lanes_keep(~ends, kept.before), lanes_keep(~ends, kept.within)};
 }
 
@@ -254,7 +258,7 @@ LANES_INLINE attenuated_block attenuate_block(const attenuate_job *job, int volu
       own = kept_by_values(job, volume, a, b, &to, span, path, extinction, (size_t)y * job->stride + x);
       if (volume->faces != NULL) own = kept_by_face(volume, own, b, corner);
       if (volume->faces != NULL && has_inner_corners(volume->faces))
-        own = kept_by_inner_corner(volume, own, corner);
+        own = kept_by_inner_corner(job, volume, own, corner, (size_t)y * job->stride + x);
       own = kept_in_span(volume, own, block, job->height);
     }
     own.before = lanes_keep(extinction > 0.0f, own.before);

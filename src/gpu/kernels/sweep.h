@@ -413,8 +413,8 @@ DEVICE int attenuate_slab(const sweep_data *sweep, GLOBAL const plan_light *ligh
                          : 0.0f;
   kept_light kept = kept_in_slab(&sweep->volume, a, b, &sums, part.length * path, extinction * path, skin,
                                  pixel->passing[0], pixel->passing[CHANNELS]);
-  if (ends ||
-      (CUTS && volume->faces_take && nears_inner_corner(&sweep->volume, light, in_index - 1, ray->u, ray->v)))
+  if (ends || (CUTS && volume->faces_take && pixel->passing[0] < DARK &&
+               nears_inner_corner(&sweep->volume, light, in_index - 1, ray->u, ray->v)))
     kept.before = kept.within = 0.0f;
 #endif
   for (int c = 0; c < CHANNELS; c++) {
