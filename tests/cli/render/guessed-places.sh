@@ -36,6 +36,6 @@ done
 halflight render ball_16x16x16_uint8.raw --iso 30,90 --print-scene 2>&1 >no.json | grep -c "hides the others"
 halflight render ball_16x16x16_uint8.raw --iso 30::0.3 --iso 90 --print-scene 2>&1 >no.json | grep -c "hides the others" || true
 # Texts without a place stand at the upper left, below one another.
-halflight render ball_16x16x16_uint8.raw --size 64 --annotate One --annotate Two --quiet -o free.png
-halflight render ball_16x16x16_uint8.raw --size 64 --annotate One@0.03,0.05 --annotate Two@0.03,0.1 --quiet -o placed.png
+halflight render ball_16x16x16_uint8.raw --size 400 --annotate One --annotate Two --quiet -o free.png
+halflight render ball_16x16x16_uint8.raw --size 400 --annotate One@0.03,0.05 --annotate Two@0.03,0.1 --quiet -o placed.png
 cmp free.png placed.png
