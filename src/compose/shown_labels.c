@@ -102,10 +102,10 @@ static void show_label(hl_shown_label *shown, double opacity, bool exactly, hl_l
 
 /* The opacity of each of `count` bodies that the list shows together by the item "all". opacity: the item's
  * opacity, which is the opacity of all bodies together along a typical path. Derived: of n equal bodies that
- * fill a space, a path meets as a rule the cube root of n. The fractions of light that these bodies let pass
- * are multiplied. */
+ * fill a space, a path meets as a rule the cube root of n. It crosses the skin of each of them twice. The
+ * fractions of light that these skins let pass are multiplied. */
 static double opacity_of_each(double opacity, size_t count) {
-  return opacity < 1 && count > 1 ? -hl_expm1(hl_log1p(-opacity) / hl_cbrt((double)count)) : opacity;
+  return opacity < 1 ? -hl_expm1(hl_log1p(-opacity) / (2 * hl_cbrt((double)count))) : opacity;
 }
 
 /* Returns whether the item "all" or "rest" shows labels that are no objects to look up in a legend: they are
