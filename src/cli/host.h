@@ -40,7 +40,7 @@ typedef struct cli_host {
     const hl_volume *coarse; /* borrowed; null if all of a volume is read */
     double planes[4][4];
     int level, time, channel; /* what is read in place of what the options leave open */
-  } seen;                     /* the values of hl_volume_load_options for a volume of which a part is seen */
+  } seen;                     /* for a volume that is read where it is seen (hl_volume_load_options) */
   cli_read_files read;        /* the files that the context has read */
   char *const *operands;      /* see cli_host_options */
   char subject[32];           /* the input's name beside the bar, cut to keep the line short */

@@ -3,8 +3,8 @@
  * joins the scene, and is not visible. ARRAY alone is an array of a volume's own file.
  *
  * The value is read from its end. A last part of two numbers is the range, and then a last part that is the
- * name of a colormap is the map. The rest is a file if there is one of this name. Else it is a file and one
- * of its arrays, or an array of a volume of the scene. */
+ * name of a colormap is the map. What is left is the name of a file, if a file has this name. Otherwise
+ * it is a file and one of its arrays, or an array of a volume of the scene. */
 #include <math.h>
 #include <stdio.h>
 #include <string.h>

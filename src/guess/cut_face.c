@@ -3,8 +3,6 @@
 
 #include "scene/geometry/placement.h"
 
-static double component(vec3 v, int axis) { return axis == 0 ? v.x : axis == 1 ? v.y : v.z; }
-
 /* The direction away from the inside of a shape, at a point near its face. For a box it is the direction of
  * the axis along which the point lies farthest outwards. */
 static vec3 out_of_shape(const cut_shape *cut, vec3 point) {
@@ -14,8 +12,8 @@ static vec3 out_of_shape(const cut_shape *cut, vec3 point) {
   if (cut->type == HL_CUT_PLANE) return vec3_scale(to_shape->row[0], -1);
   if (cut->type == HL_CUT_SPHERE) return mat3_apply(mat3_transpose(*to_shape), q);
   for (int a = 1; a < 3; a++)
-    if (fabs(component(q, a)) > fabs(component(q, axis))) axis = a;
-  return vec3_scale(to_shape->row[axis], component(q, axis) < 0 ? -1 : 1);
+    if (fabs(vec3_component(q, a)) > fabs(vec3_component(q, axis))) axis = a;
+  return vec3_scale(to_shape->row[axis], vec3_component(q, axis) < 0 ? -1 : 1);
 }
 
 bool hl_cut_face_between(const hl_scene_volume *volume, const cut_shape *cuts, vec3 before, vec3 here,
@@ -28,7 +26,7 @@ bool hl_cut_face_between(const hl_scene_volume *volume, const cut_shape *cuts, v
   }
   hl_scene_volume_box(volume, low, high);
   for (int a = 0; a < 3; a++) {
-    const bool under = component(before, a)<low[a], over = component(before, a)> high[a];
+    const bool under = vec3_component(before, a)<low[a], over = vec3_component(before, a)> high[a];
     if (!under && !over) continue;
     *outward = (vec3){a == 0, a == 1, a == 2};
     if (under) *outward = vec3_scale(*outward, -1);

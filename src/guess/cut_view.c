@@ -37,7 +37,7 @@ static bool crosses_grid(const face_normals *faces, const affine3 *to_shape, int
     const vec3 at = {corner & 1 ? faces->high[0] : faces->low[0], corner & 2 ? faces->high[1] : faces->low[1],
                      corner & 4 ? faces->high[2] : faces->low[2]};
     const vec3 q = affine3_apply(*to_shape, at);
-    const double place = axis == 0 ? q.x : axis == 1 ? q.y : q.z;
+    const double place = vec3_component(q, axis);
     below |= place < value;
     above |= place > value;
   }

@@ -16,8 +16,6 @@ static affine3 world_of(const reference_volume *volume, const hl_cut *cut) {
   return cut->world ? volume->index_to_world : volume->grid->index_to_world;
 }
 
-static double part_of(vec3 v, int axis) { return axis == 0 ? v.x : axis == 1 ? v.y : v.z; }
-
 static height height_over(const hl_cut *cut, vec3 p) {
   if (cut->type == HL_CUT_PLANE) {
     vec3 normal = vec3_normalise(vec3_of(cut->normal));
@@ -31,7 +29,7 @@ static height height_over(const hl_cut *cut, vec3 p) {
   height highest = {-INFINITY, {0, 0, 0}};
   for (int a = 0; a < 3; a++)
     for (int side = -1; side <= 1; side += 2) {
-      double over = side < 0 ? cut->min[a] - part_of(p, a) : part_of(p, a) - cut->max[a];
+      double over = side < 0 ? cut->min[a] - vec3_component(p, a) : vec3_component(p, a) - cut->max[a];
       vec3 rise = {a == 0 ? side : 0, a == 1 ? side : 0, a == 2 ? side : 0};
       if (over > highest.over) highest = (height){over, rise};
     }
@@ -78,8 +76,9 @@ static double next_of_cut(const hl_cut *cut, vec3 o, vec3 d, double after) {
     return sooner((-b - root) / a, after, sooner((root - b) / a, after, next));
   }
   for (int a = 0; a < 3; a++)
-    for (int side = 0; side < 2 && part_of(d, a) != 0; side++)
-      next = sooner(((side ? cut->max[a] : cut->min[a]) - part_of(o, a)) / part_of(d, a), after, next);
+    for (int side = 0; side < 2 && vec3_component(d, a) != 0; side++)
+      next = sooner(((side ? cut->max[a] : cut->min[a]) - vec3_component(o, a)) / vec3_component(d, a), after,
+                    next);
   return next;
 }
 

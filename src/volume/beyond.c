@@ -6,8 +6,6 @@
 
 #include "volume/convert.h"
 
-static double component(vec3 v, int axis) { return axis == 0 ? v.x : axis == 1 ? v.y : v.z; }
-
 /* Finds where the grid's indices lie in the coarser volume. Returns false if the axes of the two grids are
  * not parallel. */
 static bool find_places(const hl_volume_description *grid, hl_beyond *beyond) {
@@ -16,9 +14,9 @@ static bool find_places(const hl_volume_description *grid, hl_beyond *beyond) {
   const vec3 first = affine3_apply(inverse, vec3_of(grid->origin));
   for (int a = 0; a < 3; a++) {
     const vec3 step = mat3_apply(inverse.linear, vec3_of(grid->axis[a]));
-    beyond->first[a] = component(first, a);
-    beyond->step[a] = component(step, a);
-    const double aside = fabs(component(step, (a + 1) % 3)) + fabs(component(step, (a + 2) % 3));
+    beyond->first[a] = vec3_component(first, a);
+    beyond->step[a] = vec3_component(step, a);
+    const double aside = fabs(vec3_component(step, (a + 1) % 3)) + fabs(vec3_component(step, (a + 2) % 3));
     if (!(beyond->step[a] > 0) || !(aside < 1e-9 * beyond->step[a]) || !isfinite(beyond->first[a]))
       return false;
   }
