@@ -20,10 +20,10 @@
 
 typedef struct choices {
   int size;         /* pixels a side */
-  double spacing;   /* of the sheets, voxels */
+  double spacing;   /* the distance of the sheets, in voxels */
   const char *only; /* null: all */
   int soft;
-  int light_points;   /* of the reference, for soft shadows */
+  int light_points;   /* the number of points of each light in the reference's pictures of soft shadows */
   const char *folder; /* null: keep nothing */
 } choices;
 
@@ -103,8 +103,8 @@ static int compare_one(stage *set, const scenario *scene, const shadow_setting *
   return !barred || difference.rmse <= bar;
 }
 
-/* Every setting of one scene; the reference is rendered again only where its picture changes. Returns how
- * many pictures are too far off. */
+/* Compares every setting of one scene. The reference's picture is rendered again only if a setting changes
+ * it. Returns the number of pictures that differ by more than their bars. */
 static int compare_all(const scenario *scene, const choices *chosen) {
   stage set;
   int failures = 0;

@@ -20,12 +20,12 @@ static double balls(double x, double y, double z) {
   double a = ball(x, y, z, -0.35, -0.3, -0.25, 0.5), b = ball(x, y, z, 0.4, 0.35, 0.1, 0.45);
   return fmax(fmax(a, b), ball(x, y, z, 0.1, -0.35, 0.55, 0.35));
 }
-/* A slab about three voxels thick in 28, and a ball below it. */
+/* A slab, about three of 28 voxels thick, and a ball below it. */
 static double plate(double x, double y, double z) {
   double inside = fabs(x) < 0.6 && fabs(y) < 0.5 ? fmax(0, 1 - fabs(z - 0.5) / 0.15) : 0;
   return fmax(inside, ball(x, y, z, 0, 0, -0.4, 0.5));
 }
-/* A wall with a slit on a floor, as sharp as the grid. */
+/* A wall with a slit stands on a floor. The edges are as sharp as the grid allows. */
 static double wall(double x, double y, double z) {
   if (fabs(x) > 0.9 || fabs(y) > 0.9 || z < -0.9) return 0;
   if (z < -0.65) return 1;
@@ -51,7 +51,8 @@ static const hl_color_point WARM[] = {{0, {0.2, 0.3, 0.9}}, {0.5, {0.9, 0.4, 0.2
   ((volume)->transfer_function.opacity = (points), \
    (volume)->transfer_function.opacity_count = sizeof(points) / sizeof *(points))
 
-/* An N^3-like grid of the field around the origin; the box is `edge` long along x. */
+/* Gives the scene a grid of about N^3 voxels with a field around the origin. edge: the length of the box
+ * along x. */
 static hl_scene_volume *add_field(stage *set, field_function *field, const size_t n[3],
                                   const double spacing[3]) {
   float *voxels = malloc(n[0] * n[1] * n[2] * sizeof *voxels), *out = voxels;
@@ -124,7 +125,7 @@ static void make_balls_interpolating(stage *set) {
   set->type = HL_VOXEL_U8;
   set->scene.render.kernel = HL_KERNEL_INTERPOLATING;
 }
-/* Opacity where the balls' density rises, none in their middles. */
+/* The opacity is high where the balls' density rises, and 0 in their middles. */
 static const hl_opacity_point STEEP[] = {{0.02, 0}, {0.08, 1}};
 static void make_gradient(stage *set) {
   make_balls(set);
@@ -141,7 +142,8 @@ static void make_gradient_backlit(stage *set) {
   make_gradient(set);
   memcpy(set->lights[0].direction, (double[3]){-0.5, 1, -0.4}, sizeof set->lights[0].direction);
 }
-/* Boxes for the balls' skins and their middles, by the gradient; a cone over both. */
+/* The transfer function has boxes of value and gradient for the skins and the middles of the balls, and a
+ * cone over both. */
 static const hl_function_box SKINS[] = {
     {.low = {0.05, 0.04}, .high = {1, 0.2}, .color = {0.9, 0.5, 0.2}, .opacity = 0.5, .edge = {0.1, 0.04}},
     {.low = {0.5, 0}, .high = {1, 0.07}, .color = {0.2, 0.4, 0.9}, .opacity = 0.2, .edge = {0.2, 0.03}}};
@@ -166,7 +168,7 @@ static void make_plane_medium(stage *set) {
   set->volumes[0].transfer_function.plane.polygons = &CONE;
   set->volumes[0].transfer_function.plane.polygon_count = 1;
 }
-/* The balls, where smoke of another grid is dense; solid where it is thin. */
+/* Draws the balls. The smoke of another grid is solid where the balls are thin. */
 static void make_plane_volume(stage *set) {
   static const hl_function_box boxes[] = {
       {.low = {0.1, 0.2}, .high = {1, 1}, .color = {0.9, 0.5, 0.2}, .opacity = 0.6, .edge = {0.2, 0.15}},
@@ -235,10 +237,10 @@ static void make_smoke(stage *set) { make_smoke_lit(set, (vec3){-0.5, 0.3, -1});
 static void make_smoke_backlit(stage *set) { make_smoke_lit(set, (vec3){46, -60, 40}); }
 static void make_smoke_silhouette(stage *set) {
   make_smoke_lit(set, (vec3){46, -70, 52});
-} /* e opposite to l */
+} /* the eye's direction is opposite to the light's */
 static void make_smoke_headlight(stage *set) {
   make_smoke_lit(set, (vec3){-46, 70, -52});
-} /* e parallel to l */
+} /* the eye's direction is parallel to the light's */
 static void make_smoke_across(stage *set) { make_smoke_lit(set, (vec3){70, 46, 0}); } /* e.l = 0 */
 static void make_oblique(stage *set) {
   hl_scene_volume *volume = add_field(set, balls, (size_t[3]){26, 22, 12}, (double[3]){1, 1.2, 2.2});
@@ -266,7 +268,8 @@ static void make_two_volumes(stage *set) {
   look_from_corner(set);
   stage_add_directional(set, (vec3){-0.5, 0.3, -1});
 }
-/* The box's faces cut through matter: they must be where they are, at full strength. */
+/* The faces of the box cut through dense matter. The picture must show them in their places and at full
+ * strength. */
 static void make_clipped(stage *set) {
   hl_scene_volume *volume = add_cube(set, full, 24);
   OPACITY(volume, THIN);
@@ -304,7 +307,7 @@ static void make_hidden_occluder(stage *set) {
   screen->visible = 0;
 }
 
-/* A grid one voxel thick: nothing but borders along one axis. */
+/* A grid that is one voxel thick: along one axis, each of its voxels lies at the border. */
 static void make_single_layer(stage *set) {
   hl_scene_volume *volume = add_field(set, balls, (size_t[3]){28, 28, 1}, (double[3]){1, 1, 2});
   volume->shading = HL_SHADING_NONE;
@@ -312,7 +315,8 @@ static void make_single_layer(stage *set) {
   look_from_corner(set);
   stage_add_directional(set, (vec3){-0.5, 0.3, -1});
 }
-/* No value is transparent; holes where voxels are not finite. Values far from 0 test the float arithmetic. */
+/* No value is transparent, and voxels that are not finite make holes. Values far from 0 test the precision of
+ * floats. */
 static double holes(double x, double y, double z) {
   return x * x + y * y < 0.2 ? (double)NAN : 1000 + 0.3 * (double)stage_noise(3 * x, 3 * y, 3 * z);
 }
@@ -336,7 +340,8 @@ static void make_wide_angle(stage *set) {
   stage_look(set, (vec3){9, -14, 9}, (vec3){0, 0, 0}, (vec3){0, 0, 1});
   perspective(set, 110);
 }
-static void make_lamp_near(stage *set) { /* outside, its widest rays nearly along the box's face */
+static void make_lamp_near(stage *set) {
+  /* The lamp stands outside of the box. The outermost of its rays run nearly along the box's face. */
   make_smoke(set);
   set->scene.light_count = 0;
   stage_add_point(set, (vec3){3, -2, 17});
@@ -365,7 +370,8 @@ static void make_eye_within_parallel(stage *set) {
 
 /* ---- textured lights ---- */
 
-/* Bright and dark, every colour; smooth enough that a reference without prefilter does not alias. */
+/* A pattern with bright and dark places in every colour. It is so smooth that a reference without
+ * prefiltering does not alias. */
 static const float *slide(void) {
   static float pixels[12 * 9 * 3];
   for (int y = 0; y < 9; y++)
@@ -375,19 +381,21 @@ static const float *slide(void) {
                                        (float)((x + y) % 3 != 0);
   return pixels;
 }
-static void make_slide(stage *set) { /* parallel light, screen aslant */
+static void make_slide(stage *set) { /* The light is parallel, and the screen is slanted. */
   make_balls(set);
   set->volumes[0].shading = HL_SHADING_NONE;
   stage_set_texture(&set->lights[0], 12, 9, slide(), (vec3){12, -9, 30}, (vec3){14, 3, 4},
                     (vec3){-4, 15, -2});
 }
-static void make_projector(stage *set) { /* a point light through a skewed screen at its side of the volume */
+static void make_projector(stage *set) {
+  /* A point light shines through a slanted screen at its own side of the volume. */
   make_balls_medium(set);
   set->scene.light_count = 0;
   stage_set_texture(stage_add_point(set, (vec3){17, -8, 32}), 12, 9, slide(), (vec3){10, -6, 20},
                     (vec3){6, 2, 0}, (vec3){-2, 4, 2});
 }
-static void make_projector_behind(stage *set) { /* the screen on the far side; inverse square */
+static void make_projector_behind(stage *set) {
+  /* The screen is on the far side of the volume, and the light falls with the square of the distance. */
   make_projector(set);
   set->lights[0].falloff = HL_FALLOFF_INVERSE_SQUARE;
   set->lights[0].intensity = 1000;
@@ -402,7 +410,8 @@ static void make_slide_soft(stage *set) {
   make_slide(set);
   set->lights[0].angular_diameter_deg = 16;
 }
-static void make_window_in_haze(stage *set) { /* beams towards the eye through a smoke, one part unshadowed */
+static void make_window_in_haze(stage *set) {
+  /* Beams shine towards the eye through smoke; one part of the smoke receives no shadows. */
   make_smoke_backlit(set);
   set->volumes[0].attenuation_color[0] = set->volumes[0].attenuation_color[1] = 1;
   set->volumes[0].receives_shadow = 0;
@@ -415,12 +424,15 @@ static void make_spot(stage *set) {
   set->scene.light_count = 0;
   stage_add_spot(set, (vec3){17, -8, 32}, (vec3){-16, 5, -30}, 32, 9)->radius = 3;
 }
-static void make_spot_inside(stage *set) { /* within the smoke: sectors share one cone */
+static void make_spot_inside(stage *set) {
+  /* The lamp is within the smoke, so that its sectors share one cone. */
   make_smoke(set);
   set->scene.light_count = 0;
   stage_add_spot(set, (vec3){3, -2, 3.5}, (vec3){-0.6, 0.9, -0.5}, 70, 20);
 }
-static void make_spot_in_smoke(stage *set) { /* a sharp cone across the view; with a slide in it */
+static void make_spot_in_smoke(stage *set) {
+  /* The cone of a lamp crosses the view, and its edge is sharp. In the second scene the lamp projects an
+   * image. */
   make_smoke(set);
   set->scene.light_count = 0;
   hl_light *light = stage_add_spot(set, (vec3){-30, -16, 12}, (vec3){30, 17, -12}, 24, 0);
@@ -471,10 +483,10 @@ static void make_cut_none(stage *set) {
   set->volumes[0].cut_shading = HL_CUT_SHADING_NONE;
 }
 
-/* Bars below 0.006 and soft bars are about 1.3 times the error when they were set. A step of opacity on a
- * wall lit at a grazing angle wants shadow pixels well below a voxel (half a voxel is what there is); the
- * borders of holes lie half way between empty and the least value in the reference, nearer to the least in
- * the sheets. */
+/* Bars below 0.006, and the bars of soft shadows, are about 1.3 times the error at the time when they were
+ * set. Two scenes have larger errors: a step of opacity on a wall that light grazes would need shadow pixels
+ * well below a voxel, and half a voxel is the least; and the borders of holes lie half way between the empty
+ * and the least value in the reference, but nearer to the least value in the sheets. */
 static const scenario SCENARIOS[] = {
     {"balls", make_balls, 0.006, {0}},
     {"balls-medium", make_balls_medium, 0.006, {0}},

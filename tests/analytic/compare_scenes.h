@@ -7,9 +7,10 @@
 typedef struct scenario {
   const char *name;
   void (*make)(stage *set);
-  double bar;          /* RMSE at sheet spacing 0.5 and 64 pixels or more; 0: none yet */
-  double soft_bars[3]; /* likewise of cascade, paper and sub-lights, the reference's lights of 16 points or
-                          more; 0: none */
+  double bar; /* RMSE at sheet spacing 0.5 and 64 pixels or more; 0: none yet */
+  /* the same bars for the cascade, the paper's method and sub-lights, beside a reference with at least 16
+   * points for each light; 0: none */
+  double soft_bars[3];
 } scenario;
 
 const scenario *compare_scenarios(size_t *count);

@@ -1,8 +1,6 @@
-/* analytic/even_light.c - where nothing casts a shadow light draws nothing: floors and balls alone are as
- * smooth as their light.
- *
- * What an eye sees first are lines. A line is what differs from its surroundings: each pixel is held against
- * the mean of the square of pixels around it, whose own bend is far below the bars. */
+/* analytic/even_light.c - light on a floor or a ball that nothing shades is smooth. An eye sees lines first.
+ * So each pixel is compared with the mean of the square of pixels around it, and the difference must be
+ * small. The light's own bend within such a square is far below the bars. */
 #include <math.h>
 #include <setjmp.h>
 #include <stdarg.h>
@@ -18,7 +16,7 @@ enum { SIDE = 200, REACH = 4, INSIDE = 10 };
 
 static float pixels[SIDE * SIDE * 4];
 
-/* A floor that fills the middle of the picture, or a ball. */
+/* The scene of a floor that fills the middle of the picture, or of a ball. */
 #define FLOOR "{\"shapes\": [{\"type\": \"box\", \"size\": [420, 420, 12]}], \"voxel_size\": 2, " MATERIAL "}"
 #define BALL  "{\"shapes\": [{\"type\": \"sphere\", \"radius\": 45}], \"voxel_size\": 1, " MATERIAL "}"
 #define MATERIAL                                                                                   \
@@ -46,7 +44,7 @@ static void render(const char *volume, const char *light, const char *camera, co
   hl_context_destroy(context);
 }
 
-/* All of the square of pixels around a pixel is opaque. */
+/* Returns whether all pixels of the square around a pixel are opaque. */
 static int is_inside(int x, int y) {
   for (int v = y - INSIDE; v <= y + INSIDE; v += INSIDE)
     for (int u = x - INSIDE; u <= x + INSIDE; u += INSIDE)
@@ -66,8 +64,8 @@ static int greater_first(const void *a, const void *b) {
   return (x < y) - (x > y);
 }
 
-/* How far a pixel differs from its surroundings, in parts of the brightest surroundings' half or of its own,
- * whichever is more: one in a thousand differs by more. */
+/* The difference that one pixel in a thousand exceeds: between a pixel and the mean of its surroundings,
+ * divided by the pixel's brightness or by half of the brightest surroundings, whichever is greater. */
 static double ripple(void) {
   static double differences[SIDE * SIDE], means[SIDE * SIDE];
   size_t count = 0;
@@ -93,16 +91,16 @@ static void assert_even(const char *what, double bar) {
     fail_msg("%s: one pixel in a thousand differs by more than %.4f of its surroundings", what, greatest);
 }
 
-/* Settings, name, the bars for floors far and near and for balls, and steps from one direction to the
- * next. */
+/* A setting of shadows: its name, the bars for floors in far and near light and for balls, and the number of
+ * directions to skip after each one that is tried. */
 static const char *hard[] = {"\"shadows\": \"hard\"", "hard", "0.001", "0.003", "0.007", "1"};
 static const char *cascade[] = {"\"soft_method\": \"cascade\"", "cascade", "0.005", "0.005", "0.0095", "1"};
 
 static const char *const CAMERA =
     "\"position\": [300, -420, 500], \"target\": [0, 0, 0], \"up\": [0, 0, 1], \"fovy_deg\": 22";
 
-/* Thirty directions of light, or some of them, 25 to 85 degrees above the floor, the whole light at least
- * 10. */
+/* Thirty directions of light, of which a setting may skip some. The whole light is at least 10 degrees above
+ * the floor, and its middle 25 to 85 degrees. */
 static void test_floors_under_directional_light(void **state) {
   const char *const *method = *state;
   for (int i = 0; i < 30; i += atoi(method[5])) {
@@ -138,8 +136,8 @@ static void test_floors_under_near_lights(void **state) {
   }
 }
 
-/* How far a box on a floor under a soft light is from 8 x 8 sub-lights: root mean square, in parts of the
- * brightest pixel. */
+/* The root mean square difference between a box on a floor under a soft light and the same scene under 8 x 8
+ * sub-lights, as a fraction of the brightest pixel. */
 static double box_error(const char *light) {
   static const char volume[] =
       "{\"shapes\": [{\"type\": \"box\", \"size\": [420, 420, 12]}, {\"type\": \"box\", \"size\": [60, 60, "
@@ -158,8 +156,8 @@ static double box_error(const char *light) {
   return sqrt(squares / (SIDE * SIDE)) / brightest;
 }
 
-/* Penumbrae of near lights are where those of sub-lights are, and next to nothing is left in umbrae: of a
- * wide light that one sweep serves, and of a nearer one that is cut into sectors. */
+/* The penumbrae of near lights lie where sub-lights have them, and umbrae are nearly black. One light is
+ * wide, and one sweep serves it; the other one is nearer, and is cut into sectors. */
 static void test_box_under_near_lights(void **state) {
   (void)state;
   double wide = box_error(
@@ -170,8 +168,8 @@ static void test_box_under_near_lights(void **state) {
   assert_true(in_sectors < 0.009);
 }
 
-/* A light that comes nearer by small steps changes the picture by small steps, also where the half-way
- * vector's sheets cease to serve all of its rays (at 228.197 above the floor). */
+/* If a light comes nearer by small steps, the picture changes by small steps. At 228.197 above the floor, the
+ * sheets of the half-way vector cease to serve all of the light's rays; the picture must not jump there. */
 static void test_near_light_moves_evenly(void **state) {
   static float before[SIDE * SIDE * 4];
   double change[3] = {0, 0, 0};
@@ -203,7 +201,7 @@ static void assert_even_ball(const char *const *method, double size, double spac
   assert_even(what, bar);
 }
 
-/* Rings on a ball. */
+/* Light on a ball has no rings. */
 static void test_balls(void **state) {
   static const double sizes[] = {5, 20, 40};
   const char *const *method = *state;
@@ -211,7 +209,7 @@ static void test_balls(void **state) {
     assert_even_ball(method, sizes[i / 2], i % 2 ? 1.0 : 0.5, atof(method[4]));
 }
 
-/* Of light from half of the sky the cascade makes rings, but faint ones. */
+/* Under light from half of the sky, the cascade's rings are faint. */
 static void test_balls_under_wide_lights(void **state) {
   static const double sizes[] = {60, 90, 120};
   (void)state;

@@ -1,6 +1,6 @@
-/* analytic/example_lights.c - the example scenes of projected images and beams, against closed forms. Each is
- * read from examples/ with the volumes that the measurement is about, without ambient light, seen as the
- * measurement wants. */
+/* analytic/example_lights.c - the example scenes with projected images and beams, against closed forms. Each
+ * scene is read from examples/, keeps only the volumes that a measurement needs, and is seen without ambient
+ * light from where the measurement asks. */
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -16,7 +16,8 @@ enum { MOST_SIDE = 512 };
 
 typedef struct example {
   hl_context *context;
-  hl_scene_description scene; /* of loaded; its camera, size and lights may be changed */
+  /* the scene of `loaded`, of which the tests change the camera, the size and the lights */
+  hl_scene_description scene;
   hl_scene *loaded;
   hl_light lights[4];
   float pixels[MOST_SIDE * MOST_SIDE * 4];
@@ -24,7 +25,7 @@ typedef struct example {
 
 static example shared;
 
-/* The scene with only the named volumes (null-terminated). */
+/* Reads a scene and keeps only the named volumes. names: ends with a null pointer. */
 static example *open_example(const char *name, const char *const *keep) {
   char path[600];
   json_error_t fault;
@@ -59,7 +60,8 @@ static void close_example(example *open) {
   hl_context_destroy(open->context);
 }
 
-/* Seen along a direction without perspective: the target in the picture's middle, height world units high. */
+/* Sets an orthographic camera that looks along a direction. target: the point in the picture's middle.
+ * height: of the picture, in world units. */
 static void look_along(example *open, vec3 direction, vec3 target, double height) {
   hl_camera *camera = &open->scene.camera;
   vec3 eye = vec3_subtract(target, vec3_scale(vec3_normalise(direction), 900));
@@ -92,7 +94,7 @@ static vec3 camera_axes(const hl_camera *camera, vec3 *right, vec3 *up) {
   return forward;
 }
 
-/* Continuous pixel coordinates of a point: pixel i covers i to i + 1. */
+/* The continuous pixel coordinates of a point. Pixel i covers the range from i to i + 1. */
 static void project(const example *open, vec3 point, double uv[2]) {
   const hl_camera *camera = &open->scene.camera;
   vec3 right, up, forward = camera_axes(camera, &right, &up),
@@ -104,7 +106,7 @@ static void project(const example *open, vec3 point, double uv[2]) {
   uv[1] = open->scene.height / 2.0 - scale * vec3_dot(offset, up);
 }
 
-/* Bilinear between the middles of pixels. */
+/* The picture's brightness at continuous coordinates, interpolated linearly between the middles of pixels. */
 static double brightness(const example *open, double u, double v, int channel) {
   int x = (int)floor(u - 0.5), y = (int)floor(v - 0.5), width = open->scene.width;
   double fx = u - 0.5 - x, fy = v - 0.5 - y;
@@ -121,8 +123,8 @@ static double brightness_at(const example *open, vec3 point, int channel) {
 
 /* ---- beams through boxes (figs. 12 and 13) ---- */
 
-/* Between two points of a beam's axis, well inside the medium: without attenuation as bright, with it
- * exp(-sigma way). */
+/* Compares the brightness at two points of a beam's axis, well inside the medium. They are equal if the
+ * medium absorbs nothing; else the ratio is exp(-sigma way). */
 static void check_beam(example *open, vec3 entry, vec3 exit, int channel, double opacity) {
   double way = vec3_length(vec3_subtract(exit, entry)), sigma = -log(1 - opacity);
   for (int shadows = HL_SHADOWS_OFF; shadows <= HL_SHADOWS_HARD; shadows++) {
@@ -145,7 +147,8 @@ static void test_cube_beams(void **state) {
   for (int beam = 0; beam < 3; beam++) {
     example *open = open_example(beam == 0 ? "fig12-cube-beams-a.json" : "fig12-cube-beams-b.json", cube);
     look_along(open, (vec3){0, 1, 0}, (vec3){0, 0, 0}, 130);
-    /* the beams' middles are 36 apart; half of each way's 90 inside the cube of 100 */
+    /* The middles of the beams are 36 apart. Half of the 90 units of each beam's way lies inside the cube of
+     * 100. */
     vec3 middle = vec3_scale(across, 36.0 * (1 - beam));
     double half = 36;
     if (beam != 1) middle = vec3_add(middle, vec3_scale(light, beam == 0 ? 10 : -10)), half = 20;
@@ -160,7 +163,8 @@ static void test_slanted_parallelepiped(void **state) {
   static const char *const box[] = {"box", NULL};
   example *open = open_example("fig13-parallelepiped-b.json", box);
   look_along(open, (vec3){0, 1, 0}, (vec3){0, 0, 0}, 150);
-  double faces = 40 / cos(35 * HL_PI / 180); /* the beam enters and leaves there */
+  /* the distance from the beam's middle at which it enters and leaves the medium */
+  double faces = 40 / cos(35 * HL_PI / 180);
   for (int line = -1; line <= 1; line++) {
     double shift = 10 * line * tan(35 * HL_PI / 180);
     check_beam(open, (vec3){-faces + shift + 6, 0, 10.0 * line}, (vec3){faces + shift - 6, 0, 10.0 * line}, 0,
@@ -171,8 +175,8 @@ static void test_slanted_parallelepiped(void **state) {
 
 /* ---- the grid (fig. 11) ---- */
 
-/* On a plane through the data: walks where one family of lines is half way between two others and counts the
- * rest. */
+/* Walks on a plane through the data, half way between two lines of one family, and counts the lines of the
+ * other family. */
 static void test_grid_period(void **state) {
   (void)state;
   enum { STEPS = 4000 };
@@ -205,8 +209,8 @@ static void test_grid_period(void **state) {
   vec3 way = vec3_normalise(vec3_of(open->lights[0].direction)), normal = vec3_cross(right, up);
   for (int family = 0; family < 2; family++) {
     vec3 along = family == 0 ? right : up, other = family == 0 ? up : right;
-    /* the image's coordinate is linear on the plane z = 31.5 (the volume's upper face): its slope along x and
-     * y */
+    /* On the plane z = 31.5, the volume's upper face, the image's coordinate is a linear function of x and y;
+     * these are its slopes. */
     double slope[2], other_slope[2];
     for (int axis = 0; axis < 2; axis++) {
       vec3 step = {axis == 0, axis == 1, 0};
@@ -216,8 +220,8 @@ static void test_grid_period(void **state) {
     }
     vec3 walk = vec3_normalise((vec3){other_slope[1], -other_slope[0], 0});
     double period = 2.0 / 16 / fabs(walk.x * slope[0] + walk.y * slope[1]);
-    /* start between two lines of the other family: try starts over one of its periods, take the darkest
-     * walk */
+    /* The walk must start between two lines of the other family. Starts over one period of the lines are
+     * tried, and the darkest walk is taken. */
     vec3 side = {-walk.y, walk.x, 0};
     double best = INFINITY, found = 0;
     for (int start = 0; start < 24; start++) {
@@ -250,8 +254,8 @@ static void test_grid_period(void **state) {
 
 /* ---- the projector (fig. 10) ---- */
 
-/* Where brightness passes half of what is inside, on the way from a dark to a lit place; continuous
- * pixels. */
+/* Where the brightness passes half of its value inside, on the way from a dark to a lit place; in continuous
+ * pixel coordinates. */
 static double crossing(const example *open, const double dark[2], const double lit[2], int axis) {
   double full = brightness(open, lit[0], lit[1], 2), before = 0;
   for (int i = 0; i <= 200; i++) {
@@ -264,7 +268,8 @@ static double crossing(const example *open, const double dark[2], const double l
   return 0;
 }
 
-/* The image's corners through the light onto the wall y = 80, where its two edges cross there. */
+/* Projects the image's corners from the light onto the wall y = 80. Two edges of the picture must cross at
+ * each of these points. */
 static void test_logo_corners(void **state) {
   (void)state;
   static const char *const room[] = {"room", NULL};
@@ -286,8 +291,8 @@ static void test_logo_corners(void **state) {
   for (int corner = 0; corner < 4; corner++) {
     vec3 here = uv[corner], beside = uv[corner ^ 1], above = uv[corner ^ 2];
     for (int axis = 0; axis < 2; axis++) {
-      /* across the edge that leaves the corner along the other axis, 2 % from the corner, inside the corner
-       * marks */
+      /* The way crosses the edge that leaves the corner along the other axis. It lies 2 % of the edge's
+       * length from the corner, inside the image's corner marks. */
       vec3 along = axis == 0 ? above : beside, inwards = axis == 0 ? beside : above;
       vec3 edge = vec3_add(here, vec3_scale(vec3_subtract(along, here), 0.02));
       vec3 step = vec3_scale(vec3_subtract(inwards, here), 0.025);
@@ -303,8 +308,8 @@ static void test_logo_corners(void **state) {
 
 /* ---- window light (fig. 8) ---- */
 
-/* Whether the sun reaches a point through the light screen and, where there is a wall, through one of its
- * four panes of 34, from 105 to 115 deep. */
+/* Returns whether the sun reaches a point through the light's screen. If there is a wall, the light must also
+ * pass one of the wall's four panes, which are 34 wide and reach from 105 to 115. */
 static bool lit_by_window(vec3 point, vec3 way, bool walled) {
   double t = (point.y - 110) / way.y;
   if (fabs(point.x - way.x * t - 30) > 46 || fabs(point.z - way.z * t - 105) > 46) return false;
@@ -316,8 +321,9 @@ static bool lit_by_window(vec3 point, vec3 way, bool walled) {
   return true;
 }
 
-/* Single scattering towards the eye: the integral of sigma exp(-sigma s) I exp(-sigma d) along the part of a
- * ray that is in the beam, d the sun's way in the haze. */
+/* The light that the haze scatters once towards the eye: the integral of sigma exp(-sigma s) I exp(-sigma d)
+ * over the part of a ray within the beam. s: the way along the ray. d: the way of the sun's light in the
+ * haze. */
 static double beam_towards_eye(const example *open, vec3 start, vec3 direction, bool walled) {
   vec3 way = vec3_normalise(vec3_of(open->lights[0].direction));
   double sigma = -log(1 - 0.0016), sum = 0, step = 0.1, haze = fmax((-210 - start.y) / direction.y, 0);
@@ -330,7 +336,7 @@ static double beam_towards_eye(const example *open, vec3 start, vec3 direction, 
   return sum * open->lights[0].intensity * open->lights[0].color[0];
 }
 
-/* Rays that cross the beam and end on the wall beside the window, which the sun leaves dark. */
+/* Rays of the eye that cross the beam and end on the wall beside the window, where the wall is dark. */
 static double haze_column(const char *const *kept, bool walled, double *worst) {
   enum { SIDE = 192 };
   example *open = open_example("fig08-room.json", kept);
@@ -364,8 +370,8 @@ static double haze_column(const char *const *kept, bool walled, double *worst) {
   return sum / expected_sum;
 }
 
-/* The window's frame has the corners that its voxels, 1.5 a side, can give: rounded by a third of one, which
- * the slanted sun passes twice. */
+/* The corners of the window's frame are as sharp as voxels of 1.5 units allow. Their outlines are rounded by
+ * a third of a voxel, and the slanting sun passes two of them. */
 static void test_haze_column(void **state) {
   (void)state;
   static const char *const haze[] = {"haze", NULL}, *const room[] = {"haze", "walls", NULL};
@@ -377,12 +383,12 @@ static void test_haze_column(void **state) {
 
 /* ---- the hole (fig. 23) ---- */
 
-/* A row of the picture that crosses the beam at a height: its sum and its variance in world units. */
+/* The sum and the variance, in world units, of a row of the picture that crosses the beam at a height. */
 static void measure_row(const example *open, double height, double *sum, double *variance) {
   double mean = 0, square = 0, pitch = open->scene.camera.height / open->scene.height;
   int side = open->scene.width, y = (int)(side / 2 - height / pitch);
   *sum = 0;
-  for (int x = side / 10; x < side - side / 10; x++) { /* inside the box's sides */
+  for (int x = side / 10; x < side - side / 10; x++) { /* this part of the row lies between the box's sides */
     double at = (x + 0.5) * pitch, here = (double)open->pixels[4 * (y * side + x)];
     *sum += here;
     mean += here * at;
@@ -391,9 +397,9 @@ static void measure_row(const example *open, double height, double *sum, double 
   *variance = square / *sum - mean / *sum * (mean / *sum);
 }
 
-/* Light sums to exp(-sigma way) along the beam. In the box, and in one so thin that it takes nothing, the
- * profile's variance grows by the light's disk: D^2 / 16 with D = 2 tan(angle / 2) times the distance from
- * the hole, longer by the light's tilt. */
+/* Along the beam, the sum of a row falls by exp(-sigma way). The variance of its profile grows by the
+ * variance of the light's disk: D^2 / 16, where D = 2 tan(angle / 2) times the distance from the hole, longer
+ * by the light's tilt. Both are tested in the box, and in a box that is so thin that it absorbs nothing. */
 static void test_beam_through_a_hole(void **state) {
   (void)state;
   static const char *const kept[] = {"occluder", "box", NULL};

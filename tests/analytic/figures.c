@@ -1,9 +1,6 @@
-/* analytic/figures.c - what the scenes of the figures show, as numbers: closed forms on their own shapes and
- * lights.
- *
- * The examples are read as they are; cameras, sizes and what is left out are set here so that a number can be
- * told. Data are not looked for: what stands in for them is rendered.
- */
+/* analytic/figures.c - the scenes of the paper's figures, measured against closed forms on their own shapes
+ * and lights. The scenes are read as they are; the tests then set the cameras and sizes that a measurement
+ * needs. The scenes' real data are not needed: the shapes that stand for them are rendered. */
 #include <math.h>
 #include <setjmp.h>
 #include <stdarg.h>
@@ -64,7 +61,8 @@ static void render(hl_context *context, const hl_scene_description *d, float *pi
 
 /* ---- figure 1 ---- */
 
-/* On the table only the shadow is darker, and nowhere is anything brighter: shadows off, hard and soft. */
+/* With shadows, hard or soft, pixels of the table are darker in the shadow alone, and no pixel is brighter
+ * than without shadows. */
 static void bonsai_differs_in_its_shadow_only(void **state) {
   (void)state;
   hl_context *context = make_context();
@@ -90,8 +88,10 @@ static void bonsai_differs_in_its_shadow_only(void **state) {
       darker += after < before - 0.05;
     }
     assert_true(same > 0.5 * SIZE * SIZE && darker > 0.1 * SIZE * SIZE);
-    assert_true(brighter < 0.012 * SIZE * SIZE); /* silhouettes: the sheets lie otherwise without shadows */
-    int corner = 4 * (SIZE - 1) * SIZE;          /* the table at the lower left, towards the light */
+    /* Pixels of silhouettes may be brighter, since sheets lie in other places without shadows. */
+    assert_true(brighter < 0.012 * SIZE * SIZE);
+    /* pixels of the table at the lower left, on the light's side */
+    int corner = 4 * (SIZE - 1) * SIZE;
     assert_near(other[corner], pixels[corner], 0.002, "the lit table");
   }
   hl_scene_release(off);
@@ -102,7 +102,7 @@ static void bonsai_differs_in_its_shadow_only(void **state) {
 
 /* ---- figures 4 and 19 ---- */
 
-/* The least distance from a ring's surface that the light on its way to a point of the floor comes to. */
+/* The least distance between a ring's surface and the light's ray to a point of the floor. */
 static double clearance(double x, double y, double height, vec3 towards_light) {
   double least = INFINITY;
   for (double s = height - 10; s < height + 10; s += 0.02) {
@@ -112,8 +112,8 @@ static double clearance(double x, double y, double height, vec3 towards_light) {
   return least;
 }
 
-/* One ring of the figure over the floor, seen from above, lit at 45 degrees so that its shadow lies beside
- * it. */
+/* One ring of the figure, over the floor and seen from above. The light comes at 45 degrees, so that the
+ * shadow lies beside the ring. */
 static void ring_casts_its_outline(void **state) {
   (void)state;
   static const char text[] =
@@ -134,7 +134,8 @@ static void ring_casts_its_outline(void **state) {
   hl_context *context = make_context();
   hl_scene *scene = read_text(context, text);
   render(context, hl_scene_describe(scene), pixels);
-  double lit = 0.2 + 0.7 * sqrt(0.5), dark = 0.2; /* (3): ambient, and diffuse at 45 degrees */
+  /* equation (3): ambient light, and diffuse light at 45 degrees */
+  double lit = 0.2 + 0.7 * sqrt(0.5), dark = 0.2;
   int umbra = 0, light = 0, edge_lit = 0, edge = 0;
   for (int j = 0; j < 160; j++)
     for (int i = 0; i < 160; i++) {
@@ -146,14 +147,15 @@ static void ring_casts_its_outline(void **state) {
       } else if (gap > 1) {
         assert_near(value, lit, 0.01, "the lit floor");
         light++;
-      } else if (fabs(gap) <
-                 0.75) { /* as many on either side: half of them lit, if the outline is in place */
+      } else if (fabs(gap) < 0.75) {
+        /* There are as many pixels on either side of the outline. If the outline is in its place, half of
+         * them are lit. */
         edge++;
         edge_lit += value > (lit + dark) / 2;
       }
     }
   assert_true(umbra > 1500 && light > 5000 && edge > 800);
-  /* 1.5 units of edge pixels: a tenth of them is 0.15 units, a third of a voxel */
+  /* The edge's pixels are 1.5 units wide. A tenth of them is 0.15 units, which is a third of a voxel. */
   assert_near((double)edge_lit / edge, 0.5, 0.1, "the outline");
   hl_scene_release(scene);
   hl_context_destroy(context);
@@ -161,7 +163,7 @@ static void ring_casts_its_outline(void **state) {
 
 /* ---- figure 5 ---- */
 
-/* Amber lobes stay amber and blue ones blue in shadow, and no pixel is brighter for it. */
+/* Amber lobes stay amber in the shadow, blue lobes stay blue, and no pixel becomes brighter by the shadow. */
 static void lobes_keep_their_colour(void **state) {
   (void)state;
   hl_context *context = make_context();
@@ -183,8 +185,9 @@ static void lobes_keep_their_colour(void **state) {
     if (before[2] > 2 * before[0]) blue++, wrong += !(after[2] > after[0]);
   }
   assert_true(amber > 500 && blue > 500);
-  assert_true(darker > 10 && darker < 500); /* where one lobe shades another; none shades its own lit side */
-  assert_true(wrong < 20);                  /* pixels where two lobes meet */
+  /* Only where lobes shade each other: no lobe shades its own lit side. */
+  assert_true(darker > 10 && darker < 500);
+  assert_true(wrong < 20); /* the number of pixels in which two lobes meet */
   hl_scene_release(off);
   hl_scene_release(hard);
   hl_context_destroy(context);
@@ -215,8 +218,8 @@ static void both_hypertextures_are_the_same_bytes(void **state) {
 
 /* ---- figure 7 ---- */
 
-/* Eight pixels a voxel: the shadow of a straight edge, askew to all grids, stays within 1.5 pixels of a
- * line. */
+/* The shadow of a straight edge that is askew to all grids stays within 1.5 pixels of a line. A voxel is
+ * eight pixels wide. */
 static void close_shadow_edges_are_not_blocky(void **state) {
   (void)state;
   static const char text[] =
@@ -253,8 +256,8 @@ static void close_shadow_edges_are_not_blocky(void **state) {
   }
   assert_true(n > 150);
   double slope = (n * sxy - sy * sx) / (n * syy - sy * sy), start = (sx - slope * sy) / n;
-  assert_near(slope, tan(23 * HL_PI / 180), 0.02,
-              "the edge's slope"); /* rows go down: the sign turns with them */
+  /* The rows of the picture go down, so that the slope has the other sign. */
+  assert_near(slope, tan(23 * HL_PI / 180), 0.02, "the edge's slope");
   for (int j = 0; j < 200; j++)
     if (!isnan(at[j])) assert_near(at[j], start + slope * j, 1.5, "the shadow's edge");
   hl_scene_release(scene);
@@ -263,7 +266,8 @@ static void close_shadow_edges_are_not_blocky(void **state) {
 
 /* ---- figures 20 and 21 ---- */
 
-/* The variance, in world units squared, of the edge that a row of brightness rises or falls over. */
+/* The variance of an edge, in world units squared: of the place at which the brightness of a row rises or
+ * falls. */
 static double edge_variance(const float *row, int count, double pitch) {
   double weight = 0, first = 0, second = 0;
   for (int i = 0; i + 1 < count; i++) {
@@ -274,8 +278,8 @@ static double edge_variance(const float *row, int count, double pitch) {
   return second / weight - mean * mean;
 }
 
-/* The light of figure 20 on a bar at the height: the spread of its shadow's edge, less that of the edge
- * itself. */
+/* The variance of the shadow's edge of a bar at a height, under the light of figure 20, without the variance
+ * that the edge itself has. */
 static double penumbra_spread(hl_context *context, double height, double angle_deg) {
   char text[2000];
   double variance[2];
@@ -303,8 +307,8 @@ static double penumbra_spread(hl_context *context, double height, double angle_d
   return sqrt(variance[1] - variance[0]);
 }
 
-/* dx = L dZ / Z, eq. (5): for parallel light of an angle 2 tan(angle / 2) dZ; a disk of diameter D spreads by
- * D / 4. */
+/* Equation (5), dx = L dZ / Z: parallel light with an angle has dx = 2 tan(angle / 2) dZ. A disk of the
+ * diameter D has the standard deviation D / 4. */
 static void penumbra_grows_with_height(void **state) {
   (void)state;
   hl_context *context = make_context();
@@ -317,8 +321,8 @@ static void penumbra_grows_with_height(void **state) {
   hl_context_destroy(context);
 }
 
-/* The block of figure 21 seen from the side, along a straight edge in place of the ring: rows of the picture
- * are depths in the block, and each shows the shadow's edge at its depth. */
+/* The block of figure 21, seen from the side. A straight edge takes the ring's place. A row of the picture
+ * shows the shadow's edge at one depth in the block. */
 static void shadow_widens_through_the_block(void **state) {
   (void)state;
   hl_context *context = make_context();
@@ -343,15 +347,16 @@ static void shadow_widens_through_the_block(void **state) {
   render(context, &d, other);
   light.angular_diameter_deg = angle_deg;
   render(context, &d, pixels);
-  const double depths[] = {62, 12}; /* within the block, near where light enters and leaves it */
+  /* two depths in the block: near the face where light enters, and near the face where it leaves */
+  const double depths[] = {62, 12};
   for (int n = 0; n < 2; n++) {
     int row = (int)((69 - depths[n]) * 4), first = 40,
-        count = 160; /* 40 world units about the edge, a quarter a pixel */
+        count = 160; /* 40 units around the edge, a quarter of a unit for each pixel */
     double variance = edge_variance(&pixels[4 * (240 * row + first)], count, 0.25) -
                       edge_variance(&other[4 * (240 * row + first)], count, 0.25);
     double expected = 2 * tan(angle_deg * HL_PI / 360) * (82 - depths[n]) / 4;
-    /* the cascade spreads 4 % too wide at the entrance and 18 % at the exit, with the block's own groups
-     * between */
+    /* The cascade's edge is 4 % too wide where the light enters and 18 % too wide where it leaves; in the
+     * middle the block's own groups widen it. */
     assert_near(sqrt(variance), expected, (n == 0 ? 0.08 : 0.2) * expected,
                 n == 0 ? "the entrance" : "the exit");
   }

@@ -1,8 +1,7 @@
-/* analytic/isosurfaces.c - surfaces on which a volume has one value: where they lie, what they take of light,
- * and their shadows, with known answers.
- *
- * The B-spline of voxels x^2 is x^2 + 1/3 (its variance along an axis), so that voxels |p - c|^2 have the
- * field |p - c|^2 + 1: a surface of one value is a sphere, exactly. */
+/* analytic/isosurfaces.c - the surfaces of one value of a volume: their places, the light that they take, and
+ * their shadows, against closed forms. The B-spline of voxels x^2 is x^2 + 1/3, because its variance along an
+ * axis is 1/3. So voxels |p - c|^2 have the field |p - c|^2 + 1, and a surface of one value is exactly a
+ * sphere. */
 #include <stdlib.h>
 #include <string.h>
 
@@ -18,8 +17,9 @@
 
 enum { SIDE = 64, PIXELS = SIDE * SIDE, VOXELS = 44 };
 
-/* Voxels that hold minus the squared distance from `centre`, in voxels from the grid's middle: a ball's
- * inside has the greater values. Voxels are one unit wide, the grid's middle is the origin. */
+/* Voxels whose value is minus the squared distance from `centre`, so that values are greater inside a ball.
+ * Distances count in voxels from the grid's middle. Voxels are one unit wide, and the grid's middle is the
+ * origin. */
 static hl_scene_volume *add_ball(stage *set, vec3 centre) {
   static float voxels[VOXELS * VOXELS * VOXELS];
   const size_t dimensions[3] = {VOXELS, VOXELS, VOXELS};
@@ -50,8 +50,8 @@ static void open_stage(stage *set) {
 
 /* ---- where the surface lies ---- */
 
-/* The mesh of a scene's only isosurface, in the world. goes_on: another volume touches the box's face at the
- * greatest x. */
+/* The mesh of a scene's only isosurface, in the world. goes_on: whether another volume touches the box's face
+ * at the greatest x. */
 static hl_mesh *mesh_beside(const stage *set, double value, bool goes_on) {
   hl_mesh *mesh = NULL;
   hl_pool *pool = NULL;
@@ -83,8 +83,8 @@ static vec3 point_of(const hl_mesh_description *d, const uint32_t corner[3], con
   return sum;
 }
 
-/* Vertices to a ten thousandth of a voxel, every point of a triangle to 0.02 voxels; normals are the
- * sphere's; the surface is closed, and its volume is the ball's. */
+/* Vertices lie on the sphere to a ten-thousandth of a voxel, and all points of triangles to 0.02 voxels.
+ * Normals are the sphere's. The surface is closed, and its volume is the ball's. */
 static void test_ball(void **state) {
   (void)state;
   static const double weights[7][3] = {{1, 0, 0},
@@ -125,9 +125,9 @@ static void test_ball(void **state) {
   }
 }
 
-/* Voxels twenty times as long along z: of an ellipsoid, which the B-spline reconstructs exactly but for a
- * constant, every point of a triangle lies within 0.02 of the smallest edge, measured along the surface's
- * normal. across, along: the ellipsoid's radii. */
+/* Voxels are twenty times as long along z as across. The B-spline reconstructs an ellipsoid exactly, except
+ * for a constant. Every point of a triangle lies within 0.02 of the smallest edge from the ellipsoid, along
+ * its normal. across, along: the ellipsoid's radii. */
 static void check_long_voxels(double across, double along) {
   static const double weights[4][3] = {
       {0.5, 0.5, 0}, {0, 0.5, 0.5}, {0.5, 0, 0.5}, {1.0 / 3, 1.0 / 3, 1.0 / 3}};
@@ -159,15 +159,15 @@ static void check_long_voxels(double across, double along) {
   stage_close(&set);
 }
 
-/* The ball bends by more within a voxel's long edge than its short edges are long. */
+/* Within a voxel's long edge, the ball bends by more than a voxel's short edge. */
 static void test_long_voxels(void **state) {
   (void)state;
   check_long_voxels(20, 80);
   check_long_voxels(20, 20);
 }
 
-/* Every pattern of corners, and the same from the other side: all edges that cross are in its triangles, the
- * loops close, and a pattern's complement has the same edges. */
+/* Every pattern of a cell's corners is tried. All edges on which the value is crossed are in its triangles,
+ * and the loops close. The pattern with inside and outside exchanged has the same edges. */
 static void test_patterns(void **state) {
   (void)state;
   static cube_triangles patterns[CUBE_PATTERNS];
@@ -187,8 +187,7 @@ static void test_patterns(void **state) {
   assert_int_equal(patterns[0x69].count, 4);
 }
 
-/* Noise that crosses the value everywhere, also on the box's faces: within the box the surface has no hole.
- */
+/* Noise crosses the value everywhere, also on the box's faces. Within the box, the surface has no hole. */
 static void test_noise_is_watertight(void **state) {
   (void)state;
   enum { N = 13 };
@@ -216,8 +215,8 @@ static void clip_ball(hl_scene_volume *ball) {
   memcpy(ball->clip_max, (double[3]){3.1, 30, 30}, sizeof ball->clip_max);
 }
 
-/* A ball that the box cuts off is closed by its cap, and its inside lies behind all triangles; where another
- * volume goes on, the ball stays open. */
+/* If the box cuts a ball, a cap closes the ball's surface, and the ball's inside lies behind all triangles.
+ * If another volume touches the face, the ball stays open there. */
 static void test_caps_close(void **state) {
   (void)state;
   stage set;
@@ -234,7 +233,7 @@ static void test_caps_close(void **state) {
   stage_close(&set);
 }
 
-/* The cancel callback of test_cancelled(). It says stop from a question on. */
+/* The cancel callback of test_cancelled(). From the question with a given number on it answers "stop". */
 typedef struct questions {
   int asked, stop_at;
 } questions;
@@ -244,7 +243,7 @@ static int answer(void *user_data) {
   return all->asked++ >= all->stop_at;
 }
 
-/* Wherever an extraction is stopped, it tells so and makes no surface. */
+/* An extraction that is stopped, at whatever step, reports that and makes no surface. */
 static void test_cancelled(void **state) {
   (void)state;
   stage set;
@@ -270,7 +269,8 @@ static void test_cancelled(void **state) {
     assert_true(status == HL_OK || (status == HL_ERROR_CANCELLED && mesh == NULL));
     all.stop_at++;
   }
-  assert_true(all.stop_at > 5); /* steps: inside, crossings, counts, vertices, triangles, refinement */
+  /* the steps are: the inside, crossings, counts, vertices, triangles, refinement */
+  assert_true(all.stop_at > 5);
   assert_int_equal(status, HL_OK);
   hl_mesh_release(mesh);
   hl_grid_release(set.context, &grid);
@@ -280,7 +280,7 @@ static void test_cancelled(void **state) {
 
 /* ---- pictures ---- */
 
-/* The silhouette is a disk, antialiased, and the same at any spacing of sheets. */
+/* The silhouette of a surface is an antialiased disk, and is the same at any distance of the sheets. */
 static void test_silhouette(void **state) {
   (void)state;
   static float pixels[PIXELS * 4], coarse[PIXELS * 4];
@@ -306,8 +306,9 @@ static void test_silhouette(void **state) {
   stage_close(&set);
 }
 
-/* Translucent surfaces take the same fraction of light at every angle, each before what is behind it: the
- * colours of three balls within each other, seen through their middle and at the outer one's rim. */
+/* Translucent surfaces take the same fraction of light at every angle, and each one covers what lies behind
+ * it. Three balls within each other are compared with the colours that follow, in the middle and at the rim
+ * of the outermost ball. */
 static void test_translucent(void **state) {
   (void)state;
   static float pixels[PIXELS * 4];
@@ -342,8 +343,8 @@ static void choose_shadows(stage *set, int kind) {
   set->lights[0].angular_diameter_deg = kind == 0 ? 0 : 8;
 }
 
-/* A translucent ball's shadow on a wall below it, and the wall's on nothing: behind the ball's middle the
- * wall has the light that two crossings leave. By every method. */
+/* Behind the middle of a translucent ball, a wall gets the light that two crossings of the ball's surface
+ * leave, by every method of shadows. The wall itself shades nothing. */
 static void test_shadow(void **state) {
   (void)state;
   static float pixels[PIXELS * 4];
@@ -367,8 +368,8 @@ static void test_shadow(void **state) {
   }
 }
 
-/* Against the reference, which finds roots of the field along its rays: two surfaces, one translucent, of
- * noise in haze, with hard shadows. */
+/* Two surfaces of noise in haze, one of them translucent, with hard shadows. The reference finds the surfaces
+ * as roots of the field along its rays. */
 static void test_against_the_reference(void **state) {
   (void)state;
   static float sheets[PIXELS * 4], exact[PIXELS * 4], voxels[16 * 16 * 16];
@@ -387,7 +388,7 @@ static void test_against_the_reference(void **state) {
   for (int c = 0; c < 3; c++) set.scene.ambient[c] = 0.1;
   (void)stage_add_directional(&set, (vec3){0.4, 0.3, -1});
   set.scene.width = set.scene.height = SIDE / 2;
-  set.scene.camera.height = 32; /* the box's edges lie on the picture's */
+  set.scene.camera.height = 32; /* the edges of the box lie on the edges of the picture */
   set.scene.render.shadow_resolution = 400;
   hl_reference_options options;
   hl_reference_options_defaults(&options);
@@ -396,7 +397,7 @@ static void test_against_the_reference(void **state) {
   stage_render_sheets(&set, sheets);
   stage_render(&set, &options, exact);
   double squares = 0, sum = 0;
-  for (int i = 0; i < PIXELS; i++) { /* a quarter of the pixels, four channels */
+  for (int i = 0; i < PIXELS; i++) { /* a quarter of the pixels, each with four channels */
     double difference = (double)sheets[i] - (double)exact[i];
     squares += difference * difference;
     sum += difference;
@@ -406,7 +407,7 @@ static void test_against_the_reference(void **state) {
   stage_close(&set);
 }
 
-/* The same bytes on any number of threads, and with the renderer's kept surfaces. */
+/* The picture has the same bytes with any number of threads, and with surfaces that the renderer has kept. */
 static void test_threads(void **state) {
   (void)state;
   static float first[PIXELS * 4], other[PIXELS * 4];
@@ -428,7 +429,7 @@ static void test_threads(void **state) {
     stage_render_with(&set, renderer, other);
     assert_memory_equal(first, other, sizeof first);
   }
-  surfaces[0].value -= 5; /* one is made anew, the other kept */
+  surfaces[0].value -= 5; /* the first surface is made anew, and the second one is kept */
   stage_render_with(&set, renderer, other);
   stage_render_sheets(&set, first);
   assert_memory_equal(first, other, sizeof first);
@@ -436,14 +437,14 @@ static void test_threads(void **state) {
   stage_close(&set);
 }
 
-/* A renderer that keeps surfaces draws a fresh renderer's bytes after a neighbour came, a cut came or went,
- * or both moved. The neighbour opens the surface where it touches the box, and its empty matter is not seen.
- */
+/* A renderer that keeps surfaces draws the bytes of a new renderer after a neighbouring volume has come, a
+ * cut has come or gone, or both have moved. The neighbour touches the box where the surface meets it, so that
+ * the surface is open there. The neighbour's matter is transparent. */
 static void test_moved_neighbours(void **state) {
   (void)state;
   static const struct {
     double beside; /* the gap between the box's face and the neighbour */
-    double cut;    /* where a plane cuts the ball; 0: nowhere */
+    double cut;    /* the place at which a plane cuts the ball; 0: there is no plane */
   } steps[] = {{30, 0}, {0, 0}, {0, -2}, {30, -2}, {0, 3}, {0, 0}, {1, 0}};
   enum { STEPS = sizeof steps / sizeof *steps };
   static float kept[PIXELS * 4], fresh[STEPS][PIXELS * 4];

@@ -1,5 +1,5 @@
-/* analytic/label_shapes.c - labels of balls and boxes in many orientations: the smooth surface is where the
- * shape's is, and encloses its volume. */
+/* analytic/label_shapes.c - labels in the shape of balls and boxes, in many orientations: the smooth surface
+ * lies where the shape's surface does, and encloses the same volume. */
 #include <setjmp.h>
 #include <stdarg.h>
 #include <stdlib.h>
@@ -56,7 +56,8 @@ static double depth_in_box(const void *shape, vec3 p) {
   return depth;
 }
 
-/* A label map of the shape, label 7 among 3, and the occupancy of 7. */
+/* Makes a label map in which the shape has label 7 and the rest has label 3, and the occupancy field of
+ * label 7. */
 static hl_volume *occupancy_of(depth_function *depth, const void *shape, double *label_count) {
   static unsigned char voxels[N * N * N];
   hl_volume_description d;
@@ -112,7 +113,8 @@ static double field_at(const hl_volume *field, vec3 p) {
   return sum;
 }
 
-/* Where the field passes 1/2 near a point of the shape's surface, along its normal: the distance outwards. */
+/* The distance from a point of the shape's surface, outwards along its normal, to the place where the field
+ * passes 1/2. */
 static double surface_offset(const hl_volume *field, vec3 point, vec3 normal) {
   double low = -2, high = 2;
   for (int step = 0; step < 24; step++) {
@@ -139,7 +141,7 @@ static vec3 random_centre(uint32_t *seed) {
   return (vec3){N / 2 + stage_random(seed), N / 2 + stage_random(seed), N / 2 + stage_random(seed)};
 }
 
-/* The volume that the surface of a star-shaped thing encloses, from its extent in many directions. */
+/* The volume that a star-shaped surface encloses, from its distance in many directions. */
 static double volume_around(const hl_volume *field, vec3 centre, depth_function *depth, const void *shape) {
   enum { DIRECTIONS = 3000 };
   double sum = 0;
@@ -147,7 +149,7 @@ static double volume_around(const hl_volume *field, vec3 centre, depth_function 
     double z = 1 - (2 * n + 1) / (double)DIRECTIONS, turn = n * 2.399963229728653, r = sqrt(1 - z * z);
     vec3 way = {r * cos(turn), r * sin(turn), z};
     double low = 0, high = N / 2 - 2;
-    for (int step = 0; step < 30; step++) { /* the shape's own surface */
+    for (int step = 0; step < 30; step++) { /* the volume that the shape itself encloses */
       double middle = (low + high) / 2;
       if (depth(shape, vec3_add(centre, vec3_scale(way, middle))) > 0) low = middle;
       else high = middle;
@@ -188,7 +190,7 @@ static void test_boxes(void **state) {
     b.axis[1] = vec3_normalise(vec3_cross(b.axis[0], stage_random_direction(&seed)));
     b.axis[2] = vec3_cross(b.axis[0], b.axis[1]);
     hl_volume *field = occupancy_of(depth_in_box, &b, &count);
-    for (int n = 0; n < 300; n++) { /* points of the faces, 3 voxels from their edges */
+    for (int n = 0; n < 300; n++) { /* these points lie on the faces, at least 3 voxels from the edges */
       int a = n % 3, u = (a + 1) % 3, v = (a + 2) % 3;
       double side = n % 2 ? 1 : -1, on_u = (2 * stage_random(&seed) - 1) * (b.half[u] - 4),
              on_v = (2 * stage_random(&seed) - 1) * (b.half[v] - 4);
@@ -202,7 +204,8 @@ static void test_boxes(void **state) {
     assert_true(fabs(volume / count - 1) < 0.005);
     hl_volume_release(field);
   }
-  /* Faces move out by what rounded edges lose, evenly: no stairs, which would be 0.29 voxels. */
+  /* Faces move outwards evenly, by as much as rounded edges lose. The steps of voxels, 0.29 voxels high, do
+   * not show. */
   double mean = every.sum / every.count;
   assert_true(fabs(mean) < 0.25);
   assert_true(sqrt(every.squares / every.count - mean * mean) < 0.09);

@@ -1,5 +1,5 @@
-/* analytic/labels_seen.c - thin and small labels in pictures: how much of a plate, a shell, a line, a voxel
- * and of balls of a few voxels is seen. */
+/* analytic/labels_seen.c - thin and small labels in pictures: how much is seen of a plate, a shell, a line, a
+ * single voxel, and balls of a few voxels. */
 #include <math.h>
 #include <string.h>
 
@@ -73,8 +73,8 @@ static double depth_in_plate(const void *shape, vec3 p) {
   return fmin(s->half - fabs(height), s->radius - across);
 }
 
-/* A round plate one voxel thin, as it lies in the grid, shows .9 of what one of two voxels shows: head on,
- * and from the side. */
+/* A round plate that is one voxel thin shows .9 of the area that a plate of two voxels shows, seen from in
+ * front and from the side. */
 static void test_plates(void **state) {
   (void)state;
   uint32_t seed = 3;
@@ -124,7 +124,7 @@ typedef struct line {
   double half;
 } line;
 
-/* The voxels that a line passes nearest: each is marked from the line's points. */
+/* Marks the voxels to which points of a line are nearest. */
 static void fill_line(const line *s) {
   memset(voxels, 0, sizeof voxels);
   for (int n = -1000; n <= 1000; n++) {
@@ -134,7 +134,7 @@ static void fill_line(const line *s) {
   }
 }
 
-/* Seen from the side, a line is a band without a gap. */
+/* A line, seen from the side, is a band without a gap. */
 static void test_lines(void **state) {
   (void)state;
   uint32_t seed = 4;
@@ -166,7 +166,8 @@ static void test_a_voxel(void **state) {
   voxels[(20 * N + 20) * N + 20] = 1;
   for (int k = 0; k < 8; k++) {
     draw(stage_random_direction(&seed), 8);
-    assert_true(area_seen(8) > 1); /* a cube shows 1.5 in the mean over all directions */
+    /* In the mean over all directions, a cube of one voxel shows an area of 1.5. */
+    assert_true(area_seen(8) > 1);
     assert_true(area_seen(8) < 2);
   }
 }
@@ -183,8 +184,8 @@ static double depth_in_ball(const void *shape, vec3 p) {
   return b->radius - vec3_length(vec3_subtract(p, b->centre));
 }
 
-/* A ball of a few voxels: its outlines enclose the area of a ball of the voxels' volume, in the mean over
- * places and views. Small balls are less round, so that they take more views. */
+/* The outlines of a ball of a few voxels enclose the area of a ball that has the voxels' volume, in the mean
+ * over places and views. Small balls are less round, so that the mean is over more views. */
 static void test_outlines_of_balls(void **state) {
   (void)state;
   static const double radii[] = {1.5, 1.75, 2, 2.25, 2.5, 3, 4, 6, 10};
@@ -207,7 +208,7 @@ static void test_outlines_of_balls(void **state) {
 
 enum { CELLS = 100 };
 
-/* Cuts a ball into labels 1 to CELLS: each voxel belongs to the nearest of as many points. */
+/* Divides a ball into the labels 1 to CELLS: each voxel belongs to the nearest of CELLS points. */
 static void fill_atlas(void) {
   uint32_t seed = 12;
   vec3 points[CELLS];
@@ -223,8 +224,8 @@ static void fill_atlas(void) {
   }
 }
 
-/* The labels' picture without shadows, lit from the eye. Red and blue take turns, so that each pixel's sum of
- * channels is what a white body sends, whatever its colour. cut: null: none. */
+/* The picture of the labels, lit from the eye, without shadows. The labels are red and blue in turn, so that
+ * each pixel's sum of channels is what a white body sends. cut: may be null. */
 static void draw_lit(vec3 along, int label_count, const hl_cut *cut) {
   static float values[N * N * N];
   hl_label labels[CELLS];
@@ -269,11 +270,13 @@ static void test_seam(void **state) {
   assert_near(beside, 1, 0.01);
   for (int n = -40; n <= 40; n++)
     for (int y = -6; y <= 6; y += 3) assert_true(brightness_at(n / 10.0, y) > 0.95 * beside);
-  assert_true(pixels[4 * (SIDE / 2 * SIDE + SIDE / 2 - 12)] > 0.99); /* red and blue, not both everywhere */
+  /* this pixel is red or blue, and not both */
+  assert_true(pixels[4 * (SIDE / 2 * SIDE + SIDE / 2 - 12)] > 0.99);
   assert_true(pixels[4 * (SIDE / 2 * SIDE + SIDE / 2 + 12) + 2] > 0.99);
 }
 
-/* A ball of a hundred labels, cut in the middle: no dark line on the face, nor on the ball. */
+/* A ball of a hundred labels, cut through the middle, shows no dark line between labels, on the cut's face or
+ * on the ball. */
 static void test_sliced_atlas(void **state) {
   (void)state;
   uint32_t seed = 15;

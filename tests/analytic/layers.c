@@ -1,6 +1,5 @@
-/* analytic/layers.c - lights, shadows, depth and normals kept apart: closed forms, and their sum.
- *
- * Each closed form is asked of the sheets and of the reference. */
+/* analytic/layers.c - the layers of a picture (lights, shadows, depth, normals), against closed forms, and
+ * their sum. Each closed form is tested on the sheets and on the reference. */
 #include <stdlib.h>
 #include <string.h>
 
@@ -10,7 +9,7 @@
 
 enum { SIDE = 28, PIXELS = SIDE * SIDE };
 
-/* Buffers of every layer. */
+/* The buffers of all layers. */
 typedef struct layer_set {
   float pixels[PIXELS * 4], ambient[PIXELS * 3], emission[PIXELS * 3], first[PIXELS], mean[PIXELS],
       normal[PIXELS * 3];
@@ -20,7 +19,7 @@ typedef struct layer_set {
 } layer_set;
 
 static void ask_for_all(const stage *set, layer_set *layers) {
-  memset(layers, 0xff, sizeof *layers); /* NaN: every value must be written */
+  memset(layers, 0xff, sizeof *layers); /* NaN shows which values were not written */
   for (size_t l = 0; l < STAGE_LIGHTS; l++)
     layers->lights[l] = (hl_light_layers){layers->pictures[l], layers->shadows[l]};
   layers->all = (hl_layers){.struct_size = sizeof layers->all,
@@ -55,7 +54,7 @@ static void open_square(stage *set) {
 static const vec3 LOW = {-3, -2.5, -6}, HIGH = {4, 5, 2};
 static const double SIGMA = 0.13126091261247; /* -ln(1 - 0.2) / 1.7 */
 
-/* Where the ray enters the box, which it is known to meet. */
+/* The distance at which a ray enters the box. The ray must meet the box. */
 static double entry(vec3 origin, vec3 direction) {
   const double l[3] = {LOW.x, LOW.y, LOW.z}, h[3] = {HIGH.x, HIGH.y, HIGH.z};
   const double o[3] = {origin.x, origin.y, origin.z}, d[3] = {direction.x, direction.y, direction.z};
@@ -65,8 +64,8 @@ static double entry(vec3 origin, vec3 direction) {
   return enter;
 }
 
-/* Of the depth s in a box of optical depth e = sigma c, weighted by exp(-sigma s): the mean is
- * 1 / sigma - c exp(-e) / (1 - exp(-e)); alpha reaches 0.01 at -ln(0.99) / sigma. */
+/* In a box of the length c along the ray, the depth s has the weight exp(-sigma s). Its mean is 1 / sigma - c
+ * exp(-e) / (1 - exp(-e)), where e = sigma c. Alpha reaches 0.01 at s = -ln(0.99) / sigma. */
 static void check_depths(const stage *set, const layer_set *layers) {
   int hits = 0, misses = 0;
   for (int i = 0; i < PIXELS; i++) {
@@ -74,7 +73,7 @@ static void check_depths(const stage *set, const layer_set *layers) {
     stage_eye_ray(set, i % SIDE, i / SIDE, &origin, &direction);
     double chord = stage_chord(LOW, HIGH, origin, direction), e = SIGMA * chord;
     double enter = entry(origin, direction), reach = -log(0.99) / SIGMA;
-    if (chord > 0 && chord < 0.1) continue; /* at the very edge */
+    if (chord > 0 && chord < 0.1) continue; /* the ray passes at the very edge of the box */
     hits += chord > 0;
     misses += chord <= 0;
     if (chord <= 0) {
@@ -89,7 +88,8 @@ static void check_depths(const stage *set, const layer_set *layers) {
   assert_true(hits > 100 && misses > 50);
 }
 
-/* Light with the eye, against it (sheets go back to front for the eye: one more sweep measures), and none. */
+/* Three settings: light that travels with the eye's rays; light against them, for which sheets go back to
+ * front and one more sweep measures depth; and no light. */
 static void check_depths_under_all_lights(stage *set) {
   static const vec3 lights[] = {{0, 0, -1}, {0.3, -0.2, 1}};
   static layer_set layers;
@@ -141,7 +141,8 @@ static void check_plate(stage *set, bool reference) {
     shadowed += below;
     lit += beside;
     for (int c = 0; c < 3 && (below || beside); c++) {
-      /* the plate's optical depth is 2 in green, 100 in red, and 0 in blue; the floor's own is small */
+      /* The plate's optical depth is 2 in green, 100 in red and 0 in blue. The floor's own optical depth is
+       * small. */
       double through = beside ? 1 : c == 0 ? 0 : c == 1 ? exp(-2) : 1;
       assert_near(shadow[c], through, 0.006);
       assert_near(picture[c], layers.pixels[4 * i + 3] * shadow[c] * (c == 0 ? 0.25 : 0.75) * 2, 1e-5);
@@ -170,7 +171,7 @@ static void test_shadow_of_plate(void **state) {
   stage_close(&set);
 }
 
-/* The image that a light projects is in its picture, and not in its shadow. */
+/* An image that a light projects shows in the light's layer, and not in its shadow's layer. */
 static void test_texture_is_no_shadow(void **state) {
   (void)state;
   static const float pixels[2 * 3] = {0, 0, 0, 1, 0.5f, 0.25f};
@@ -207,7 +208,7 @@ static void check_ramp(stage *set, bool reference) {
     vec3 origin, direction;
     stage_eye_ray(set, i % SIDE, i / SIDE, &origin, &direction);
     if (stage_chord((vec3){-5, -5, -5}, (vec3){5, 5, 5}, origin, direction) < 4) continue;
-    checked++; /* downhill along (1, 2, -2) / 3 */
+    checked++; /* the normal points downhill, along (1, 2, -2) / 3 */
     assert_near(layers.normal[3 * i], -1.0 / 3, 0.003);
     assert_near(layers.normal[3 * i + 1], -2.0 / 3, 0.003);
     assert_near(layers.normal[3 * i + 2], 2.0 / 3, 0.003);
@@ -226,8 +227,9 @@ static void test_normal_of_ramp(void **state) {
   hl_scene_volume *ramp = stage_add_grid(&set, (size_t[3]){N, N, N}, (double[3]){1, 1, 1}, (vec3){-7, -7, -7},
                                          voxels);
   ramp->shading = HL_SHADING_PHONG;
-  ramp->clipped = 1;                           /* away from the border, where the ramp ends */
-  ramp->cut_shading = HL_CUT_SHADING_GRADIENT; /* the normals of the ramp, at the faces as well */
+  ramp->clipped = 1; /* the clip box leaves out the border, where the ramp ends */
+  /* the normals are those of the ramp, also at the clip box's faces */
+  ramp->cut_shading = HL_CUT_SHADING_GRADIENT;
   for (int a = 0; a < 3; a++) ramp->clip_min[a] = -5, ramp->clip_max[a] = 5;
   stage_set_opacity(&set, ramp, 0.3, 1);
   stage_look(&set, (vec3){40, -31, 52}, (vec3){0, 0, 0}, (vec3){0.2, 0.3, 1});
@@ -241,7 +243,7 @@ static void test_normal_of_ramp(void **state) {
 
 static const hl_opacity_point SOFT_EDGE[] = {{0, 0}, {0.35, 0}, {0.6, 0.7}, {1, 0.9}};
 
-/* Two volumes, three lights of which one needs a sweep of its own. */
+/* Two volumes, and three lights, one of which needs a sweep of its own. */
 static void build_scene(stage *set) {
   enum { N = 15 };
   static float voxels[N * N * N];
@@ -286,8 +288,8 @@ static double sum_at(const layer_set *layers, size_t lights, int pixel, int c) {
   return sum;
 }
 
-/* A phase function changes the light that a medium sends to the eye, and not the transmittance to it: under
- * lights of several types, and by every method. */
+/* A phase function changes the light that a medium sends to the eye, and not the layer of the light's shadow.
+ * This holds under lights of several types and by every method of shadows. */
 static void test_scattering_is_no_shadow(void **state) {
   (void)state;
   static layer_set even, scattered;
@@ -296,7 +298,8 @@ static void test_scattering_is_no_shadow(void **state) {
   hl_light *board = stage_add_point(&set, (vec3){-20, 10, 25});
   board->type = HL_LIGHT_RECT;
   board->edge1[0] = board->edge2[1] = 4;
-  for (int way = 0; way < 5; way++) { /* three methods of soft shadows, hard shadows, the reference */
+  for (int way = 0; way < 5; way++) {
+    /* three methods of soft shadows, then hard shadows, then the reference */
     static const hl_soft_method methods[] = {HL_SOFT_CASCADE, HL_SOFT_PAPER, HL_SOFT_SUBLIGHTS};
     set.scene.render.soft_method = methods[way % 3];
     set.scene.render.shadows = way == 3 ? HL_SHADOWS_HARD : HL_SHADOWS_SOFT;
@@ -310,7 +313,7 @@ static void test_scattering_is_no_shadow(void **state) {
   stage_close(&set);
 }
 
-/* From near, and from so far that several pixels are averaged. */
+/* The scene is seen from near, and from so far away that a pixel is the mean of several. */
 static void test_sum_is_the_picture(void **state) {
   (void)state;
   static layer_set layers;
@@ -330,7 +333,8 @@ static void test_sum_is_the_picture(void **state) {
   }
 }
 
-/* Other colours and strengths of the lights, and other ambient light, need no new rendering. */
+/* If colours and strengths of lights or the ambient light change, the picture is a sum of the same layers
+ * with other factors: nothing is rendered again. */
 static void test_relighting(void **state) {
   (void)state;
   static layer_set layers;
@@ -373,7 +377,8 @@ static void test_sheets_against_reference(void **state) {
   static layer_set sheets, reference;
   stage set;
   open_scene(&set, 1);
-  set.scene.camera.fovy_deg = 16; /* pixels well below a voxel: slopes are differences between pixels */
+  /* the pixels are well below a voxel, because slopes are taken from differences between pixels */
+  set.scene.camera.fovy_deg = 16;
   render_all(&set, false, &sheets);
   render_all(&set, true, &reference);
   assert_layers_near(&sheets, &reference, set.scene.light_count);
@@ -421,7 +426,7 @@ static void test_same_bytes(void **state) {
   assert_true(is_same(&first, &other));
 }
 
-/* Each layer alone is what it is among all. */
+/* A layer that is rendered alone is the same as beside all others. */
 static void test_some_layers(void **state) {
   (void)state;
   static layer_set all, some;

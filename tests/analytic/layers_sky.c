@@ -1,6 +1,5 @@
-/* analytic/layers_sky.c - the sky's layers: closed forms of its shadow, and the sum of the layers.
- *
- * Each is asked of the sheets and of the reference. */
+/* analytic/layers_sky.c - the layers of the sky, against closed forms of the sky's shadow, and the sum of all
+ * layers. Each closed form is tested on the sheets and on the reference. */
 #include <stdlib.h>
 #include <string.h>
 
@@ -9,17 +8,17 @@
 
 enum { SIDE = 10, PIXELS = SIDE * SIDE, MIDDLE = SIDE / 2 * SIDE + SIDE / 2 };
 
-/* Buffers of the layers that add up to the picture, and of the sky's shadow. */
+/* The buffers of the layers whose sum is the picture, and of the layer of the sky's shadow. */
 typedef struct sky_layers {
   float pixels[PIXELS * 4], ambient[PIXELS * 3], emission[PIXELS * 3], sky[PIXELS * 3], shadow[PIXELS * 3],
       light[PIXELS * 3];
 } sky_layers;
 
-/* directions: of the reference's sky; 0: the sheets. */
+/* directions: the reference's number of directions of the sky; 0: the sheets render. */
 static void render_layers(stage *set, int directions, sky_layers *made) {
   hl_reference_options options;
   const hl_light_layers lights[1] = {{.picture = made->light}};
-  memset(made, 0xff, sizeof *made); /* NaN: every value must be written */
+  memset(made, 0xff, sizeof *made); /* NaN shows which values were not written */
   const hl_layers wanted = {.struct_size = sizeof wanted,
                             .ambient = made->ambient,
                             .emission = made->emission,
@@ -42,8 +41,9 @@ static void open_sky(stage *set) {
 
 /* ---- the shadow ---- */
 
-/* The mean of (E2(t) + E2(T - t)) / 2 over the depth t in a slab of depth T, seen through the slab; E2(t) =
- * int exp(-t / mu) dmu. cast: of the depth that hides the sky. */
+/* The mean of (E2(t) + E2(T - t)) / 2 over the depth t in a slab of the optical depth T, seen through the
+ * slab. E2(t) is the integral of exp(-t / mu) over mu from 0 to 1. cast: the optical depth of matter that
+ * hides the sky. */
 static double shadow_in_slab(double whole, double cast) {
   double sum = 0, weights = 0;
   for (int i = 0; i < 200; i++) {
@@ -58,8 +58,8 @@ static double shadow_in_slab(double whole, double cast) {
   return sum / weights;
 }
 
-/* Neither the colour of haze nor that of an even sky is in the shadow; what hides the sky is, by its colour.
- */
+/* The layer of the sky's shadow shows the colour of the matter that hides the sky. It shows neither the
+ * haze's own colour nor the colour of an even sky. */
 static void test_shadow_in_slab(void **state) {
   (void)state;
   static sky_layers made;
@@ -87,7 +87,7 @@ static void test_shadow_in_slab(void **state) {
 
 /* ---- the sum ---- */
 
-/* A ball of haze or with a surface above a plate that takes green light alone. */
+/* A ball of haze, or a ball with a surface, stands above a plate that absorbs green light alone. */
 static void add_scene(stage *set, hl_shading shading) {
   enum { N = 14 };
   static const hl_opacity_point opacity[] = {{0, 0}, {0.3, 0}, {0.6, 0.8}};
@@ -109,8 +109,9 @@ static void add_scene(stage *set, hl_shading shading) {
   stage_look(set, (vec3){30, -60, 40}, (vec3){0, 0, -2}, (vec3){0, 0, 1});
 }
 
-/* With the sky's light less by what hides it, and none of it twice: under an even sky and a gradient, for
- * media and surfaces, sheets and reference, and where another light has a sweep of its own. */
+/* The sum of the layers has the sky's light once, less what is hidden of it. This holds under an even sky and
+ * a gradient, for media and surfaces, by the sheets and the reference, and if another light has a sweep of
+ * its own. */
 static void test_sum_is_the_picture(void **state) {
   (void)state;
   static sky_layers made;
@@ -121,7 +122,7 @@ static void test_sum_is_the_picture(void **state) {
     set.scene.sky.type = i < 2 ? HL_SKY_UNIFORM : HL_SKY_GRADIENT;
     set.scene.ambient[1] = 0.1;
     stage_add_directional(&set, (vec3){i == 2 ? 1 : -1, 0.5, -1});
-    if (i == 3) set.scene.camera.height = 90; /* several pixels are averaged */
+    if (i == 3) set.scene.camera.height = 90; /* a pixel is the mean of several */
     render_layers(&set, i == 4 ? 40 : 0, &made);
     double brightest = 0, darkest = 1;
     for (int p = 0; p < PIXELS; p++)
@@ -137,7 +138,8 @@ static void test_sum_is_the_picture(void **state) {
   }
 }
 
-/* White matter sends on what the sky would send if nothing hid it, times the shadow. */
+/* White matter sends the light that it would send if nothing hid the sky, times the layer of the sky's
+ * shadow. */
 static void test_shadow_is_a_factor(void **state) {
   (void)state;
   static sky_layers hidden, open;
@@ -157,7 +159,7 @@ static void test_shadow_is_a_factor(void **state) {
   stage_close(&set);
 }
 
-/* A scene without a sky: zeros, as where nothing is seen. */
+/* In a scene without a sky the sky's layers are zeros, as in pixels that show nothing. */
 static void test_no_sky(void **state) {
   (void)state;
   static sky_layers made;

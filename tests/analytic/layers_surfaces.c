@@ -1,7 +1,5 @@
-/* analytic/layers_surfaces.c - the layers of meshes and isosurfaces: depth, normal, object, shadow, and the
- * sum.
- *
- * Each closed form is asked of the sheets and of the reference. */
+/* analytic/layers_surfaces.c - the layers of meshes and isosurfaces (depth, normal, object, shadow), against
+ * closed forms, and the sum of all layers. Each closed form is tested on the sheets and on the reference. */
 #include <stdlib.h>
 #include <string.h>
 
@@ -10,7 +8,7 @@
 
 enum { SIDE = 32, PIXELS = SIDE * SIDE, LIGHTS = 3 };
 
-/* Buffers of every layer. */
+/* The buffers of all layers. */
 typedef struct layer_set {
   float pixels[PIXELS * 4], ambient[PIXELS * 3], emission[PIXELS * 3], sky[PIXELS * 3],
       sky_shadow[PIXELS * 3], first[PIXELS], mean[PIXELS], normal[PIXELS * 3], object[PIXELS];
@@ -39,7 +37,7 @@ static hl_scene_mesh *add_sphere(mesh_stage *all, vec3 centre, double radius) {
 static void render(stage *set, bool reference, layer_set *made) {
   hl_reference_options options;
   hl_light_layers lights[LIGHTS];
-  memset(made, 0xff, sizeof *made); /* NaN: every value must be written */
+  memset(made, 0xff, sizeof *made); /* NaN shows which values were not written */
   for (size_t l = 0; l < LIGHTS; l++) lights[l] = (hl_light_layers){made->pictures[l], made->shadows[l]};
   const hl_layers wanted = {.struct_size = sizeof wanted,
                             .ambient = made->ambient,
@@ -60,8 +58,8 @@ static void render(stage *set, bool reference, layer_set *made) {
 
 /* ---- depth, normal and object ---- */
 
-/* A board through the whole picture, slanted; light with the eye and against it, where another sweep
- * measures; sheets and reference. */
+/* A slanted board fills the picture. Light travels with the eye's rays, and against them, when another sweep
+ * measures. Sheets and reference are tested. */
 static void test_plane(void **state) {
   (void)state;
   static layer_set made;
@@ -70,7 +68,7 @@ static void test_plane(void **state) {
   for (int k = 0; k < 8; k++) {
     mesh_stage all;
     open_meshes(&all);
-    /* off its middle, where its two triangles meet */
+    /* the middle of the picture does not lie on the line where the board's two triangles meet */
     add_quad(&all, vec3_add(centre, vec3_scale(u, 50)), vec3_scale(u, 90), vec3_scale(v, 90));
     stage_add_directional(&all.set, k % 2 ? (vec3){0.1, 0.2, 1} : (vec3){0.1, 0.2, -1});
     if (k / 2 % 2 == 1) {
@@ -94,9 +92,10 @@ static void test_plane(void **state) {
   }
 }
 
-/* An isosurface of a field that is linear is a plane, of many triangles: each pixel has the depth at which
- * its own ray meets the plane, however many triangles share the pixel. A second plane lies behind it. Faint
- * planes take less than a hundredth of a pixel with their first triangles. */
+/* The isosurface of a linear field is a plane of many triangles. However many of them share a pixel, the
+ * pixel's depth is that at which its own ray meets the plane. A second plane lies behind the first. Planes
+ * are also tested with so low an opacity that the first triangle in a pixel takes less than a hundredth of
+ * it. */
 static void test_depth_of_isosurface(void **state) {
   (void)state;
   enum { N = 28 };
@@ -140,14 +139,15 @@ static void test_depth_of_isosurface(void **state) {
   }
 }
 
-/* Where a ray meets a sphere; infinite: it does not. */
+/* The distance at which a ray meets a sphere; infinite if it does not. */
 static double meet_sphere(vec3 origin, vec3 direction, vec3 centre, double radius) {
   vec3 away = vec3_subtract(origin, centre);
   double along = vec3_dot(away, direction), square = radius * radius - vec3_dot(away, away) + along * along;
   return square < 0 ? INFINITY : -along - sqrt(square);
 }
 
-/* Two spheres, one partly before the other: each pixel shows the nearer one's number, depth and normal. */
+/* One sphere stands partly before another. Each pixel shows the number, depth and normal of the nearer one.
+ */
 static void test_two_spheres(void **state) {
   (void)state;
   static layer_set made;
@@ -192,14 +192,14 @@ static void test_two_spheres(void **state) {
   }
 }
 
-/* Mean depth from where a ray enters matter of extinction sigma, `length` deep, times its alpha: the integral
- * of s sigma exp(-sigma s). */
+/* The mean depth, times alpha, from the place where a ray enters matter of the extinction sigma that is
+ * `length` deep: the integral of s sigma exp(-sigma s). */
 static double depth_of_haze(double sigma, double length) {
   return 1 / sigma - exp(-sigma * length) * (length + 1 / sigma);
 }
 
-/* A pane of opacity o in the middle of a haze: the means count the haze before it, the pane, and the haze
- * that is seen through it. */
+/* A pane of the opacity o stands in the middle of haze. The mean depth counts the haze before the pane, the
+ * pane, and the haze that is seen through the pane. */
 static void test_pane_in_haze(void **state) {
   (void)state;
   static layer_set made;
@@ -227,8 +227,9 @@ static void test_pane_in_haze(void **state) {
 
 /* ---- shadow ---- */
 
-/* A slanted floor below a coloured pane that is not seen: its angle to the light is in the light's picture,
- * and not in its shadow. A light without shadows gives 1, as does a floor that receives none. */
+/* A slanted floor below a coloured pane that the eye does not see. The angle between floor and light shows in
+ * the light's layer, and not in its shadow's layer. The layer of the shadow is 1 under a light without
+ * shadows, and on a floor that receives no shadows. */
 static void test_shadow_of_pane(void **state) {
   (void)state;
   static layer_set made;
@@ -257,8 +258,8 @@ static void test_shadow_of_pane(void **state) {
   }
 }
 
-/* A sphere hides half of its own surface from a light: the shadow there is 0, and 1 on the lit half. A pane
- * that is lit from behind takes its own share. */
+/* A sphere hides half of its own surface from a light: the shadow's layer is 0 on that half, and 1 on the lit
+ * half. On a pane that is lit from behind, the shadow's layer shows what the pane itself absorbs. */
 static void test_own_shadow(void **state) {
   (void)state;
   static layer_set made;
@@ -274,7 +275,8 @@ static void test_own_shadow(void **state) {
       if (made.pixels[4 * i + 3] < 0.999f) continue;
       const float *n = made.normal + 3 * i;
       double cosine = vec3_dot((vec3){n[0], n[1], n[2]}, towards);
-      if (fabs(cosine) < 0.3) continue; /* by the terminator a look-up lies between both */
+      /* near the terminator a shadow look-up gives a value between 0 and 1 */
+      if (fabs(cosine) < 0.3) continue;
       assert_near(made.shadows[0][3 * i], cosine > 0 ? 1 : 0, 0.02);
       lit += cosine > 0;
       dark += cosine < 0;
@@ -296,7 +298,7 @@ static void test_own_shadow(void **state) {
 
 static const hl_opacity_point CLEAR[] = {{0, 0}, {1, 0}};
 
-/* Boards, a sphere and an isosurface in a haze, under several lights and a sky. */
+/* Boards, a sphere and an isosurface stand in haze, under several lights and a sky. */
 static void add_scenery(mesh_stage *all, const hl_isosurface *iso) {
   enum { N = 14 };
   static float voxels[N * N * N];
@@ -326,7 +328,8 @@ static void add_scenery(mesh_stage *all, const hl_isosurface *iso) {
   all->set.scene.sky.strength = 0.4;
   all->set.scene.render.shadows = HL_SHADOWS_SOFT;
   stage_add_directional(&all->set, (vec3){0.3, -0.4, -1})->angular_diameter_deg = 8;
-  stage_add_directional(&all->set, (vec3){0.5, 0.3, 1})->color[1] = 0.3; /* sheets of its own */
+  /* this light has sheets of its own */
+  stage_add_directional(&all->set, (vec3){0.5, 0.3, 1})->color[1] = 0.3;
   hl_light *lamp = stage_add_point(&all->set, (vec3){20, 5, 25});
   lamp->falloff = HL_FALLOFF_INVERSE_SQUARE;
   lamp->intensity = 500;
@@ -370,7 +373,8 @@ static void test_sum_is_the_picture(void **state) {
   mesh_stage_close(&all);
 }
 
-/* The layers do not change the picture, and do not depend on threads; an isosurface is its volume. */
+/* The picture is the same with layers and without. Layers do not depend on the number of threads. In the
+ * layer of objects, an isosurface has the number of its volume. */
 static void test_same_bytes(void **state) {
   (void)state;
   static layer_set one, three;

@@ -13,13 +13,13 @@
 
 enum { MOST_POSTS = 20000 };
 
-/* What a part has sent. */
+/* What a part of the picture has sent. */
 typedef struct sent_post {
   unsigned char *bytes; /* owned; [count] */
   size_t count;
 } sent_post;
 
-/* A place where all parts of a picture meet. */
+/* The meeting place of all parts of a picture. */
 struct meeting {
   int parts;
   pthread_barrier_t barrier;
@@ -38,7 +38,7 @@ static void gather_parts(void *data, const void *from, size_t bytes, void *to) {
   pthread_barrier_wait(&meeting->barrier);
   for (int i = 0; i < meeting->parts; i++)
     memcpy((unsigned char *)to + (size_t)i * bytes, meeting->from[i], bytes);
-  pthread_barrier_wait(&meeting->barrier); /* nobody changes what others still read */
+  pthread_barrier_wait(&meeting->barrier); /* no part changes bytes that other parts still read */
 }
 
 static void send_post(void *data, const light_post *post) {
@@ -47,7 +47,7 @@ static void send_post(void *data, const light_post *post) {
   int own = part->exchange.part, *number = post->memory;
   assert_true(post->bytes <= post->most && meeting->post_count[own] < MOST_POSTS);
   part->gathered += post->bytes;
-  memset(post->to, 0xff, (size_t)meeting->parts * post->most); /* nobody reads what has not arrived */
+  memset(post->to, 0xff, (size_t)meeting->parts * post->most); /* no part reads bytes that have not arrived */
   pthread_mutex_lock(&meeting->lock);
   *number = meeting->post_count[own]++;
   sent_post *sent = &meeting->posts[own][*number];

@@ -5,18 +5,20 @@
 #include "core/light_exchange.h"
 #include "reference_stage.h"
 
-enum { MOST_BANDS = 8 }; /* the most parts of a picture */
+enum { MOST_BANDS = 8 }; /* the greatest number of parts of a picture */
 
 typedef struct meeting meeting;
 
-/* A renderer of a part of the picture. */
+/* A renderer that makes a part of the picture. */
 typedef struct part_thread {
   meeting *meeting;
   light_exchange exchange;
   void (*prepare)(stage *set);
-  uint64_t filled, gathered; /* pixels of the light; bytes of this part, sent ones too */
-  int looks;                 /* at posts under way */
-  bool spoiled;              /* a post was changed on its way */
+  /* the number of pixels of light that were filled, and of bytes that this part gathered, including its own
+   */
+  uint64_t filled, gathered;
+  int looks;    /* how often a part looked at messages that were still under way */
+  bool spoiled; /* whether a message was changed while it was under way */
   float *pixels;
   int width, height, frames;
   hl_status status;
@@ -24,11 +26,12 @@ typedef struct part_thread {
 
 enum { TOGETHER_SIDE = 256 };
 
-/* How parts exchange light: they wait for each other; they go on meanwhile; in posts of a few tiles. */
+/* How parts exchange light: each waits for the others; each goes on meanwhile; each sends messages of a few
+ * tiles. */
 typedef enum exchange_way { WAITING, POSTING, LITTLE_POSTS } exchange_way;
 
-/* Renders a picture by so many parts at once; its pixels are the parts' sum. A second frame finds memory that
- * the first has used. threads: [parts]. */
+/* Renders a picture by several parts at once. The sum of the parts' pixels is the picture. A second frame
+ * uses the memory of the first. threads: [parts]. */
 void render_together(part_thread *threads, int parts, exchange_way how, int width, int height, int frames,
                      void (*prepare)(stage *set), float *pixels);
 

@@ -18,7 +18,7 @@ motion motion_of_shift(double x, double y, double z) { return (motion){NO_TURN, 
 motion motion_of_turn(vec3 axis, double angle_deg) {
   return (motion){mat3_rotation(vec3_normalise(axis), angle_deg * HL_PI / 180), 1, {0, 0, 0}};
 }
-/* I - 2 n n' */
+/* The matrix of a reflection, I - 2 n n'. */
 motion motion_of_mirror(vec3 n) {
   motion mirror = motion_of_scale(1);
   const double c[3] = {n.x, n.y, n.z};
@@ -62,8 +62,8 @@ static void move_light(const motion *by, hl_light *light, double (*vertices)[3])
   move_length(by, light->texture.screen_up);
 }
 
-/* Axis and angle of a rotation (derived from Rodrigues's formula): the axis is that column of R + R' + (1 -
- * trace) I which is longest, the angle's sine its part of the antisymmetric rest. */
+/* Finds the axis and the angle of a rotation R (derived from Rodrigues's formula). The axis is the longest
+ * column of R + R' + (1 - trace) I. The sine of the angle is the axis's part of R - R'. */
 static void axis_of_rotation(mat3 r, double axis[3], double *angle_deg) {
   double trace = r.row[0].x + r.row[1].y + r.row[2].z;
   vec3 rest = {r.row[2].y - r.row[1].z, r.row[0].z - r.row[2].x, r.row[1].x - r.row[0].y},
@@ -80,7 +80,8 @@ static void axis_of_rotation(mat3 r, double axis[3], double *angle_deg) {
   *angle_deg = atan2(vec3_dot(rest, longest), trace - 1) * 180 / HL_PI;
 }
 
-/* by * (scale R p + t) = (by.scale scale) (by.turn R) p + (by.scale by.turn t + by.shift) */
+/* The composed transform: by * (scale R p + t) = (by.scale scale) (by.turn R) p + (by.scale by.turn t +
+ * by.shift). */
 static void move_transform(const motion *by, hl_scene_volume *volume) {
   mat3 turn = NO_TURN;
   if (volume->rotate_angle_deg != 0)
@@ -114,8 +115,8 @@ static void move_axes(hl_context *context, const motion *by, hl_scene_volume *vo
   memset(volume->translate, 0, sizeof volume->translate);
 }
 
-/* Gradients are data units per world unit. points: room for the volume's gradient opacity, kept until the
- * scene is created, which copies it. */
+/* Adapts gradients, which are data units per world unit. points: memory for the volume's gradient opacity. It
+ * must last until the scene is created, because the scene copies it. */
 static void move_gradients(const motion *by, hl_transfer_function *function, hl_opacity_point points[4]) {
   if (function->plane.second == HL_SECOND_GRADIENT)
     function->plane.second_scale = by->scale * hl_plane_second_scale(&function->plane);
@@ -142,7 +143,8 @@ void stage_move(stage *set, const motion *by, int by_transform, double (*vertice
     hl_scene_volume *volume = &set->volumes[v];
     volume->transfer_function.unit_distance *= by->scale;
     move_gradients(by, &volume->transfer_function, gradients[v]);
-    bool cut = volume->clipped || volume->cut_count > 0; /* clip boxes and cuts follow transforms alone */
+    /* clip boxes and cuts follow a volume's transform, and not its axes */
+    bool cut = volume->clipped || volume->cut_count > 0;
     if (cut || (by_transform && determinant(by->turn) > 0)) move_transform(by, volume);
     else move_axes(set->context, by, volume);
   }

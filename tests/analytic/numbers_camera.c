@@ -1,5 +1,5 @@
-/* analytic/numbers_camera.c - eyes in odd places, extreme angles and extreme sizes: the pictures they must
- * give. */
+/* analytic/numbers_camera.c - pictures from eyes in unusual places, at extreme angles and in extreme sizes.
+ */
 #include <setjmp.h>
 #include <stdarg.h>
 #include <stdio.h>
@@ -13,7 +13,7 @@
 static const vec3 LOW = {-3, -2, -4}, HIGH = {5, 2, 3};
 static const double OPACITY = 0.2;
 
-/* A homogeneous box: alpha is 1 - (1 - OPACITY)^chord along every ray. */
+/* A homogeneous box. Alpha along every ray is 1 - (1 - OPACITY)^chord. */
 static void open_box(stage *set, int width, int height) {
   stage_open(set);
   set->scene.render.threads = 1;
@@ -50,7 +50,7 @@ static void open_perspective(stage *set, vec3 eye, vec3 target, double fovy_deg)
   stage_look(set, eye, target, (vec3){0.1, 0.2, 1});
 }
 
-/* Inside, on a voxel's centre, on a face, an edge and a corner. */
+/* The eye is inside the box, on a voxel's centre, on a face, on an edge, and on a corner. */
 static void test_eyes_in_the_volume(void **state) {
   (void)state;
   static const vec3 eyes[] = {{0.2, -0.3, 0.4}, {0.5, 0.5, 0.5}, {1, 0, -0.5}, {-3, 0, 0},
@@ -58,7 +58,7 @@ static void test_eyes_in_the_volume(void **state) {
   for (size_t e = 0; e < sizeof eyes / sizeof *eyes; e++)
     for (int target = 0; target < 3; target++)
       for (int lit = 0; lit <= (target == 0 && e % 3 == 0);
-           lit++) { /* shadow buffers seen from within are large */
+           lit++) { /* shadow buffers are large if the eye is within the volume */
         stage set;
         char what[80];
         const vec3 targets[] = {{0.9, 0.4, -0.5}, {-7, 1, 2}, {20, -9, 3}};
@@ -96,7 +96,7 @@ static hl_status render_status(stage *set, hl_error *error) {
   return status;
 }
 
-/* Right as far as there are sheets that all rays cross, and refused beyond. */
+/* A view is right if there are sheets that all its rays cross, and refused otherwise. */
 static void test_wide_views(void **state) {
   (void)state;
   static const double angles[] = {120, 150, 170, 179.999};
@@ -119,7 +119,8 @@ static void test_wide_views(void **state) {
       refused += status == HL_ERROR_UNSUPPORTED;
       stage_close(&set);
     }
-  assert_in_range(refused, 3, 8); /* 179.999 degrees, and wide ones whose light comes from beside */
+  /* The field of view is 179.999 degrees, or wide with light from the side. */
+  assert_in_range(refused, 3, 8);
 }
 
 static void test_eyes_far_and_near(void **state) {
@@ -134,7 +135,7 @@ static void test_eyes_far_and_near(void **state) {
   }
 }
 
-/* Looking away, and with the volume behind the eye. */
+/* The eye looks away from the volume, so that the volume lies behind it. */
 static void test_nothing_ahead(void **state) {
   (void)state;
   static float pixels[18 * 14 * 4];
@@ -149,8 +150,8 @@ static void test_nothing_ahead(void **state) {
   }
 }
 
-/* Up along the line of sight says nothing: z stands in, or y where the sight is along z; in the reference as
- * well. */
+/* If the camera's up is parallel to the line of sight, z replaces it, or y if the line of sight is along z.
+ * The reference does the same. */
 static void test_useless_up(void **state) {
   (void)state;
   static float plain[18 * 14 * 4], useless[18 * 14 * 4], exact[18 * 14 * 4];
@@ -189,8 +190,8 @@ static void test_sizes(void **state) {
   }
 }
 
-/* 16384 x 16384 pixels are 4.3 GB as floats: under a limit of 1 GB the picture is refused before anything is
- * rendered. */
+/* The floats of a picture of 16384 x 16384 pixels take 4.3 GB. Under a limit of 1 GB the picture is refused
+ * before anything is rendered. */
 static void test_large_picture_under_a_limit(void **state) {
   (void)state;
   stage set;
@@ -203,7 +204,8 @@ static void test_large_picture_under_a_limit(void **state) {
   options.memory_limit = (uint64_t)1 << 30;
   stage_open_with(&set, &options);
   stage_add_box(&set, LOW, HIGH);
-  set.scene.width = set.scene.height = 16380; /* no whole tiles: not made in the caller's pixels */
+  /* The size is no multiple of a tile's, so that the picture is not made in the caller's pixels. */
+  set.scene.width = set.scene.height = 16380;
   assert_int_equal(hl_scene_create(set.context, &set.scene, &scene, &error), HL_OK);
   assert_int_equal(hl_renderer_create(set.context, &renderer, &error), HL_OK);
   assert_int_equal(hl_renderer_render(renderer, scene, pixel, 4 * 16380, NULL, &error), HL_ERROR_MEMORY);

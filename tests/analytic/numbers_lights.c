@@ -1,5 +1,5 @@
-/* analytic/numbers_lights.c - lights without extent, in odd places, of odd strength: the pictures they must
- * give. */
+/* analytic/numbers_lights.c - pictures under lights without extent, in unusual places, and of unusual
+ * strength. */
 #include <setjmp.h>
 #include <stdarg.h>
 #include <stdio.h>
@@ -12,7 +12,7 @@
 
 enum { SIDE = 14, FLOATS = SIDE * SIDE * 4, GRID = 9 };
 
-/* Haze around a denser middle; voxel (4, 4, 4) is at the origin. */
+/* Haze around a denser middle. The voxel (4, 4, 4) lies at the origin. */
 static void open_haze(stage *set) {
   static float voxels[GRID * GRID * GRID];
   for (int i = 0; i < GRID * GRID * GRID; i++)
@@ -78,8 +78,8 @@ static void render_light(make_light *make, double extent, hl_shadows shadows, hl
   stage_close(&set);
 }
 
-/* Soft shadows of a light without extent are hard ones, to the byte; of one that is hardly extended, nearly
- * so. */
+/* The soft shadows of a light without extent have the bytes of its hard shadows. Those of a light that is
+ * hardly extended are nearly the same. */
 static void test_no_extent(void **state) {
   (void)state;
   static float expected[FLOATS], pixels[FLOATS];
@@ -90,8 +90,9 @@ static void test_no_extent(void **state) {
       assert_memory_equal(expected, pixels, sizeof expected);
       for (double extent = 1e-300; extent < 1e-2; extent *= 1e149) {
         render_light(MAKERS[m], extent, HL_SHADOWS_SOFT, (hl_soft_method)method, pixels);
+        /* the buffers of soft shadows lie in other places, and are coarser */
         for (int i = 0; i < FLOATS; i++)
-          if (!(fabsf(pixels[i] - expected[i]) < 2e-2f)) /* buffers lie otherwise, and are coarser */
+          if (!(fabsf(pixels[i] - expected[i]) < 2e-2f))
             fail_msg("light %d, method %d, extent %g: %g instead of %g", m, method, extent, (double)pixels[i],
                      (double)expected[i]);
       }
@@ -119,7 +120,8 @@ static void assert_near_reference(stage *set, double mean, const char *what) {
   assert_true(light > 0.05);
 }
 
-/* At the eye, on the middle voxel's centre, between voxels, on the box's face and corner. */
+/* The lamp stands at the eye, on the centre of the middle voxel, between voxels, and on the box's face and
+ * corner. */
 static void test_lamps_in_odd_places(void **state) {
   (void)state;
   static const vec3 places[] = {{12, -14, 9}, {0, 0, 0}, {1.5, -2.5, 0.5}, {4.5, 0, 0}, {4.5, 4.5, 4.5}};
@@ -132,13 +134,13 @@ static void test_lamps_in_odd_places(void **state) {
       stage_add_point(&set, places[p])->radius = soft ? 1 : 0;
       snprintf(what, sizeof what, "%s lamp at %g %g %g", soft ? "soft" : "hard", places[p].x, places[p].y,
                places[p].z);
-      bool border = p == 4; /* where shares of sectors meet */
+      bool border = p == 4; /* at the border of the box, the shares of the lamp's sectors meet */
       assert_near_reference(&set, soft ? 2e-2 : border ? 8e-3 : 2e-3, what);
       stage_close(&set);
     }
 }
 
-/* A light with the eye, the target and the middle on one line, and one in the plane of the picture. */
+/* One light stands on the line through the eye and the target, and one in the plane of the picture. */
 static void test_aligned_lights(void **state) {
   (void)state;
   static const vec3 ways[] = {{-12, 14, -9}, {12, -14, 9}, {14, 12, 0}};
@@ -181,7 +183,8 @@ static void test_strengths(void **state) {
   }
 }
 
-/* Within the data light that falls with the square of the distance is as bright as floats bear. */
+/* A lamp stands within the data, and its light falls with the square of the distance. The picture is finite,
+ * as bright as floats allow. */
 static void test_falloff_at_the_lamp(void **state) {
   (void)state;
   static float pixels[FLOATS];

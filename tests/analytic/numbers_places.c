@@ -1,5 +1,5 @@
-/* analytic/numbers_places.c - tiny, huge, far-away and mirrored scenes, far-away eyes and lamps: the pictures
- * they must give. */
+/* analytic/numbers_places.c - pictures of tiny, huge, far-away and mirrored scenes, and of scenes with
+ * far-away eyes and lamps. */
 #include <setjmp.h>
 #include <stdarg.h>
 #include <stdio.h>
@@ -15,7 +15,7 @@ enum { WIDTH = 30, HEIGHT = 26, FLOATS = WIDTH * HEIGHT * 4 };
 
 static double vertices[64][3];
 
-/* Every kind of shadow in turn. */
+/* Each kind of shadows in turn. */
 static void open_scene(stage *set, const scenario *from, size_t index) {
   stage_open(set);
   from->make(set);
@@ -48,7 +48,7 @@ static difference compare(const float *a, const float *b) {
   for (int i = 0; i < FLOATS; i++) {
     double off = fabs((double)a[i] - (double)b[i]);
     d.mean += off / FLOATS;
-    d.greatest = off <= d.greatest ? d.greatest : off; /* a NaN is the greatest */
+    d.greatest = off <= d.greatest ? d.greatest : off; /* a NaN counts as the greatest number */
   }
   return d;
 }
@@ -64,11 +64,12 @@ typedef struct move_case {
   const char *name;
   motion by;
   int by_transform;
-  double mean, greatest; /* allowed; 0: the same bytes */
+  double mean, greatest; /* the allowed differences; 0: the pictures must have the same bytes */
 } move_case;
 
-/* Every scene moved in every way. A motion that is no power of two rounds: at the boundary between two
- * slicing directions (light exactly across the view) the other one may be taken, whose picture is as good. */
+/* Moves each scene in each way. If a motion is no power of two, positions are rounded. A light that shines
+ * exactly across the view may then get the other one of its two slicing directions, whose picture is as good.
+ */
 static void check_moves(const move_case *cases, size_t case_count, bool mirrored) {
   static float expected[FLOATS], pixels[FLOATS];
   size_t scenes;
@@ -77,7 +78,7 @@ static void check_moves(const move_case *cases, size_t case_count, bool mirrored
     stage set;
     open_scene(&set, &all[i], i);
     stage_render_sheets(&set, expected);
-    /* A clip box and cuts follow the volume's transform, which mirrors nothing. */
+    /* A clip box and cuts follow the volume's transform. The transform mirrors nothing. */
     bool clipped = set.volumes[0].clipped || set.volumes[0].cut_count > 0;
     stage_close(&set);
     for (size_t c = 0; c < case_count && !(mirrored && clipped); c++) {
@@ -109,8 +110,8 @@ static void test_far_origins(void **state) {
   check_moves(cases, 1, false);
 }
 
-/* A left-handed grid: buffers and sheets lie otherwise on the mirror's other side, as finely as the pixels
- * are. */
+/* A left-handed grid is the mirror image of a right-handed one. Buffers and sheets then lie on the mirror's
+ * other side, so that positions are the same to a pixel. */
 static void test_mirror(void **state) {
   (void)state;
   const move_case cases[] = {
@@ -127,7 +128,8 @@ static const scenario *scene_named(const char *name) {
   return NULL;
 }
 
-/* From afar a perspective picture is the orthographic one: rays differ by angles of size / distance. */
+/* From far away, a perspective picture is the orthographic one. Its rays differ by angles of size / distance.
+ */
 static void test_far_eyes(void **state) {
   (void)state;
   static float expected[FLOATS], pixels[FLOATS];
@@ -145,7 +147,7 @@ static void test_far_eyes(void **state) {
       assert_close(expected, pixels, 1e-5, 2e-3, "an orthographic camera from afar");
       camera->type = HL_CAMERA_PERSPECTIVE;
       camera->fovy_deg = 2 * atan(camera->height / 2 / distance) * 180 / HL_PI;
-      if (camera->fovy_deg >= 1e-6) { /* the least there is */
+      if (camera->fovy_deg >= 1e-6) { /* the smallest positive number */
         stage_render_sheets(&set, pixels);
         assert_close(expected, pixels, 1e-3, 2e-2, "a perspective camera from afar");
       }
@@ -174,12 +176,12 @@ static void test_far_lamps(void **state) {
         light->position[2] = position.z;
         stage_render_sheets(&set, pixels);
         assert_close(expected, pixels, 2e-4, 5e-2,
-                     "a lamp from afar"); /* the buffers' pixels lie otherwise */
+                     "a lamp from afar"); /* the pixels of the buffers lie in other places */
         stage_close(&set);
       }
 }
 
-/* What floats cannot hold beside voxels is refused, by name. */
+/* Numbers that floats cannot hold beside the voxels are refused, and the message names them. */
 static void test_beyond_reach(void **state) {
   (void)state;
   stage set;
@@ -209,7 +211,7 @@ static void test_beyond_reach(void **state) {
   stage_close(&set);
 }
 
-/* Voxels of very different sizes make more sheets than can be told apart. */
+/* If the sizes of voxels differ very much, there are more sheets than can be told apart. */
 static void test_too_many_sheets(void **state) {
   (void)state;
   static float pixels[16 * 16 * 4];

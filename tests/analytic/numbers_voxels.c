@@ -1,5 +1,5 @@
-/* analytic/numbers_voxels.c - voxels that are no numbers, all equal, huge, tiny or alone: the pictures they
- * must give. */
+/* analytic/numbers_voxels.c - pictures of voxels that are not finite, all equal, huge, tiny, or the only one.
+ */
 #include <float.h>
 #include <math.h>
 #include <setjmp.h>
@@ -52,7 +52,8 @@ static void render_cube(const float *voxels, float *pixels) {
   render_cube_of(HL_VOXEL_F32, HL_KERNEL_BSPLINE, voxels, pixels);
 }
 
-/* They are transparent: the picture is the one with the commonest transparent value in their place. */
+/* Voxels that are not finite are transparent. The picture is the same as with the most common transparent
+ * value in their places. */
 static void test_not_finite(void **state) {
   (void)state;
   static float voxels[VOXELS], pixels[FLOATS], expected[FLOATS];
@@ -133,8 +134,8 @@ static void render_scaled(double by, hl_shading shading, hl_sky_type sky, float 
   stage_close(&set);
 }
 
-/* The picture does not depend on the data's unit. Below 2^-126 floats have fewer digits: 2^-135 leaves 14
- * bits. */
+/* The picture does not depend on the unit of the data. Floats below 2^-126 have fewer digits; at 2^-135 they
+ * have 14 bits. */
 static void test_units_of_data(void **state) {
   (void)state;
   static float expected[FLOATS], pixels[FLOATS];
@@ -168,7 +169,7 @@ static void test_units_of_data_under_a_sky(void **state) {
   }
 }
 
-/* Fill values among data; those beyond 1e36 are refused. */
+/* Some voxels among the data hold a fill value. Fill values beyond 1e36 are refused. */
 static void test_extremes_among_data(void **state) {
   (void)state;
   static float voxels[VOXELS], pixels[FLOATS];
@@ -186,8 +187,9 @@ static void test_extremes_among_data(void **state) {
 
 /* ---- types ---- */
 
-/* Voxels of nothing and of the most that there is, in clumps: the greatest sums, and slopes, that whole
- * weights have to hold. On average: where a surface turns away from the light a pixel may differ by more. */
+/* Clumps of voxels hold 0 or the greatest number, so that the weighted sums and slopes are the greatest that
+ * whole numbers must hold. Means of differences are compared, since single pixels differ by more if a surface
+ * turns away from the light. */
 static void test_types_agree(void **state) {
   (void)state;
   static const hl_voxel_type whole[] = {HL_VOXEL_U8, HL_VOXEL_U16};
@@ -212,8 +214,8 @@ static void test_types_agree(void **state) {
 
 /* ---- one voxel along an axis ---- */
 
-/* A layer is a stack of equal thinner layers: its border values continue. Without shadows, whose buffers are
- * as coarse as voxels are. */
+/* A layer looks like a stack of thinner layers, because the values at its borders go on beyond them. Shadows
+ * are off, since their buffers are as coarse as the voxels. */
 static void render_layers(const size_t n[3], int axis, size_t layers, hl_shading shading, float *pixels) {
   static float voxels[12 * 12 * 12];
   static const hl_opacity_point opacity[] = {{0.2, 0}, {0.5, 0.4}, {1, 0.6}};
@@ -233,7 +235,8 @@ static void render_layers(const size_t n[3], int axis, size_t layers, hl_shading
   volume->transfer_function.opacity = opacity;
   volume->transfer_function.opacity_count = 3;
   volume->shading = shading;
-  volume->cut_shading = HL_CUT_SHADING_GRADIENT; /* faces are lit within two voxels, which differ */
+  /* two voxels at a face have other light, and they differ between the layers */
+  volume->cut_shading = HL_CUT_SHADING_GRADIENT;
   set.scene.render.shadows = HL_SHADOWS_OFF;
   double smallest = fmin(spacing[0], fmin(spacing[1], spacing[2]));
   set.scene.render.sheet_spacing = 0.2 / smallest;
@@ -264,7 +267,8 @@ static void test_one_voxel_thick(void **state) {
 
 /* ---- transfer functions and sheets ---- */
 
-/* A medium is as thick whatever the length its opacity is for and however it is cut. */
+/* The opacity of a medium does not depend on the length for which it is given, or on how the medium is cut
+ * into voxels. */
 static void test_unit_distances_and_spacings(void **state) {
   (void)state;
   static const double units[] = {1e-15, 1e-3, 1, 1e3, 1e15}, spacings[] = {0.01, 0.5, 7, 100};
@@ -283,8 +287,9 @@ static void test_unit_distances_and_spacings(void **state) {
         stage_eye_ray(&set, i % SIDE, i / SIDE, &origin, &direction);
         double chord = stage_chord((vec3){-4, -4, -4}, (vec3){4, 4, 4}, origin, direction);
         double alpha = -expm1(log1p(-0.2) * chord / units[u]);
-        if (chord > 0 && chord < 1e-4 * spacings[s]) continue; /* within floats of the box's outline */
-        if (!(fabs((double)pixels[4 * i + 3] - alpha) < 1e-3)) /* opaque from 1 - 1/2048 on */
+        /* the ray passes the box's edge at a distance that floats cannot tell from 0 */
+        if (chord > 0 && chord < 1e-4 * spacings[s]) continue;
+        if (!(fabs((double)pixels[4 * i + 3] - alpha) < 1e-3)) /* alpha from 1 - 1/2048 on counts as opaque */
           fail_msg("per %g, spacing %g: alpha %.9g instead of %.9g", units[u], spacings[s],
                    (double)pixels[4 * i + 3], alpha);
       }

@@ -65,7 +65,7 @@ static void spoil_voxels(dice *d, size_t count, float *voxels) {
     if (chance(d, 0.1)) voxels[i] = values[below(d, 3)];
 }
 
-/* Rising, some of them steps. */
+/* Draws an opacity that rises with the value; some of them have steps. */
 static void draw_points(dice *d, hl_transfer_function *function, hl_opacity_point *opacity,
                         hl_color_point *color) {
   double value = between(d, -0.2, 0.4), densest = chance(d, 0.3) ? 1 : between(d, 0.05, 0.9);
@@ -109,8 +109,8 @@ static hl_volume *make_volume(dice *d, hl_context *context, const hl_volume_desc
   if (description.type == HL_VOXEL_F32 && chance(d, 0.3)) spoil_voxels(d, count, voxels);
   if (description.type == HL_VOXEL_U8) {
     description.value_scale = 1.0 / 255;
-    for (size_t i = 0; i < count; i++)
-      ((uint8_t *)voxels)[i] = (uint8_t)lrintf(voxels[i] * 255); /* ahead of what is read */
+    /* the bytes are written behind the place where floats are still read */
+    for (size_t i = 0; i < count; i++) ((uint8_t *)voxels)[i] = (uint8_t)lrintf(voxels[i] * 255);
   } else if (description.type == HL_VOXEL_U16) {
     description.value_scale = 1.0 / 65535;
     for (size_t i = 0; i < count; i++) ((uint16_t *)voxels)[i] = (uint16_t)lrintf(voxels[i] * 65535);
@@ -188,7 +188,7 @@ static void draw_texture(dice *d, float *pixels, double size, hl_light *light) {
         vec3_scale(vec3_add(v, vec3_scale(u, between(d, -0.4, 0.4))), between(d, 0.3, 1.5) * size));
 }
 
-/* Around a middle, in its plane. */
+/* Draws a polygon around a centre, in a plane. */
 static void draw_vertices(dice *d, double size, double (*vertices)[3], hl_light *light) {
   vec3 n = direction(d), u = vec3_perpendicular(n), v = vec3_cross(n, u), middle = vec3_of(light->position);
   int count = 3 + below(d, RANDOM_VERTICES - 2);
@@ -236,7 +236,7 @@ static void draw_light(dice *d, random_scene *scene, double size) {
 
 /* ---- the rest ---- */
 
-/* Drawn last, so that scenes keep the rest of what their number draws. */
+/* This is drawn last, so that a number's scene keeps everything that was drawn before. */
 static void draw_shine(dice *d, stage *set) {
   for (size_t v = 0; v < set->scene.volume_count; v++) {
     if (chance(d, 0.2)) set->volumes[v].material.emission = between(d, 0, 2);

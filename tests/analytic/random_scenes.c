@@ -20,16 +20,16 @@
 
 enum { SIDE = 32, FLOATS = SIDE * SIDE * 4 };
 
-/* Means of the difference, as parts of the brightest value; the greatest of 1100 scenes were 0.0029, and
- * 0.0121 where shadows are coarse or a lamp lies within the content. */
+/* The bars for the mean difference, as a fraction of the brightest value. The greatest means in 1100 scenes
+ * were 0.0029, and 0.0121 if shadows are coarse or a lamp stands within the content. */
 static const double MEAN = 0.004, COARSE_MEAN = 0.02;
-enum { SECTOR_SWEEPS = 6 }; /* one for each sector of a lamp within the content */
+enum { SECTOR_SWEEPS = 6 }; /* a lamp within the content has one sweep for each of its sectors */
 
 static uint64_t first_scene = 1, scene_count = 16;
 
 static size_t floats_of(const stage *set) { return (size_t)set->scene.width * (size_t)set->scene.height * 4; }
 
-/* *sweeps may be null. */
+/* sweeps: may be null. */
 static hl_status render(stage *set, int threads, float *pixels, int *sweeps, hl_error *error) {
   hl_scene *scene = NULL;
   hl_renderer *renderer = NULL;
@@ -53,7 +53,7 @@ static void check_range(uint64_t seed, const float *pixels, size_t floats) {
       fail_msg("scene %llu: value %zu is %g", (unsigned long long)seed, i, (double)pixels[i]);
 }
 
-/* One thread takes picture and lights in turns; three take stretches of slabs. */
+/* One thread does the work of the picture and of the lights in turn. Three threads take ranges of slabs. */
 static void check_threads(uint64_t seed, stage *set, const float *expected) {
   static float pixels[FLOATS];
   hl_error error = {0};
@@ -65,8 +65,8 @@ static void check_threads(uint64_t seed, stage *set, const float *expected) {
   set->scene.render.slabs_at_once = 0;
 }
 
-/* The same sheets see the same matter: only rounding may make the shadowed picture brighter. What is not seen
- * keeps its shadow: without it the sheets would not reach as far. */
+/* The same sheets pass the same matter, so that only rounding may make the shadowed picture brighter. Things
+ * that the eye does not see keep their shadows, since otherwise the sheets would not reach as far. */
 static void check_shadows_darken(uint64_t seed, stage *set, const float *shadowed) {
   static float pixels[FLOATS];
   hl_error error = {0};
@@ -80,9 +80,9 @@ static void check_shadows_darken(uint64_t seed, stage *set, const float *shadowe
                (double)shadowed[i], (double)pixels[i]);
 }
 
-/* Buffers and sheets keep their places to the content but not their rasters: pictures differ as their pixels
- * do. Nearest lookups and buffers of a few pixels, where asked for, differ by whole pixels, and so may the
- * first pixels around a lamp within matter. */
+/* Buffers and sheets turn with the content, but the grids of their pixels do not. So pictures differ by about
+ * a pixel's error. If the nearest pixel of a buffer is looked up, or the buffer has few pixels, or a lamp
+ * stands within matter, whole pixels differ. */
 static void check_turned(uint64_t seed, const float *expected) {
   static float pixels[FLOATS];
   static random_scene turned;
@@ -113,7 +113,8 @@ static void check_turned(uint64_t seed, const float *expected) {
   stage_close(set);
 }
 
-/* False where the scene asks for what is refused: image-aligned sheets along a light, views too wide. */
+/* Returns whether the scene is accepted. Sheets parallel to the image are refused for a light along them, as
+ * are views that are too wide. */
 static bool check_scene(uint64_t seed) {
   static float pixels[FLOATS];
   static random_scene drawn;

@@ -1,4 +1,4 @@
-/* analytic/reference_field.c - the reference's reconstruction: kernels, gradients, empty bricks. */
+/* analytic/reference_field.c - how the reference reconstructs a field: kernels, gradients, empty bricks. */
 #include <stdlib.h>
 
 #include "../asserts.h"
@@ -9,7 +9,7 @@
 static const size_t SIZE[3] = {23, 18, 14};
 static const double SPACING[3] = {1, 1.25, 2};
 
-/* One volume of a scene, ready for questions. */
+/* A scene of one volume, prepared for the reference's functions. */
 typedef struct field {
   stage set;
   reference all;
@@ -45,7 +45,7 @@ static void field_close(field *made) {
   stage_close(&made->set);
 }
 
-/* Element n of a fixed sequence that fills the index-space box, its borders included. */
+/* Point n of a fixed sequence that fills the index-space box, including its faces. */
 static vec3 probe(int n) {
   double t[3] = {fmod(n * 0.7548776662, 1), fmod(n * 0.5698402910, 1), fmod(n * 0.8191725134, 1)};
   for (int a = 0; a < 3; a++) t[a] = fmin(fmax(t[a] * 1.1 - 0.05, 0), 1) * (double)SIZE[a] - 0.5;
@@ -64,13 +64,13 @@ static float *make_voxels(float (*value)(double, double, double)) {
 static float ramp(double i, double j, double k) { return (float)(5 + 2 * i - 3 * j + 0.5 * k); }
 static float rough(double i, double j, double k) { return stage_noise(i, j, k); }
 static float constant(double i, double j, double k) { return i + j + k < -1 ? 0 : 7.5f; }
-/* Nothing but a few small blobs. */
+/* Voxels that are 0 except for a few small blobs. */
 static float sparse(double i, double j, double k) {
   double a = hypot(hypot(i - 4, j - 5), k - 3), b = hypot(hypot(i - 22, j - 17), k - 13);
   return (float)fmax(fmax(2.2 - a, 1.2 - b), 0);
 }
 
-/* The interpolating kernel passes through the voxels' values, at the grid's borders as well. */
+/* The interpolating kernel passes through the voxels' values, also at the grid's faces. */
 static void test_interpolating_keeps_values(void **state) {
   (void)state;
   field f;
@@ -102,7 +102,7 @@ static void test_constant_stays_constant(void **state) {
   free(voxels);
 }
 
-/* B-spline and tent reproduce linear functions; gradient = (dindex/dworld)^T (2, -3, 0.5). */
+/* B-spline and linear kernel reproduce linear functions. The gradient is (dindex/dworld)^T (2, -3, 0.5). */
 static void test_ramp_is_exact(void **state) {
   (void)state;
   field f;
@@ -115,11 +115,11 @@ static void test_ramp_is_exact(void **state) {
     for (int n = 0; n < 200; n++) {
       vec3 p = probe(n);
       bool inside = p.x > 1 && p.y > 1 && p.z > 1 && p.x < 21 && p.y < 16 &&
-                    p.z < 12; /* clear of the borders */
+                    p.z < 12; /* this point is not near a face of the grid */
       if (!inside) continue;
       assert_near(hl_reference_value(&f.volume, p), 5 + 2 * p.x - 3 * p.y + 0.5 * p.z, 1e-12);
       vec3 gradient = hl_reference_gradient(&f.volume, p);
-      /* a step along an index axis changes the value by that axis' slope */
+      /* one step along an index axis changes the value by the function's slope along this axis */
       assert_near(vec3_dot(gradient, mat3_column(to_world.linear, 0)), 2, 1e-12);
       assert_near(vec3_dot(gradient, mat3_column(to_world.linear, 1)), -3, 1e-12);
       assert_near(vec3_dot(gradient, mat3_column(to_world.linear, 2)), 0.5, 1e-12);
@@ -129,7 +129,7 @@ static void test_ramp_is_exact(void **state) {
   free(voxels);
 }
 
-/* A single bright voxel shows the kernel itself. */
+/* A single bright voxel shows the kernel's shape. */
 static void test_kernel_values(void **state) {
   (void)state;
   float *voxels = calloc(SIZE[0] * SIZE[1] * SIZE[2], sizeof *voxels);
@@ -139,7 +139,8 @@ static void test_kernel_values(void **state) {
   field_open(&f, voxels);
   double e2 = exp(-2), e_half = exp(-0.5), e_far = exp(-4.5);
   double at_voxel = 1 / (1 + 2 * e2), midway = e_half / (2 * e_half + 2 * e_far);
-  const double expected[3][3] = {/* at the voxel, one half and one and a half beside it, along one axis */
+  const double expected[3][3] = {/* the points lie at the voxel, half a voxel and one and a half voxels beside
+                                    it, along each of two axes */
                                  {2.0 / 3, 23.0 / 48, 1.0 / 48},
                                  {at_voxel, midway, e_far / (2 * e_half + 2 * e_far)},
                                  {1, 0.5, 0}};
@@ -154,7 +155,7 @@ static void test_kernel_values(void **state) {
   free(voxels);
 }
 
-/* The analytic gradient against differences of the value over a short way in the world. */
+/* The analytic gradient equals the difference of values at two near points of the world. */
 static void test_gradient_is_the_slope(void **state) {
   (void)state;
   field f;
@@ -182,7 +183,8 @@ static void test_gradient_is_the_slope(void **state) {
   free(voxels);
 }
 
-/* Where the bricks promise a clear way nothing is met on it, and the promise is worth making. */
+/* On a way that bricks promise to be empty the field shows nothing, and the promised ways are long enough to
+ * be useful. */
 static void test_clear_ways_are_clear(void **state) {
   (void)state;
   field f;
@@ -210,7 +212,7 @@ static void test_clear_ways_are_clear(void **state) {
   free(voxels);
 }
 
-/* Voxels that are not finite are empty, and where nothing else is empty they are holes. */
+/* Voxels that are not finite are empty. If no value is empty, they are holes in the matter. */
 static void test_nonfinite_voxels(void **state) {
   (void)state;
   float *voxels = make_voxels(constant);

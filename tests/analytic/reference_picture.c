@@ -1,4 +1,5 @@
-/* analytic/reference_picture.c - the reference's pictures of curved things: shading, invariance, refusals. */
+/* analytic/reference_picture.c - the reference's pictures of curved matter: shading, independence of threads,
+ * refusals. */
 #include <stdlib.h>
 #include <string.h>
 
@@ -16,7 +17,7 @@ static double worst_difference(const float *a, const float *b) {
 static const hl_opacity_point RISING[2] = {{0.35, 0}, {0.8, 0.9}};
 static const hl_color_point COLORS[2] = {{0.3, {0.9, 0.3, 0.1}}, {0.8, {0.2, 0.7, 1}}};
 
-/* A lump of noise around the origin, shaded "phong". */
+/* A lump of noise around the origin with "phong" shading. */
 static void stage_lump(stage *set) {
   static float voxels[EDGE * EDGE * EDGE];
   float *out = voxels;
@@ -36,11 +37,13 @@ static void stage_lump(stage *set) {
   set->scene.camera.height = 24;
 }
 
-/* An opaque ramp seen from its transparent side: one colour, one known normal. Eqs. (3) and (4). */
+/* An opaque ramp, seen from its transparent side, has one colour and one known normal. Equations (3) and (4).
+ */
 static void test_phong_of_a_ramp(void **state) {
   (void)state;
   float voxels[8 * 8 * 8], pixels[16 * 16 * 4], *out = voxels;
-  for (int n = 0; n < 8 * 8 * 8; n++) *out++ = (float)(8 - n / 64); /* falls with z: the normal is +z */
+  /* the values fall along z, so that the normal is +z */
+  for (int n = 0; n < 8 * 8 * 8; n++) *out++ = (float)(8 - n / 64);
   stage set;
   stage_open(&set);
   hl_scene_volume *ramp = stage_add_grid(&set, (size_t[3]){8, 8, 8}, (double[3]){1, 1, 1}, (vec3){-4, -4, -4},
@@ -48,7 +51,8 @@ static void test_phong_of_a_ramp(void **state) {
   stage_set_opacity(&set, ramp, 0.9999, 0.01);
   stage_set_color(&set, ramp, 0.8, 0.4, 0.2);
   ramp->shading = HL_SHADING_PHONG;
-  ramp->clipped = 1; /* its first cell, where the repeated border bends the ramp, cut off */
+  /* the clip box leaves out the ramp's first cell, where the repeated border bends the ramp */
+  ramp->clipped = 1;
   for (int a = 0; a < 3; a++) {
     ramp->clip_min[a] = -100;
     ramp->clip_max[a] = a == 2 ? 2 : 100;
@@ -61,7 +65,7 @@ static void test_phong_of_a_ramp(void **state) {
   stage_add_directional(&set, (vec3){0, 0.5, 1}); /* from behind: nothing */
   stage_render(&set, NULL, pixels);
   vec3 towards = vec3_normalise((vec3){0.3, 0.2, 1});
-  /* N = E = +z, so E.R = 2 (N.L) N.E - E.L = N.L */
+  /* N = E = +z, so that E.R = 2 (N.L) N.E - E.L = N.L */
   double cosine = towards.z, gloss = 0.5 * 1.5 * pow(cosine, 7);
   const double own[3] = {0.8, 0.4, 0.2};
   for (int c = 0; c < 3; c++) {
@@ -71,7 +75,7 @@ static void test_phong_of_a_ramp(void **state) {
   stage_close(&set);
 }
 
-/* A trench of negative value is lit from outside like a ridge of positive value. */
+/* A trench of negative values is lit from outside, as a ridge of positive values is. */
 static void test_negative_lobes(void **state) {
   (void)state;
   static float voxels[2][EDGE * EDGE * EDGE];
@@ -154,7 +158,8 @@ static void test_turning_everything(void **state) {
   stage_close(&set);
 }
 
-/* Half the step: the picture converges, and the default step is within a thousandth of the limit. */
+/* With half of the step the picture is nearer to its limit, and the default step is within a thousandth of
+ * the limit. */
 static void test_convergence(void **state) {
   (void)state;
   static float pixels[3][PIXEL_FLOATS];

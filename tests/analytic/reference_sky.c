@@ -1,7 +1,6 @@
-/* analytic/reference_sky.c - the reference's light from all directions against closed forms.
- *
- * What is lit is a small square that faces the eye at (0, 0, 100) or is turned away from it, or a cloud of
- * the faintest haze that casts no shadow. */
+/* analytic/reference_sky.c - the reference's light from all directions, against closed forms. The receiver is
+ * a small square that faces the eye at (0, 0, 100) or is turned away from it, or a cloud of haze that is so
+ * faint that it casts no shadow. */
 #include <stdlib.h>
 #include <string.h>
 
@@ -11,10 +10,10 @@
 typedef struct sky_stage {
   stage set;
   hl_scene_mesh meshes[3];
-  double lit[4]; /* RGB and alpha of the pixel in the middle, the colour divided by alpha */
+  double lit[4]; /* RGB and alpha of the middle pixel; the colour is divided by alpha */
 } sky_stage;
 
-/* A uniform sky; no lights. A clear volume tells the size of voxels. */
+/* A scene with a uniform sky and without lights. A transparent volume sets the size of voxels. */
 static void open_sky(sky_stage *all) {
   stage_open(&all->set);
   all->set.scene.width = all->set.scene.height = 1;
@@ -28,7 +27,7 @@ static void close_sky(sky_stage *all) {
   stage_close(&all->set);
 }
 
-/* A rectangle about a centre with two half edges. */
+/* A rectangle around a centre. Two vectors lead from the centre to its edges. */
 static hl_scene_mesh *add_quad(sky_stage *all, vec3 centre, vec3 u, vec3 v) {
   hl_scene_mesh *mesh = &all->meshes[all->set.scene.mesh_count++];
   hl_scene_mesh_defaults(mesh);
@@ -38,13 +37,13 @@ static hl_scene_mesh *add_quad(sky_stage *all, vec3 centre, vec3 u, vec3 v) {
   return mesh;
 }
 
-/* The receiver of most tests: a square at the origin, towards the eye. */
+/* The receiver of most tests: a square at the origin that faces the eye. */
 static hl_scene_mesh *add_square(sky_stage *all) {
   stage_set_opacity(&all->set, stage_add_box(&all->set, (vec3){-1, -1, 40}, (vec3){1, 1, 42}), 0, 1);
   return add_quad(all, (vec3){0, 0, 0}, (vec3){1, 0, 0}, (vec3){0, 1, 0});
 }
 
-/* The receiver in other tests: haze that hides nothing. */
+/* The receiver of the other tests: haze that hides nothing. */
 static hl_scene_volume *add_haze(sky_stage *all) {
   hl_scene_volume *haze = stage_add_box(&all->set, (vec3){-1, -1, -0.1}, (vec3){1, 1, 0.1});
   stage_set_opacity(&all->set, haze, 0.01, 1);
@@ -63,8 +62,8 @@ static void set_color(double color[3], double r, double g, double b) {
   color[0] = r, color[1] = g, color[2] = b;
 }
 
-/* Nothing hides the sky: the square gets diffuse x radiance, the haze the radiance, whatever the phase
- * function. */
+/* If nothing hides the sky, the square gets diffuse x radiance, and haze gets the radiance, whatever its
+ * phase function is. */
 static void test_open(void **state) {
   (void)state;
   for (int haze = 0; haze < 2; haze++) {
@@ -81,13 +80,15 @@ static void test_open(void **state) {
   }
 }
 
-/* A great plane below haze hides half of the sky, a half plane a quarter; above the square a half plane hides
- * half of what it gets. A pane hides only what it takes. Surfaces without shadow get all. */
+/* A great plane below haze hides half of the sky, and a half plane hides a quarter. Above the square, a half
+ * plane hides half of its light. A pane hides only the light that it absorbs. Surfaces that receive no shadow
+ * get all light. */
 static void test_planes(void **state) {
   (void)state;
   const struct {
     int haze;
-    double side, middle, opacity, expected; /* half the plane's side, and its centre along x */
+    /* side: half of the plane's side; middle: the x of the plane's centre */
+    double side, middle, opacity, expected;
   } cases[] = {{1, 1e5, 0, 1, 0.5}, {1, 1e5, 1e5, 1, 0.75}, {0, 1e5, 1e5, 1, 0.5}, {0, 1e5, 1e5, 0.4, 0.8}};
   for (size_t k = 0; k < sizeof cases / sizeof *cases; k++) {
     sky_stage all;
@@ -116,8 +117,8 @@ static double exponential_integral_2(double x) {
   return sum;
 }
 
-/* In the middle of a wide slab of haze, whose half has the optical depth tau: E2(tau), in each colour by its
- * own depth. */
+/* In the middle of a wide slab of haze, the light is E2(tau) in each colour, where tau is the optical depth
+ * of half of the slab in that colour. */
 static void test_slab(void **state) {
   (void)state;
   sky_stage all;
@@ -133,7 +134,7 @@ static void test_slab(void **state) {
   close_sky(&all);
 }
 
-/* Within a closed box of panes, everything passes one pane. */
+/* In a closed box of panes, all light has passed one pane. */
 static void test_inside(void **state) {
   (void)state;
   static const float corners[8][3] = {{-5, -5, -5}, {5, -5, -5}, {-5, 5, -5}, {5, 5, -5},
@@ -157,9 +158,9 @@ static void test_inside(void **state) {
   close_sky(&all);
 }
 
-/* Derived, for radiance h + (z - h) s above and h - (g - h) s below, s the sine of the elevation: a surface
- * that faces the zenith gets h + 2/3 (z - h), one that faces the ground h + 2/3 (g - h), one at right angles
- * h + 2 / (3 pi) (z + g - 2 h); haze gets h + (z + g - 2 h) / 4. */
+/* The radiance is h + (z - h) s above and h - (g - h) s below, where s is the sine of the elevation. Derived:
+ * a surface that faces the zenith gets h + 2/3 (z - h), a surface that faces the ground h + 2/3 (g - h), and
+ * an upright surface h + 2 / (3 pi) (z + g - 2 h). Haze gets h + (z + g - 2 h) / 4. */
 static void test_gradient(void **state) {
   (void)state;
   const double h = 0.4, z = 1, g = 0.1;
@@ -182,10 +183,10 @@ static void test_gradient(void **state) {
   }
 }
 
-/* Above the horizon alone: a surface that faces the zenith gets all, one that stands upright and haze get
- * half, one that faces the ground nothing. Haze with a phase function, seen from the zenith, gets
- * (1 - g^2) / (2 g) ((1 + g^2)^-1/2 - 1 / (1 + g)): derived, half the integral over mu from 0 to 1 of p at
- * the cosine -mu. */
+/* The sky shines above the horizon alone. A surface that faces the zenith gets all light, an upright surface
+ * and haze get half, and a surface that faces the ground gets nothing. Haze with a phase function, seen from
+ * the zenith, gets (1 - g^2) / (2 g) ((1 + g^2)^-1/2 - 1 / (1 + g)). Derived: half the integral over mu from
+ * 0 to 1 of the phase function at the cosine -mu. */
 static void test_hemisphere(void **state) {
   (void)state;
   const double g = 0.6, back = (1 - g * g) / (2 * g) * (1 / sqrt(1 + g * g) - 1 / (1 + g));
@@ -205,8 +206,8 @@ static void test_hemisphere(void **state) {
 
 enum { COLUMNS = 64, ROWS = 32 };
 
-/* An image that is red right of its middle, green in its upper half, and blue within an eighth of its width
- * of its middle column. The square faces +z; up and rotation turn the sky about it. */
+/* An image of the sky that is red right of its middle and green in its upper half. It is blue up to an eighth
+ * of its width from its middle column. The square faces +z; `up` and `rotation` turn the sky around it. */
 static void test_image(void **state) {
   (void)state;
   static float pixels[ROWS][COLUMNS][3];
@@ -216,11 +217,13 @@ static void test_image(void **state) {
       pixels[y][x][1] = y < ROWS / 2;
       pixels[y][x][2] = abs(2 * x + 1 - COLUMNS) < COLUMNS / 4;
     }
-  /* Blue is a lune of 45 degrees either way from its middle. With the middle at +z the square gets sin 45
-   * degrees of it; with the middle at the square's horizon, what is above it. */
+  /* The blue part is a lune of 45 degrees to either side of the image's middle. With the middle at +z, the
+   * square gets sin 45 degrees of it. With the middle on the square's horizon, the square gets the part above
+   * the horizon. */
   const double lune = sqrt(0.5), half = (1 - lune) / 2;
-  /* +z as the zenith and as the ground; then `right` is +x and the middle +z; turned by half, the middle is
-   * -z; turned counterclockwise as seen from -y, the image's right stands at +z, then its left. */
+  /* The zenith is +z, then the ground is +z. Then `right` is +x with the middle at +z; turned by half, the
+   * middle is -z. Turned counterclockwise, as seen from -y, the image's right stands at +z, and then its
+   * left. */
   const struct {
     double up[3], rotation, expected[3];
   } cases[] = {{{0, 0, 1}, 0, {0.5, 1, 0.25}},    {{0, 0, -1}, 90, {0.5, 0, 0.25}},

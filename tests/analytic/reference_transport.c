@@ -1,4 +1,4 @@
-/* analytic/reference_transport.c - the reference against closed forms of absorption, emission and shadow. */
+/* analytic/reference_transport.c - the reference, against closed forms of absorption, emission and shadow. */
 #include <string.h>
 
 #include "../asserts.h"
@@ -14,7 +14,7 @@ static double transmittance(double opacity, double unit, double distance) {
 
 static const vec3 BOX_LOW = {-3, -2.5, -6}, BOX_HIGH = {4, 5, 2};
 
-/* A homogeneous box of several voxels with unequal edges. */
+/* A homogeneous box of several voxels whose edges have different lengths. */
 static void stage_homogeneous(stage *set) {
   hl_scene_volume *box = stage_add_grid(set, (size_t[3]){7, 5, 4}, (double[3]){1, 1.5, 2}, BOX_LOW, NULL);
   stage_set_opacity(set, box, 0.2, 1.7);
@@ -86,7 +86,8 @@ static void test_box_in_perspective(void **state) {
   stage_close(&set);
 }
 
-/* unit_distance is in world units: a volume twice as large is passed over twice the way. */
+/* The unit_distance counts in world units, so that a volume of twice the size absorbs along twice the length.
+ */
 static void test_scaled_box(void **state) {
   (void)state;
   stage set;
@@ -94,12 +95,13 @@ static void test_scaled_box(void **state) {
   hl_scene_volume *box = stage_add_box(&set, (vec3){-1, -1, -1}, (vec3){1, 1, 1});
   stage_set_opacity(&set, box, 0.1, 1);
   box->scale = 3;
-  box->translate[0] = 100; /* the eye is moved after it */
+  box->translate[0] = 100; /* the eye moves along by the same distance */
   stage_look(&set, (vec3){100, 0, 50}, (vec3){100, 0, 0}, (vec3){0, 1, 0});
   float pixels[16 * 16 * 4];
   stage_render(&set, NULL, pixels);
   assert_near(pixels[4 * (8 * 16 + 8) + 3], 1 - transmittance(0.1, 1, 6), 1e-6);
-  assert_true(pixels[4 * (8 * 16 + 4) + 3] == 0 && pixels[4 * (8 * 16 + 5) + 3] > 0); /* its edge at x = -3 */
+  /* the edge of the box lies at x = -3 */
+  assert_true(pixels[4 * (8 * 16 + 4) + 3] == 0 && pixels[4 * (8 * 16 + 5) + 3] > 0);
   stage_close(&set);
 }
 
@@ -134,7 +136,7 @@ static void test_overlapping_volumes(void **state) {
   float pixels[16 * 16 * 4];
   stage_render(&set, NULL, pixels);
   const float *middle = &pixels[4 * (8 * 16 + 8)];
-  /* front to back: blue alone for 3, both for 3, red alone for 1 */
+  /* from front to back: the blue box alone for 3 units, both boxes for 3, the red box alone for 1 */
   double r = -log(0.7), b = -log(0.9), after_blue = exp(-3 * b), after_both = after_blue * exp(-3 * (r + b));
   double both = after_blue - after_both, red_alone = after_both * (1 - exp(-r));
   assert_near(middle[3], 1 - after_both * exp(-r), 1e-6);
@@ -145,7 +147,7 @@ static void test_overlapping_volumes(void **state) {
 
 /* ---- emission: the light attenuated on its way in ---- */
 
-/* Lit from the side: T = exp(-sigma depth) does not vary along the ray. */
+/* The light comes from the side, so that the transmittance exp(-sigma depth) is the same along a ray. */
 static void test_lit_from_the_side(void **state) {
   (void)state;
   stage set;
@@ -170,7 +172,8 @@ static void test_lit_from_the_side(void **state) {
   stage_close(&set);
 }
 
-/* Lit from the eye: the integral of sigma exp(-2 sigma z), to the second order in the step. */
+/* The light comes from the eye. The picture is the integral of sigma exp(-2 sigma z), with an error of the
+ * second order in the step. */
 static void test_lit_from_the_front(void **state) {
   (void)state;
   stage set;
@@ -189,7 +192,8 @@ static void test_lit_from_the_front(void **state) {
   }
   assert_near(error[1], 0, 1e-5);
   assert_near(error[0] / error[1], 4, 0.1);
-  stage_set_opacity(&set, box, 0.99, 0.1); /* so dense that a step sees nothing but its beginning */
+  /* the matter is so dense that all that is seen lies within one step */
+  stage_set_opacity(&set, box, 0.99, 0.1);
   stage_render(&set, NULL, pixels);
   assert_near(pixels[4 * (8 * 16 + 8)], 0.5, 1e-3);
   stage_close(&set);
@@ -213,7 +217,8 @@ static void test_inverse_square(void **state) {
 
 /* ---- shadows ---- */
 
-/* An opaque receiver with its surface at z = 0, itself casting nothing, and a hidden opaque plate. */
+/* An opaque receiver with its surface at z = 0, which casts no shadow, and an opaque plate that the eye does
+ * not see. */
 static void stage_plate(stage *set, vec3 low, vec3 high) {
   hl_scene_volume *receiver = stage_add_box(set, (vec3){-16, -16, -1}, (vec3){16, 16, 0});
   hl_scene_volume *plate = stage_add_box(set, low, high);
@@ -223,7 +228,8 @@ static void stage_plate(stage *set, vec3 low, vec3 high) {
   plate->visible = 0;
 }
 
-/* Similar triangles: a plate at height h below a light at height H casts a shadow H / (H - h) as large. */
+/* By similar triangles, a plate at the height h below a light at the height H casts a shadow that is H / (H -
+ * h) times as large. */
 static void test_plate_under_point_light(void **state) {
   (void)state;
   stage set;
@@ -236,7 +242,7 @@ static void test_plate_under_point_light(void **state) {
   stage_render(&set, NULL, pixels);
   for (int y = 0; y < 64; y++)
     for (int x = 0; x < 64; x++) {
-      /* the point on the receiver, brought back to the plate's lower and upper face */
+      /* the point of the plate's lower and upper face on the way from the receiver's point to the light */
       double u = (x + 0.5 - 32) / 2, v = (32 - y - 0.5) / 2, lower = 0.4, upper = 0.41;
       double pu = u + (1 - u) * lower, pv = v + (-1 - v) * lower;
       double qu = u + (1 - u) * upper, qv = v + (-1 - v) * upper, margin = 0.05;
@@ -248,15 +254,15 @@ static void test_plate_under_point_light(void **state) {
   stage_close(&set);
 }
 
-/* Part of a disk of radius 1 on the side u < s. */
+/* The fraction of a disk of radius 1 that has u < s. */
 static double disk_below(double s) {
   if (s <= -1) return 0;
   if (s >= 1) return 1;
   return 0.5 + (s * sqrt(1 - s * s) + asin(s)) / HL_PI;
 }
 
-/* Under the edge of a plate that fills x < 0 at height 6 the light on the near side is hidden: hidden(x) is
- * its part. The plate is thin: its two faces give nearly the same profile. */
+/* A plate at the height 6 fills x < 0. Under its edge, the light's nearer part is hidden; hidden(x) is the
+ * fraction. The plate is so thin that its two faces give nearly the same profile. */
 static void check_penumbra(stage *set, double (*hidden)(double x), double tolerance) {
   static float pixels[64 * 2 * 4];
   set->scene.render.shadows = HL_SHADOWS_SOFT;
@@ -291,12 +297,12 @@ static void test_penumbra_of_directional_light(void **state) {
   stage_close(&set);
 }
 
-/* From here on the light is around (0, 0, 14). A ray from (x, 0, 0) to (u, v, 14 + w) passes height 6 at
- * x + (u - x) 6 / (14 + w): over the edge where x (8 + w) + 6 u = 0. With u = s c, w = s d that is
- * s = -8 x / (6 c + d x). */
+/* From here on the light stands around (0, 0, 14). A ray from (x, 0, 0) to (u, v, 14 + w) passes the height 6
+ * at x + (u - x) 6 / (14 + w). It passes the edge if x (8 + w) + 6 u = 0. With u = s c and w = s d that is s
+ * = -8 x / (6 c + d x). */
 static double edge_on_light(double x, double c, double d) { return -8 * x / (6 * c + d * x); }
 
-/* The disk facing (x, 0, 0) contains the direction (14, 0, x). */
+/* The disk that faces (x, 0, 0) contains the direction (14, 0, x). */
 static double hidden_of_sphere(double x) {
   double distance = sqrt(x * x + 14 * 14);
   return disk_below(edge_on_light(x, 14 / distance, x / distance) / 5);
@@ -326,7 +332,8 @@ static void test_penumbra_of_disk(void **state) {
   stage_close(&set);
 }
 
-/* One edge leaves the other's plane by 1 in 4; the edge along the plate's has no say. */
+/* One edge of the light leaves the horizontal plane by 1 in 4. The other edge is parallel to the plate's
+ * edge, so that it does not matter. */
 static double hidden_of_rect(double x) { return fmin(fmax(edge_on_light(x, 8, 2) + 0.5, 0), 1); }
 
 static void test_penumbra_of_rect(void **state) {
@@ -347,7 +354,7 @@ static void test_penumbra_of_rect(void **state) {
   }
 }
 
-/* An L of three squares with edge 5 around (0, 0, 14). */
+/* An L of three squares whose sides are 5, around (0, 0, 14). */
 static double hidden_of_polygon(double x) {
   double s = fmin(fmax(edge_on_light(x, 1, 0), -5), 5);
   return s < 0 ? 10 * (s + 5) / 75 : (50 + 5 * s) / 75;
@@ -367,7 +374,7 @@ static void test_penumbra_of_polygon(void **state) {
   stage_close(&set);
 }
 
-/* Without extent a light is its centre. */
+/* A light without extent shines from its centre. */
 static void test_lights_without_extent(void **state) {
   (void)state;
   static float point[16 * 16 * 4], other[16 * 16 * 4];
@@ -386,7 +393,8 @@ static void test_lights_without_extent(void **state) {
   stage_close(&set);
 }
 
-/* Off, hard, and soft without size; a light's own setting goes before the render's. */
+/* Shadows are off, hard, and soft with a light without size. A light's own setting replaces the setting of
+ * the render. */
 static void test_shadow_settings(void **state) {
   (void)state;
   stage set;

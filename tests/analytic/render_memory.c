@@ -1,5 +1,5 @@
-/* tests/analytic/render_memory.c - a frame's memory: foretold from above and not far off, and refused before
- * it begins. */
+/* tests/analytic/render_memory.c - the memory of a frame: its estimate is enough and not much too large, and
+ * a limit below it is refused before the frame begins. */
 #include <setjmp.h>
 #include <stdarg.h>
 #include <stdlib.h>
@@ -13,7 +13,7 @@
 
 enum { SIDE = 320, EDGE = 64 };
 
-/* Noise over a plate: matter everywhere in the picture. */
+/* Noise over a plate, with matter everywhere in the picture. */
 static void open_stage(stage *set, uint64_t limit) {
   static float voxels[EDGE * EDGE * EDGE];
   hl_context_options options;
@@ -122,12 +122,12 @@ static hl_status render(const variant *v, uint64_t limit, uint64_t *estimate, ui
 }
 
 static bool is_tight(const variant *v, uint64_t estimate, uint64_t peak) {
-  /* how many fragments meshes have is not known before they are made */
+  /* the estimate guesses the number of a mesh's fragments, which is not known before they are made */
   return (double)estimate <= (v->mesh ? 1.5 : 1.25) * (double)peak;
 }
 
-/* On a busy machine a thread may wait through a whole frame, and holds no fragments then: the estimate is
- * held against the most of some frames. */
+/* On a busy machine a thread may wait through a whole frame, and then holds no fragments. So the estimate is
+ * compared with the greatest peak of several frames. */
 static void estimates_hold(void **state) {
   (void)state;
   for (size_t n = 0; n < sizeof variants / sizeof *variants; n++) {
@@ -145,7 +145,7 @@ static void estimates_hold(void **state) {
   }
 }
 
-/* The estimate is enough, and less than it is refused with the numbers before a sheet is begun. */
+/* The estimate is enough. A limit below it is refused, with the numbers, before a sheet is begun. */
 static void frames_are_refused_beforehand(void **state) {
   (void)state;
   const variant *v = &variants[2];
@@ -161,7 +161,8 @@ static void frames_are_refused_beforehand(void **state) {
   assert_non_null(strstr(error.message, "make the picture smaller"));
 }
 
-/* What is foretold for the volumes of a scene that were perhaps made ready before; then makes them ready. */
+/* The estimate for the volumes of a scene, some of which may have been made ready before. Afterwards the
+ * volumes are made ready. */
 static uint64_t prepare_bytes(stage *set, hl_pool *pool, prepared_volume *prepared) {
   const hot_functions *hot = hl_hot_functions(HL_INSTRUCTION_SET_SCALAR);
   hl_prepared_release_stale(set->context, &set->scene, prepared);
@@ -172,7 +173,7 @@ static uint64_t prepare_bytes(stage *set, hl_pool *pool, prepared_volume *prepar
   return counted.most;
 }
 
-/* A volume is made ready anew where its kernel or its clip box alone changes: that memory is foretold, too.
+/* If a volume's kernel or clip box changes, the volume is made ready anew. The estimate includes that memory.
  */
 static void changed_volumes_count(void **state) {
   (void)state;

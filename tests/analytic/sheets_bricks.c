@@ -1,5 +1,6 @@
-/* analytic/sheets_bricks.c - fields in bricks: with a dense volume's coefficients at level 0 they give its
- * bytes by every method, with masks, functions of two numbers, colours and layers, too. */
+/* analytic/sheets_bricks.c - fields in bricks that have the coefficients of a dense volume at level 0. They
+ * give the dense volume's bytes by every method, also with masks, functions of two numbers, colours and
+ * layers. */
 #include <math.h>
 #include <setjmp.h>
 #include <stdarg.h>
@@ -19,7 +20,8 @@ enum { WIDE = 40, MOST_VOXELS = WIDE * WIDE * WIDE };
 
 /* ---- a dense volume in bricks ---- */
 
-/* The volume's voxel for a lattice point, which lies one behind; beyond its faces the border goes on. */
+/* The volume's voxel for a lattice point. Voxel n belongs to the point n + 1. Beyond the volume's faces, the
+ * border voxels go on. */
 static void fill_from_voxels(void *data, int level, const ptrdiff_t first[3], const size_t count[3],
                              float *out) {
   const hl_volume *volume = data;
@@ -66,8 +68,9 @@ static hl_volume *in_bricks(hl_context *context, hl_volume *volume, int shift) {
   return made;
 }
 
-/* Noise in a box of 20 units. blank: the outermost voxels that are 0 at each face. There a dense volume adds
- * weights before it multiplies, so that its sums are rounded elsewhere. */
+/* Noise in a box of 20 units. blank: the number of layers of voxels at each face that are 0. A dense volume
+ * adds weights of repeated voxels before it multiplies, so that its sums at the faces would be rounded
+ * otherwise. */
 static hl_scene_volume *add_noise(stage *set, const size_t n[3], size_t blank) {
   static float voxels[MOST_VOXELS];
   double spacing[3];
@@ -84,7 +87,7 @@ static hl_scene_volume *add_noise(stage *set, const size_t n[3], size_t blank) {
   return made;
 }
 
-/* Every voxel, every row, and the statistics. */
+/* All voxels, rows and statistics are the same. */
 static void test_voxels(void **state) {
   (void)state;
   stage set;
@@ -122,8 +125,8 @@ static void draw_two(stage *set) {
   add_noise(set, (const size_t[3]){23, 40, 21}, 3);
 }
 
-/* Renders a scene with voxels and then in bricks. close: whether pictures may differ as those of two spacings
- * of sheets do. */
+/* Renders a scene with voxels and then with bricks. close: whether the pictures may differ as pictures of two
+ * distances of sheets do. */
 static void assert_same_in_bricks(stage *set, int shift, bool close, const char *what) {
   static float packed[FLOATS], made[FLOATS];
   set->scene.width = set->scene.height = SIDE;
@@ -180,8 +183,8 @@ static void test_layers(void **state) {
   stage_close(&set);
 }
 
-/* A cut that stays where it is leaves the tables that follow from it for the next frame, also where the
- * lattice of the bricks lies half a voxel off the voxels. */
+/* While a cut stays in its place, the tables that follow from it are kept for the next frame. They must be
+ * right also if the lattice of the bricks lies half a voxel beside the voxels. */
 static void test_kept_cut(void **state) {
   (void)state;
   static const hl_cut CUT = {.type = HL_CUT_PLANE, .normal = {0, 0, 1}};

@@ -1,5 +1,5 @@
-/* analytic/sheets_colour.c - what colours come out as: flat shading, emission, scattering, three scales.
- * Closed forms, each asked of the sheets and of the reference. */
+/* analytic/sheets_colour.c - the colours of pictures: flat shading, emission, scattering, and volumes that
+ * are stretched along three axes. Closed forms, each tested on the sheets and on the reference. */
 #include <stdlib.h>
 #include <string.h>
 
@@ -8,7 +8,7 @@
 
 enum { SIDE = 24, PIXELS = SIDE * SIDE };
 
-/* A homogeneous slab across the picture, 4 thick; two lights that shine from its two sides, in sweeps of
+/* A homogeneous slab, 4 units thick, fills the picture. Two lights shine from its two sides, in sweeps of
  * their own. */
 static hl_scene_volume *open_slab(stage *set, double opacity) {
   stage_open(set);
@@ -31,7 +31,7 @@ static hl_scene_volume *open_slab(stage *set, double opacity) {
 
 static const double ASKED[3] = {0.2, 0.5, 0.8};
 
-/* The asked colour times alpha, in every pixel, whatever lights, shadows and material say. */
+/* Every pixel has the asked colour times alpha, whatever the lights, the shadows and the material are. */
 static void test_flat_colour_is_the_asked_one(void **state) {
   (void)state;
   static float pixels[PIXELS * 4];
@@ -54,7 +54,7 @@ static void test_flat_colour_is_the_asked_one(void **state) {
   }
 }
 
-/* A flat plate between a lamp and a slab takes the slab's light away, and keeps its own. */
+/* A flat plate between a lamp and a slab takes light from the slab, and keeps its own colour. */
 static void test_flat_casts_and_receives_no_shadow(void **state) {
   (void)state;
   static float pixels[2][PIXELS * 4];
@@ -78,8 +78,8 @@ static void test_flat_casts_and_receives_no_shadow(void **state) {
   }
 }
 
-/* All of a flat volume is its emission layer; lights and ambient light add nothing, and no shadow falls on
- * it. */
+/* All of a flat volume's colour is in its emission layer. Lights and ambient light add nothing, and no shadow
+ * falls on it. */
 static void test_layers_of_flat_colours(void **state) {
   (void)state;
   static float pixels[PIXELS * 4], ambient[PIXELS * 3], emission[PIXELS * 3], picture[2][PIXELS * 3],
@@ -119,7 +119,7 @@ static void test_layers_of_flat_colours(void **state) {
 
 /* ---- emission ---- */
 
-/* Nothing shines on the medium: c (ke + ka Ia) (1 - T), in several sweeps counted once. */
+/* No light shines on the medium. Its colour is c (ke + ka Ia) (1 - T), also if there are several sweeps. */
 static void test_emission_of_a_medium(void **state) {
   (void)state;
   static float pixels[PIXELS * 4];
@@ -128,7 +128,8 @@ static void test_emission_of_a_medium(void **state) {
     hl_scene_volume *slab = open_slab(&set, 0.2);
     slab->material.emission = k % 2 ? 2.5 : 0.25;
     slab->material.ambient = 0.6;
-    slab->shading = k / 2 % 2 ? HL_SHADING_PHONG : HL_SHADING_NONE; /* its inside has no surface */
+    /* the inside of the slab has no surface */
+    slab->shading = k / 2 % 2 ? HL_SHADING_PHONG : HL_SHADING_NONE;
     set.lights[0].intensity = set.lights[1].intensity = 0;
     stage_render_by(&set, k >= 4, pixels);
     for (int y = 0; y < SIDE; y++)
@@ -146,7 +147,7 @@ static void test_emission_of_a_medium(void **state) {
   }
 }
 
-/* Emission is added to what the lights give. */
+/* Emission is added to the light that the lights give. */
 static void test_emission_adds_to_light(void **state) {
   (void)state;
   static float lit[PIXELS * 4], both[PIXELS * 4];
@@ -169,8 +170,8 @@ static void test_emission_adds_to_light(void **state) {
 
 static const double STRETCH[3] = {1, 1.5, 0.5};
 
-/* A cut ball in a grid of the given spacing; the clip box is in the file's own world, so it is given in
- * voxels there. */
+/* A cut ball in a grid whose voxels have the given edges. The clip box is in the file's own world, so that it
+ * is given in voxels there. */
 static hl_scene_volume *add_ball(stage *set, const double spacing[3]) {
   enum { N = 16 };
   static float voxels[N * N * N];
@@ -195,8 +196,8 @@ static hl_scene_volume *add_ball(stage *set, const double spacing[3]) {
   return ball;
 }
 
-/* Spacing 1 with three scales is a grid of that spacing, to the last bit: placement, clip box, normals and
- * shadows. */
+/* A grid with voxels of edge 1 and three scales is the same, to the last bit, as a grid with voxels of these
+ * edges: its place, its clip box, its normals and its shadows. */
 static void test_three_scales_are_another_spacing(void **state) {
   (void)state;
   static float pixels[2][PIXELS * 4];
@@ -214,7 +215,7 @@ static void test_three_scales_are_another_spacing(void **state) {
       for (int a = 0; a < 3; a++) spacing[a] = scaled ? 1 : (k == 3 ? 2 : 1) * STRETCH[a];
       hl_scene_volume *ball = add_ball(&set, spacing);
       if (scaled) memcpy(ball->axis_scale, STRETCH, sizeof STRETCH);
-      if (scaled && k == 3) ball->scale = 2; /* times each of the three */
+      if (scaled && k == 3) ball->scale = 2; /* this scale multiplies each of the three */
       stage_render_by(&set, k == 2, pixels[scaled]);
       stage_close(&set);
     }
@@ -227,7 +228,8 @@ static void test_three_scales_are_another_spacing(void **state) {
 
 /* ---- colours that change within a slab ---- */
 
-/* An even medium whose values are the height z: green above STEP, red below, lit by constant light alone. */
+/* A homogeneous medium whose values are the height z: green above STEP and red below, in ambient light alone.
+ */
 static const double STEP = 0.3, TOP = 5, BOTTOM = -5;
 
 static void open_two_colors(stage *set, double opacity, double from_behind) {
@@ -245,16 +247,16 @@ static void open_two_colors(stage *set, double opacity, double from_behind) {
   stage_set_opacity(set, medium, opacity, 1);
   medium->transfer_function.color = colors;
   medium->transfer_function.color_count = 2;
-  medium->clipped = 1; /* away from the border, where the ramp ends */
+  medium->clipped = 1; /* the clip box leaves out the border, where the ramp ends */
   for (int a = 0; a < 3; a++) medium->clip_min[a] = BOTTOM, medium->clip_max[a] = TOP;
   stage_look(set, (vec3){9, 4, 30}, (vec3){0, 0, 0}, (vec3){0, 1, 0});
   stage_add_directional(set, (vec3){0.1, 0.2, from_behind});
   set->lights[0].intensity = 1e-6;
 }
 
-/* Green shows with 1 - T of what is above the step, red with the rest, wherever the step lies between two
- * sheets; from front to back and from back to front. The error is that of even weights over what shows of the
- * slab with the step. */
+/* Green shows by the fraction 1 - T of the matter above the step, and red by the rest, wherever the step lies
+ * between two sheets, from front to back and from back to front. The error is the one that equal weights
+ * within the slab with the step give. */
 static void test_step_of_colour_within_a_slab(void **state) {
   (void)state;
   static float pixels[PIXELS * 4];
@@ -279,8 +281,8 @@ static void test_step_of_colour_within_a_slab(void **state) {
 
 /* ---- the phase function ---- */
 
-/* With one parallel light and parallel rays of the eye, a medium's light is that of even scattering times
- * p = (1 - g^2) / (1 + g^2 - 2 g cos)^1.5, whatever shadows leave of it. */
+/* Light is parallel, and so are the eye's rays. The light of a medium is then p = (1 - g^2) / (1 + g^2 - 2 g
+ * cos)^1.5 times the light of a medium that scatters evenly, also in shadow. */
 static void test_phase_function_of_a_medium(void **state) {
   (void)state;
   static float even[PIXELS * 4], pixels[PIXELS * 4];

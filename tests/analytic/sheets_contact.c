@@ -1,6 +1,5 @@
-/* analytic/sheets_contact.c - walls that stand on a floor: the floor is dark from the foot on behind a wall,
- * and lit up to it before the wall, seen from above and from either side.
- */
+/* analytic/sheets_contact.c - walls that stand on a floor. Behind a wall the floor is dark from the wall's
+ * foot on. Before the wall it is lit up to the foot. The eye looks from above and from either side. */
 #include <string.h>
 
 #include "../asserts.h"
@@ -8,17 +7,17 @@
 
 enum { SIDE = 128, PIXELS = SIDE * SIDE };
 
-/* The wall stands at y = PLACE, PLACE not at the edge of a picture's pixel. BAND: up to so far from the wall
- * the floor is looked at. */
+/* The wall stands at y = PLACE, which is not at the edge of a pixel. BAND: the greatest distance from the
+ * wall at which the floor is looked at. */
 static const double HALF_WIDTH = 12, TOP = 16, PLACE = 0.1, THIN = 0.15, BAND = 3, FLOOR_EDGE = 40;
 
 typedef enum wall { SHEET, BOX_WITHOUT_BOTTOM, CUT_BOX, THROUGH_THE_FLOOR, JOINED, WALLS } wall;
 
 static bool is_box(wall kind) { return kind == BOX_WITHOUT_BOTTOM || kind == CUT_BOX; }
 
-/* Where the light comes from. */
+/* The direction of a sun, or the place of a lamp. */
 typedef struct shining {
-  vec3 at; /* a direction, or a point */
+  vec3 at; /* a sun's direction or a lamp's place */
   bool parallel;
 } shining;
 
@@ -77,7 +76,8 @@ static void add_wall(mesh_stage *all, wall kind) {
     add_quad(positions, triangles, 0, (vec3){0, PLACE, (TOP + foot) / 2}, along,
              (vec3){0, 0, (TOP - foot) / 2});
   }
-  if (kind == JOINED) { /* a strip of floor before the wall, from its two lower vertices on */
+  if (kind == JOINED) {
+    /* a strip of the floor before the wall, which begins at the wall's two lower vertices */
     quads = 2;
     add_quad(positions, triangles, 1, (vec3){0, PLACE - 4, 0.01}, along, (vec3){0, 4, 0});
     for (int i = 2; i < 4; i++)
@@ -91,9 +91,10 @@ static void add_wall(mesh_stage *all, wall kind) {
   mesh_stage_describe(all, &d)->smooth = kind != JOINED;
 }
 
-/* What is known of the light at the point where a ray of the eye ends: -1: nothing. */
+/* The light that is known at the point where a ray of the eye ends; -1: it is not known. */
 static double expected(const shining *light, wall kind, double margin, vec3 eye, vec3 way) {
-  const double thick = is_box(kind) ? THIN : 0, side = way.y > 0 ? -1 : 1; /* that the eye sees */
+  /* side: of the wall, that the eye sees */
+  const double thick = is_box(kind) ? THIN : 0, side = way.y > 0 ? -1 : 1;
   double to_wall = (PLACE + side * thick - eye.y) / way.y, to_floor = -eye.z / way.z;
   vec3 met = vec3_add(eye, vec3_scale(way, to_wall)), at = vec3_add(eye, vec3_scale(way, to_floor));
   bool near_wall = fabs(met.x) < HALF_WIDTH + 1 && met.z > 0 && met.z < TOP + 1;
@@ -111,9 +112,9 @@ static double expected(const shining *light, wall kind, double margin, vec3 eye,
   return vec3_normalise(to).z;
 }
 
-/* Asserts all pixels whose middle and corners are all known to be lit, or all to be dark. Where a wall goes
- * through the floor, its two triangles and the floor cross in one pixel, whose samples may be given to the
- * wrong one of them. */
+/* Asserts that a pixel is lit, or dark, if that is known at its middle and its four corners. If a wall goes
+ * through the floor, the wall's two triangles and the floor cross in one pixel. Samples of the pixel may then
+ * go to the wrong one, so that such pixels are left out. */
 static void check(const stage *set, const shining *light, wall kind, double margin, const float *pixels) {
   int dark = 0, lit = 0, crossed = 0;
   for (int i = 0; i < PIXELS; i++) {
@@ -164,7 +165,7 @@ static vec3 direction(double elevation_deg, double azimuth_deg) {
   return (vec3){sin(a) * cos(e), cos(a) * cos(e), sin(e)};
 }
 
-/* Hard shadows of walls of every kind, by suns from behind and from beside. */
+/* Hard shadows of walls of every kind, under suns that stand behind the wall and beside it. */
 static void test_hard(void **state) {
   (void)state;
   for (int kind = 0; kind < WALLS; kind++)
@@ -174,7 +175,7 @@ static void test_hard(void **state) {
     }
 }
 
-/* The same by a near light. */
+/* The same walls under a near light. */
 static void test_near_light(void **state) {
   (void)state;
   for (int k = 0; k < 4; k++) {
@@ -183,7 +184,7 @@ static void test_near_light(void **state) {
   }
 }
 
-/* Soft shadows, by each method. */
+/* The same walls with soft shadows, by each method. */
 static void test_soft(void **state) {
   (void)state;
   for (int shadows = 1; shadows <= 3; shadows++)

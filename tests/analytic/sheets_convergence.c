@@ -1,4 +1,5 @@
-/* analytic/sheets_convergence.c - halving the spacing of the sheets quarters the error (second order). */
+/* analytic/sheets_convergence.c - half of the distance of the sheets gives a quarter of the error (second
+ * order). */
 #include <setjmp.h>
 #include <stdarg.h>
 #include <stdlib.h>
@@ -9,7 +10,7 @@
 
 enum { N = 24, SIDE = 48, FLOATS = SIDE * SIDE * 4 };
 
-/* A blob that fades to nothing well inside its box, with a smooth transfer function. */
+/* A blob that fades out well inside its box, with a smooth transfer function. */
 static void stage_blob(stage *set) {
   static const hl_opacity_point ramp[] = {{0, 0}, {1, 0.25}};
   static const hl_color_point color[] = {{0, {0.9, 0.5, 0.3}}, {1, {0.4, 0.7, 0.9}}};
@@ -33,7 +34,7 @@ static void stage_blob(stage *set) {
   set->scene.ambient[0] = set->scene.ambient[1] = set->scene.ambient[2] = 0.1;
 }
 
-/* Root mean square against sheets sixteen times finer than the voxels. */
+/* The root mean square difference from a picture whose sheets are sixteen times finer than the voxels. */
 static double error_at(stage *set, double spacing, const float *finest) {
   static float pixels[FLOATS];
   double sum = 0;
@@ -65,7 +66,7 @@ static void test_phong(void **state) {
   (void)state;
   check_order((vec3){0.6, -0.5, -0.7}, HL_SHADING_PHONG, 3.5);
   check_order((vec3){0.6, -0.5, 0.4}, HL_SHADING_PHONG,
-              3); /* most of what is seen lies at the kink where N.L = 0 */
+              3); /* most of the matter that is seen lies at the terminator, where N.L has a bend */
 }
 
 static void test_medium(void **state) {

@@ -1,4 +1,4 @@
-/* analytic/sheets_crossings.c - meshes that cut into each other: the line between them is antialiased. */
+/* analytic/sheets_crossings.c - meshes that cut through each other: the line between them is antialiased. */
 #include <stdlib.h>
 
 #include "../asserts.h"
@@ -7,18 +7,19 @@
 
 enum { SIDE = 64, PIXELS = SIDE * SIDE };
 
-/* A line through (x0, y0) that parts the picture; its normal points to the front. */
+/* A line through (x0, y0) that divides the picture. Its normal points to the side that is in front. */
 typedef struct line {
   double nx, ny, x0, y0;
 } line;
 
-/* How far a point lies in front of the line; world units. column, row: in pixels, half a unit wide. */
+/* The distance by which a point lies in front of the line, in world units. column, row: in pixels, which are
+ * half a unit wide. */
 static double ahead_of(const line *line, double column, double row) {
   return line->nx * ((column - SIDE / 2) * 0.5 - line->x0) + line->ny * ((SIDE / 2 - row) * 0.5 - line->y0);
 }
 
-/* The fraction of the square [0, 1]^2 with a x + b y > c, where a and b are not negative (derived: the area
- * below the line, as a triangle without those that stick out of the square). */
+/* The fraction of the square [0, 1]^2 that has a x + b y > c, for a and b that are not negative. Derived: the
+ * area below the line is a triangle without its parts beyond the square. */
 static double fraction_beyond(double a, double b, double c) {
   if (a < 1e-9 || b < 1e-9) return fmin(fmax(1 - c / (a + b), 0), 1);
   double below = fmax(c, 0) * fmax(c, 0) - fmax(c - a, 0) * fmax(c - a, 0) - fmax(c - b, 0) * fmax(c - b, 0) +
@@ -32,11 +33,12 @@ static double fraction_of_pixel(const line *line, int x, int y) {
                          -ahead_of(line, x + (line->nx < 0), y + (line->ny > 0)));
 }
 
-/* How near to a line rounding decides, world units: corners lie on a grid of 256 parts of a pixel, those of
- * boards of two triangles exactly. */
+/* If a sample is nearer to a line than this, rounding decides on which side it lies; world units. Corners lie
+ * on a grid of 256 parts of a pixel. The corners of the boards of two triangles lie on it exactly. */
 static double doubt(int fine) { return fine > 1 ? 3e-3 : 1e-4; }
 
-/* The same by the sixteen samples; *sure: none is so near to the line as `doubt` says. */
+/* The same fraction by the pixel's sixteen samples. *sure: whether all samples are farther from the line than
+ * `doubt`. */
 static double fraction_of_samples(const line *line, int x, int y, double doubt, bool *sure) {
   double count = 0;
   *sure = true;
@@ -48,7 +50,7 @@ static double fraction_of_samples(const line *line, int x, int y, double doubt, 
   return count / 16;
 }
 
-/* A board of n by n squares, two triangles each, through a point, that rises by (by_x, by_y). */
+/* A board of n by n squares, each of two triangles, through a point. by_x, by_y: the slopes of its height. */
 static hl_scene_mesh *add_board(mesh_stage *all, int n, vec3 at, double by_x, double by_y) {
   size_t vertices = (size_t)(n + 1) * (size_t)(n + 1), count = 2 * (size_t)n * (size_t)n;
   float(*positions)[3] = malloc(vertices * sizeof *positions);
@@ -77,9 +79,9 @@ static hl_scene_mesh *add_board(mesh_stage *all, int n, vec3 at, double by_x, do
   return mesh;
 }
 
-/* Two boards that cross in a line at some angle: of a white one and a black one each pixel shows what lies in
- * front, by the fractions on both sides of the line; opaque or not, with sheets from the front or the back,
- * of large triangles and of small ones. */
+/* A white and a black board cross in a line at an angle. Each pixel shows the fractions on the two sides of
+ * the line. The boards are opaque or translucent, of large or small triangles, and sheets go from front to
+ * back or back to front. */
 static void test_two_boards(void **state) {
   (void)state;
   static float pixels[PIXELS * 4];
@@ -118,13 +120,15 @@ static void test_two_boards(void **state) {
       crossed++;
     }
     assert_true(crossed > 40);
-    assert_near(sqrt(squares / crossed), 0, 0.06); /* stairs: 0.25 and more */
+    /* with stairs in place of a smooth line this would be 0.25 or more */
+    assert_near(sqrt(squares / crossed), 0, 0.06);
     assert_near(sum, expected_sum, 1.5);
     mesh_stage_close(&all);
   }
 }
 
-/* What a sample shows of boards of one colour channel each, in the order of their heights there. */
+/* The colour of a sample of three boards, each of which has one channel, composited in the order of their
+ * heights at this sample. */
 static void composite_boards(const double height[3], const double opacity[3], double color[3]) {
   double left = 1;
   bool done[3] = {false, false, false};
@@ -139,8 +143,8 @@ static void composite_boards(const double height[3], const double opacity[3], do
   }
 }
 
-/* Three boards, a red, a green and a blue one, that cross pairwise and all in one pixel: each pixel is the
- * mean of its samples, which are composited in their own order. */
+/* A red, a green and a blue board cross each other in pairs, and all three in one pixel. Each pixel is the
+ * mean of its samples, and each sample is composited in its own order. */
 static void test_three_boards(void **state) {
   (void)state;
   static float pixels[PIXELS * 4];
@@ -185,8 +189,8 @@ static void test_three_boards(void **state) {
   }
 }
 
-/* Two triangles of one plane along the sheets, a white and a black one: fragments of one height, which share
- * pixels by their samples wherever the sheets begin. */
+/* A white and a black triangle lie in one plane along the sheets. Their fragments have the same height. They
+ * share pixels by samples, wherever the sheets begin. */
 static void test_one_height(void **state) {
   (void)state;
   static float pixels[PIXELS * 4];
@@ -218,10 +222,10 @@ static void test_one_height(void **state) {
   }
 }
 
-/* A white board and a black one that hangs from its edge, nearly along the view's rays. Its corners' places
- * in the picture are rounded: it may cover samples of the white one, and is behind it there, whatever its
- * plane says of heights so far from it. The white one's edge lies on the grid to which corners are rounded.
- */
+/* A black board hangs from the edge of a white one, nearly along the view's rays. The places of its corners
+ * in the picture are rounded, so that it may cover samples of the white board. There it is behind the white
+ * board, whatever heights its plane has so far from its own triangles. The white board's edge lies on the
+ * grid to which corners are rounded. */
 static void test_fold(void **state) {
   (void)state;
   static float pixels[PIXELS * 4];

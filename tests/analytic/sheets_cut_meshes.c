@@ -1,6 +1,5 @@
-/* analytic/sheets_cut_meshes.c - a scene's cuts cut its meshes: coverage, light within and shadows with known
- * answers, by the sheets and by the reference.
- */
+/* analytic/sheets_cut_meshes.c - a scene's cuts remove parts of meshes: coverage, light within and shadows,
+ * against closed forms, by the sheets and by the reference. */
 #include <stdlib.h>
 #include <string.h>
 
@@ -11,7 +10,7 @@
 
 enum { SIDE = 64, PIXELS = SIDE * SIDE };
 
-/* Pixels are half a unit wide. */
+/* A pixel is half a unit wide. */
 static const double PIXEL_AREA = 0.25;
 
 static void cut(mesh_stage *all, const hl_cut *cuts, size_t count) {
@@ -29,7 +28,7 @@ static hl_scene_mesh *add_sphere(mesh_stage *all, double radius) {
   return mesh_stage_add(all, made);
 }
 
-/* A closed ball of triangles: rings of latitude, the poles at +-z. */
+/* A closed ball of triangles: rings of latitude, with the poles at +-z. */
 static hl_scene_mesh *add_ball(mesh_stage *all, double radius) {
   enum { RINGS = 32, ROUND = 64 };
   static float positions[(RINGS - 1) * ROUND + 2][3];
@@ -64,13 +63,13 @@ static double pixel_y(int i) { return -(i / SIDE + 0.5 - SIDE / 2) * 0.5; }
 
 /* ---- coverage ---- */
 
-/* The area of a disk beyond a line at distance x from its middle. */
+/* The area of the part of a disk beyond a line at the distance x from its middle. */
 static double segment(double radius, double x) {
   return radius * radius * acos(x / radius) - x * sqrt(radius * radius - x * x);
 }
 
-/* A plane across the eye's rays leaves a disk without its segment, of a sphere and of a ball of triangles;
- * pixels beyond it are clear. */
+/* A plane across the eye's rays leaves a disk without a segment. The body is a sphere or a ball of triangles.
+ * Pixels beyond the plane are transparent. */
 static void test_half_a_ball(void **state) {
   (void)state;
   static float pixels[PIXELS * 4];
@@ -96,13 +95,14 @@ static void test_half_a_ball(void **state) {
       if (left > 0.4 && inside > 0.5) assert_near(alpha, 1, 1e-5);
     }
     double area = HL_PI * radius * radius - segment(radius, at);
-    assert_near(sum * PIXEL_AREA / area, k % 2 == 0 ? 1 : 0.997, 0.003); /* triangles lie within the ball */
+    /* the triangles lie within the ball */
+    assert_near(sum * PIXEL_AREA / area, k % 2 == 0 ? 1 : 0.997, 0.003);
     mesh_stage_close(&all);
   }
 }
 
-/* What a translucent sphere of two sides keeps where a sphere about its front pole cuts, or a box, or all but
- * a box: one side within the cut, none where both are cut. */
+/* A translucent sphere is cut by a sphere around its front pole, by a box, or by all but a box. Pixels within
+ * the cut show one side of the sphere, or none if both sides are cut. */
 static void test_holes(void **state) {
   (void)state;
   static float pixels[PIXELS * 4];
@@ -112,7 +112,8 @@ static void test_holes(void **state) {
       {.type = HL_CUT_BOX, .min = {-5.1, -4.3, 0}, .max = {5.1, 4.3, 40}},
       {.type = HL_CUT_BOX, .min = {-5.1, -4.3, 0}, .max = {5.1, 4.3, 40}, .keep = HL_CUT_KEEP_INSIDE},
       {.type = HL_CUT_BOX, .min = {-5.1, -4.3, -40}, .max = {5.1, 4.3, 40}}};
-  const double width = 7 * sqrt(1 - 49.0 / (4 * 144)); /* of the circle in which the spheres meet */
+  /* the radius of the circle in which the spheres meet */
+  const double width = 7 * sqrt(1 - 49.0 / (4 * 144));
   const double disk = HL_PI * 144, hole = HL_PI * width * width, box = 4 * 5.1 * 4.3;
   const double expected[] = {both * (disk - hole) + opacity * hole, both * (disk - box) + opacity * box,
                              opacity * box, both * (disk - box)};
@@ -132,7 +133,7 @@ static void test_holes(void **state) {
 
 /* ---- light ---- */
 
-/* A bowl: the half of an opaque ball that is away from the eye and the light shows its inside, lit by N.L. It
+/* A bowl, half of an opaque ball, shows its inside to the eye and the light. The inside is lit by N.L, and
  * does not shade itself. */
 static void test_inside_of_a_bowl(void **state) {
   (void)state;
@@ -156,9 +157,9 @@ static void test_inside_of_a_bowl(void **state) {
   }
 }
 
-/* A bowl in slanting light: its wall is dark where the light's ray comes through the wall, from where the
- * light grazes it on, and lit as N.L says where the ray comes through the opening. Derived: a ray from a
- * point of a ball at which N.L = s meets the ball again after 2 R s. */
+/* Slanting light falls into a bowl. A point of its wall is lit as N.L says if the ray to the light leaves
+ * through the opening, and dark if the ray meets the wall. Derived: a ray from a point of a ball at which N.L
+ * = s meets the ball again after 2 R s. */
 static void test_wall_within(void **state) {
   (void)state;
   static float pixels[PIXELS * 4];
@@ -181,7 +182,8 @@ static void test_wall_within(void **state) {
       if (square > 11 * 11) continue;
       vec3 at = {pixel_x(i), pixel_y(i), -sqrt(radius * radius - square)};
       double facing = -vec3_dot(at, sun) / radius, value = (double)pixels[4 * i];
-      double height_met = at.z + 2 * radius * facing * sun.z; /* where the light's ray meets the ball again */
+      /* the height at which the ray to the light meets the ball again */
+      double height_met = at.z + 2 * radius * facing * sun.z;
       if (facing < 0 || height_met < -2) {
         assert_near(value, 0, 0.02);
         sum += value;
@@ -197,8 +199,8 @@ static void test_wall_within(void **state) {
   }
 }
 
-/* A sphere through which a part of the light passes looks the same whether its own colour says so or its
- * mesh. */
+/* A sphere lets a part of the light through. It looks the same whether its own colour says so or its mesh's
+ * opacity. */
 static void test_wall_of_a_clear_sphere(void **state) {
   (void)state;
   static float pixels[2][PIXELS * 4];
@@ -221,7 +223,7 @@ static void test_wall_of_a_clear_sphere(void **state) {
   }
 }
 
-/* A floor below a ball that the eye does not see: what is cut off the ball casts no shadow. */
+/* A floor lies below a ball that the eye does not see. The part that is cut off the ball casts no shadow. */
 static void test_shadow_of_half_a_ball(void **state) {
   (void)state;
   static float pixels[PIXELS * 4];
@@ -246,8 +248,8 @@ static void test_shadow_of_half_a_ball(void **state) {
   }
 }
 
-/* A board that is cut in half, and a board half as wide, in the light of the sky, and among haze that
- * scatters light again and again: the same picture. */
+/* A board that is cut into half and a board of half the width make the same picture in the light of the sky,
+ * and among haze that scatters light repeatedly. */
 static void add_board(mesh_stage *all, bool is_cut) {
   double right = is_cut ? 10 : 0;
   hl_mesh *board = stage_make_quad(&all->set, (vec3){(right - 10) / 2, 0, 2}, (vec3){(right + 10) / 2, 0, 0},
@@ -260,7 +262,7 @@ static void test_light_of_fields(void **state) {
   static float pixels[3][PIXELS * 4];
   static const hl_cut plane = {.type = HL_CUT_PLANE, .normal = {1, 0, 0}};
   for (int k = 0; k < 2; k++) {
-    for (int run = 0; run < 3; run++) { /* half a board, a cut one, and none */
+    for (int run = 0; run < 3; run++) { /* half a board, a cut board, and no board */
       mesh_stage all;
       mesh_stage_open(&all, SIDE, 32);
       if (run < 2) add_board(&all, run == 1);
@@ -271,7 +273,7 @@ static void test_light_of_fields(void **state) {
       stage_add_directional(&all.set, (vec3){0, 0.1, -1});
       all.set.scene.render.shadows = HL_SHADOWS_HARD;
       if (k == 0) all.set.scene.sky.type = HL_SKY_UNIFORM;
-      cut(&all, &plane, 1); /* the haze ends there: the cut is the board's alone */
+      cut(&all, &plane, 1); /* the haze ends at the cut, so that no haze is cut */
       stage_render_sheets(&all.set, pixels[run]);
       mesh_stage_close(&all);
     }
@@ -287,9 +289,9 @@ static void test_light_of_fields(void **state) {
 
 /* ---- what stays whole ---- */
 
-/* Two boards over a floor, all cut in half by one plane: the first is not to be cut, and a floor is not by
- * itself. By the sheets and by the reference: the eye sees the floor everywhere, and the boards, which it
- * does not see, shade it, one with its whole area and one with half of it. */
+/* One plane cuts two boards over a floor into halves. The first board and the floor are set not to be cut.
+ * The eye sees the floor everywhere and the boards nowhere. By the sheets and by the reference, one board
+ * shades the floor with its whole area, and the other with half of it. */
 static void test_whole_meshes(void **state) {
   (void)state;
   static float pixels[PIXELS * 4];
@@ -339,7 +341,8 @@ static void open_scenery(mesh_stage *all, int side) {
   all->meshes[2].translate[0] = -7;
   stage_add_directional(&all->set, (vec3){0.3, -0.4, -1});
   all->set.scene.render.shadows = HL_SHADOWS_HARD;
-  all->set.scene.render.shadow_resolution = 512; /* what begins to shade late is thin */
+  /* with fine pixels the strip near the mesh in which shade begins late is thin */
+  all->set.scene.render.shadow_resolution = 512;
   all->set.scene.camera.type = HL_CAMERA_PERSPECTIVE;
   all->set.scene.camera.fovy_deg = 25;
   stage_look(&all->set, (vec3){30, -40, 50}, (vec3){0, 0, 0}, (vec3){0, 0, 1});
@@ -369,8 +372,8 @@ static void test_against_the_reference(void **state) {
   mesh_stage_close(&all);
 }
 
-/* One renderer draws the scene whole, cut, cut elsewhere, with one mesh that is not to be cut, and whole
- * again, by one thread or seven: each picture is that of a new renderer. */
+/* One renderer draws a scene whole, cut, cut elsewhere, with one mesh that is not cut, and whole again, by
+ * one thread or seven. Each picture is the one that a new renderer makes. */
 static void test_kept_between_frames(void **state) {
   (void)state;
   static float fresh[PIXELS * 4], kept[PIXELS * 4], before[PIXELS * 4];

@@ -1,6 +1,5 @@
-/* analytic/sheets_cut_spheres.c - spheres that cuts open stand on a floor: the floor is dark up to the
- * contact where its ray to the light meets what is left of the sphere, and lit elsewhere.
- */
+/* analytic/sheets_cut_spheres.c - spheres with parts cut off stand on a floor. Up to the contact, the floor
+ * is dark where the ray to the light meets what is left of a sphere, and lit elsewhere. */
 #include "../asserts.h"
 #include "mesh_stage.h"
 
@@ -8,13 +7,13 @@ enum { SIDE = 128, PIXELS = SIDE * SIDE };
 
 static const double RADIUS = 12, FLOOR_EDGE = 40, BAND = 9;
 
-/* A cut ball: where its middle is above the floor, and what it loses. */
+/* A cut ball: the height of its middle above the floor, and its cuts. */
 typedef struct cut_ball {
   double height;
   hl_cut cut;
 } cut_ball;
 
-/* A bowl, half a ball, most of a ball that is cut askew, and a dome. */
+/* A bowl, half of a ball, most of a ball with a slanted cut, and a dome. */
 static const cut_ball BALLS[] = {
     {12, {.type = HL_CUT_PLANE, .point = {0, 0, 14}, .normal = {0, 0, 1}}},
     {12, {.type = HL_CUT_PLANE, .point = {0.3, 0, 0}, .normal = {1, 0.3, 0}}},
@@ -44,7 +43,7 @@ static bool is_left(const hl_cut *cut, vec3 point) {
   return vec3_dot(vec3_subtract(point, vec3_of(cut->point)), vec3_of(cut->normal)) <= 0;
 }
 
-/* The distance along a ray, whose way is a unit vector, to what is left of the ball; infinite: it meets
+/* The distance along a ray of unit direction at which it meets the rest of the ball; infinite if it meets
  * nothing. */
 static double distance_to(const cut_ball *ball, vec3 from, vec3 way) {
   vec3 away = vec3_subtract(from, (vec3){0, 0, ball->height});
@@ -56,7 +55,7 @@ static double distance_to(const cut_ball *ball, vec3 from, vec3 way) {
   return INFINITY;
 }
 
-/* Whether the floor's points within a margin of one are all dark, all lit, or neither. */
+/* Whether all of the floor's points within a margin of a point are dark, all are lit, or neither. */
 typedef enum shade { DARK, LIT, UNKNOWN } shade;
 
 static shade shade_of(const cut_ball *ball, vec3 at, vec3 sun, double margin) {
@@ -68,7 +67,8 @@ static shade shade_of(const cut_ball *ball, vec3 at, vec3 sun, double margin) {
   return lit == 0 ? DARK : lit == 8 ? LIT : UNKNOWN;
 }
 
-/* The floor's point that all of a pixel shows, near where the ball stands; false: there is none. */
+/* The point of the floor that a pixel shows, if it is near the place of the ball and the whole pixel shows
+ * the floor; else returns false. */
 static bool floor_of_pixel(const stage *set, const cut_ball *ball, int x, int y, vec3 *at) {
   for (int k = 0; k < 5; k++) {
     vec3 eye, right, down, way, unused;
@@ -93,7 +93,7 @@ static vec3 direction(double elevation_deg, double azimuth_deg) {
   return (vec3){cos(a) * cos(e), sin(a) * cos(e), sin(e)};
 }
 
-/* How much light the floor has that has to be dark, and how many of its pixels were looked at. */
+/* The greatest light of pixels that must be dark, and the numbers of pixels that were looked at. */
 typedef struct found {
   double most;
   int dark, lit;
@@ -122,7 +122,7 @@ static void render_ball(const cut_ball *ball, vec3 sun, vec3 eye, int shadows, f
   mesh_stage_close(&all);
 }
 
-/* Renders all balls by suns from all sides. */
+/* Renders all balls under suns from all sides. */
 static found render_all(int shadows) {
   found found = {0};
   for (int b = 0; b < 4; b++)
@@ -137,13 +137,13 @@ static void test_hard(void **state) {
   assert_near(render_all(0).most, 0, 1e-6);
 }
 
-/* The cascade and sub-lights. */
+/* Soft shadows by the cascade and by sub-lights. */
 static void test_soft(void **state) {
   (void)state;
   for (int shadows = 1; shadows <= 3; shadows += 2) assert_near(render_all(shadows).most, 0, 0.02);
 }
 
-/* A cut that moves between the frames of a renderer takes the light's rays along. */
+/* If a cut moves between the frames of a renderer, shadows change with it. */
 static void test_moved_cut(void **state) {
   (void)state;
   static float fresh[PIXELS * 4], kept[PIXELS * 4];
@@ -157,7 +157,7 @@ static void test_moved_cut(void **state) {
   mesh_stage_choose_shadows(&all, stage_add_directional(&all.set, vec3_scale(direction(30, 110), -1)), 0, 3);
   assert_int_equal(hl_renderer_create(all.set.context, &renderer, NULL), HL_OK);
   for (int step = 0; step < 4; step++) {
-    ball.cut.point[0] = step == 2 ? 40 : 0.3 + 3 * step; /* 40: it cuts nothing */
+    ball.cut.point[0] = step == 2 ? 40 : 0.3 + 3 * step; /* with 40 it cuts nothing */
     stage_render_sheets(&all.set, fresh);
     stage_render_with(&all.set, renderer, kept);
     assert_memory_equal(fresh, kept, sizeof fresh);

@@ -1,6 +1,6 @@
-/* analytic/sheets_cuts.c - planes, boxes and spheres that cut a volume: what is left of even matter, by its
- * length along rays; cut faces under light; shadows of what is cut away; by the sheets and by the reference.
- */
+/* analytic/sheets_cuts.c - planes, boxes and spheres that cut a volume, by the sheets and by the reference.
+ * What is left of even matter is known by its length along rays. Cut faces under light, and shadows of matter
+ * that is cut away. */
 #include <setjmp.h>
 #include <stdarg.h>
 #include <stdlib.h>
@@ -21,7 +21,7 @@ static void open_stage(stage *set, const hl_context_options *options) {
   stage_look(set, (vec3){23, 41, 60}, (vec3){0, 0, 0}, (vec3){0, 1, 0});
 }
 
-/* Even matter in a cube around the origin. */
+/* A cube of even matter around the origin. */
 static hl_scene_volume *add_cube(stage *set, double opacity) {
   hl_scene_volume *cube = stage_add_grid(set, (size_t[3]){VOXELS, VOXELS, VOXELS}, (double[3]){1, 1, 1},
                                          (vec3){-HALF, -HALF, -HALF}, NULL);
@@ -107,8 +107,8 @@ static void test_lengths(void **state) {
 
 /* ---- the same box by a clip box and by cuts ---- */
 
-/* The root mean square of differences. The sheets of two scenes with other content lie elsewhere: single
- * pixels at edges differ more. */
+/* The root mean square difference of two pictures. If two scenes have other content, their sheets lie
+ * elsewhere, and single pixels at edges differ by more. */
 static double difference(const float *a, const float *b) {
   double sum = 0;
   for (int i = 0; i < FLOATS; i++) sum += ((double)a[i] - (double)b[i]) * ((double)a[i] - (double)b[i]);
@@ -145,7 +145,7 @@ static void open_noise(stage *set, hl_soft_method method, hl_instruction_set ins
   set->scene.render.soft_method = method;
 }
 
-/* Whatever lights the faces: a clip box has those of a box that is kept. */
+/* A clip box and planes leave the same faces, by each rule by which faces are lit. */
 static void test_as_a_clip_box(void **state) {
   (void)state;
   static float clipped[FLOATS], planes[FLOATS], box[FLOATS];
@@ -166,7 +166,8 @@ static void test_as_a_clip_box(void **state) {
     stage_close(&set);
     print_message("# method %d, shading %d: planes differ from a clip box by %.5f, a box by %.5f\n", method,
                   shading, difference(planes, clipped), difference(box, clipped));
-    double most = shading == HL_CUT_SHADING_GRADIENT ? 0.003 : 0.004; /* normals change within a voxel */
+    /* by the gradient, normals change within a voxel */
+    double most = shading == HL_CUT_SHADING_GRADIENT ? 0.003 : 0.004;
     assert_true(difference(planes, clipped) < most);
     assert_true(difference(box, clipped) < most);
   }
@@ -194,8 +195,8 @@ static const hl_cut IN_WORLD[] = {
     {.type = HL_CUT_SPHERE, .center = {-3, 4, -5}, .radius = 4},
     {.type = HL_CUT_BOX, .min = {-9, -7, -11}, .max = {7, 11, 9}, .keep = HL_CUT_KEEP_INSIDE}};
 
-/* A turned cube of even matter is cut by shapes that stand straight in the world, a box among them: lengths
- * as counted by points. */
+/* Shapes that stand straight in the world, among them a box, cut a turned cube of even matter. The lengths of
+ * rays are counted by points. */
 static void test_scene_cuts_in_the_world(void **state) {
   (void)state;
   enum { STEPS = 20000 };
@@ -226,8 +227,8 @@ static void test_scene_cuts_in_the_world(void **state) {
   stage_close(&set);
 }
 
-/* Two volumes, one of them turned, cut by the scene and each by its own cuts: the same picture and shadows,
- * but for rounding. */
+/* Two volumes, one of them turned. The scene's cuts and the same cuts of each volume give the same picture
+ * and shadows, except for rounding. */
 static void test_scene_cuts_as_cuts_of_each_volume(void **state) {
   (void)state;
   static float by_scene[FLOATS], by_volumes[FLOATS];
@@ -259,18 +260,16 @@ static void test_scene_cuts_as_cuts_of_each_volume(void **state) {
     assert_true(difference(by_scene, by_volumes) < 1e-5);
     cut(&set.volumes[1], NULL, 0);
     stage_render_by(&set, by_reference, by_volumes);
-    assert_true(difference(by_scene, by_volumes) > 0.01); /* both are cut by the scene */
+    assert_true(difference(by_scene, by_volumes) > 0.01); /* the scene's cuts cut both volumes */
     stage_close(&set);
   }
 }
 
 /* ---- light ---- */
 
-/* Dense even matter has no gradient: only cut faces give it a normal. Without one, matter is a medium, lit by
- * what is left of the light where the eye sees it: 1 / (1 + r), r = c / g, c and g the cosines of the eye and
- * of the light (derived, as in sheets_faces.c).
- *
- * A face is a surface, lit by the light at its outside, which is all of the light. */
+/* Dense even matter has no gradient, so that only cut faces give it a normal. A medium is lit by the light
+ * that is left where the eye sees it: 1 / (1 + r), r = c / g, with the cosines c of the eye and g of the
+ * light (derived, as in sheets_faces.c). A face is a surface, lit by all of the light at its outside. */
 static void test_faces_by_their_own_normal(void **state) {
   (void)state;
   static float pixels[FLOATS];
@@ -304,8 +303,8 @@ static int by_size(const void *a, const void *b) {
   return (x > y) - (x < y);
 }
 
-/* A face that cuts dense matter is even at any angle to the eye, down to 5 degrees: without shadows its
- * brightness is its cosine to the light. */
+/* A face that cuts dense matter is evenly lit at any angle to the eye, down to 5 degrees. Without shadows,
+ * its brightness is the cosine of its angle to the light. */
 static void test_even_at_any_angle(void **state) {
   (void)state;
   enum { FINE = 96 };
@@ -348,7 +347,7 @@ static void test_even_at_any_angle(void **state) {
   }
 }
 
-/* A cube of matter with noise of 3 % (standard deviation), cut by a plane. opacity: [2]. */
+/* A cube of matter with noise (standard deviation 3 %), cut by a plane. opacity: [2]. */
 static hl_scene_volume *add_noisy_cube(stage *set, const hl_opacity_point *opacity, const hl_cut *plane) {
   static float voxels[VOXELS * VOXELS * VOXELS];
   uint32_t seed = 7;
@@ -364,10 +363,10 @@ static hl_scene_volume *add_noisy_cube(stage *set, const hl_opacity_point *opaci
   return cube;
 }
 
-/* A look at the plane's face under light with shadows. */
+/* A view of the plane's face, and a light with shadows. */
 typedef struct lit_face {
-  double eye, light; /* degrees above the face */
-  int method;        /* an hl_soft_method under a sun of 4 degrees; below 0: hard shadows */
+  double eye, light; /* the light's elevation above the face, in degrees */
+  int method;        /* an hl_soft_method, for a sun of 4 degrees; below 0: hard shadows */
 } lit_face;
 
 static void stage_face(stage *set, const lit_face *face, const hl_opacity_point *opacity,
@@ -390,8 +389,8 @@ static void stage_face(stage *set, const lit_face *face, const hl_opacity_point 
   set->scene.render.soft_method = (hl_soft_method)face->method;
 }
 
-/* By how much pixels of the face deviate from its cosine to the light, as a fraction of it: all pixels but
- * the thousandth that deviates most. */
+/* The greatest deviation of the face's pixels from the cosine of its angle to the light, as a fraction of the
+ * cosine. The thousandth of the pixels that deviates most is left out. */
 static double deviation_of_face(const lit_face *face, const hl_opacity_point *opacity, bool reference) {
   static float pixels[FACE_SIDE * FACE_SIDE * 4];
   static double errors[FACE_SIDE * FACE_SIDE];
@@ -415,7 +414,7 @@ static double deviation_of_face(const lit_face *face, const hl_opacity_point *op
   return errors[(size_t)(0.999 * (double)(count - 1))];
 }
 
-/* A face is lit by the light at its outside, whatever the values behind it are. */
+/* A face is lit by the light at its outside, whatever values lie behind it. */
 static void test_even_in_grazing_light(void **state) {
   (void)state;
   static const double eyes[] = {70, 20, 5}, lights[] = {70, 30, 15};
@@ -432,8 +431,9 @@ static void test_even_in_grazing_light(void **state) {
   assert_true(deviation_of_face(&(lit_face){70, 15, -1}, functions[1], true) < 0.03);
 }
 
-/* The border of the grid is such a face, too: without shadows each side of a cube of even matter is as bright
- * as its cosine to the light, evenly. So it is for a cube cropped out of a larger grid of noise. */
+/* A border of the grid is such a face, too. Without shadows, each side of a cube of even matter is evenly as
+ * bright as its cosine to the light. So is each side of a cube that is cropped out of a larger grid of noise.
+ */
 static void test_border_of_the_grid(void **state) {
   (void)state;
   static float pixels[FLOATS], voxels[VOXELS * VOXELS * VOXELS];
@@ -455,7 +455,7 @@ static void test_border_of_the_grid(void **state) {
     for (int p = 0; p < SIDE * SIDE; p++) {
       vec3 origin, way;
       stage_eye_ray(&set, p % SIDE, p / SIDE, &origin, &way);
-      for (int a = 0; a < 3; a++) { /* the sides that the eye sees are those at HALF */
+      for (int a = 0; a < 3; a++) { /* the eye sees the sides at HALF */
         const double t = (HALF - part(origin, a)) / part(way, a);
         const vec3 at = vec3_add(origin, vec3_scale(way, t));
         bool on_side = true;
@@ -472,8 +472,8 @@ static void test_border_of_the_grid(void **state) {
   }
 }
 
-/* Thin matter seen along -z and lit along x: the half at lower x is cut away, and the eye sees a sample at x
- * through the light's way x, or x + HALF. */
+/* Thin matter, seen along -z and lit along x. The half at lower x is cut away. The eye sees a sample at x
+ * through the light's way x, or x + HALF if the cut matter casts its shadow. */
 static void test_shadow_of_what_is_cut_away(void **state) {
   (void)state;
   static float pixels[FLOATS];
@@ -504,9 +504,9 @@ static void test_shadow_of_what_is_cut_away(void **state) {
 
 /* ---- isosurfaces ---- */
 
-/* What cuts leave of a ball's surface is closed by their faces: of half opacity, the eye looks through a near
- * and a far part, 1 - 0.5^2, wherever the ball is cut. Opaque, a face is as bright as its own normal's
- * cosine. */
+/* The faces of cuts close a ball's surface. With an opacity of one half, the eye looks through a near and a
+ * far part, 1 - 0.5^2, wherever the ball is cut. If the ball is opaque, a face is as bright as the cosine of
+ * its own normal. */
 static void test_isosurface(void **state) {
   (void)state;
   static float voxels[VOXELS * VOXELS * VOXELS], pixels[FLOATS];
@@ -519,7 +519,7 @@ static void test_isosurface(void **state) {
   static const hl_cut balls[] = {{.type = HL_CUT_SPHERE, .center = {0, 0, 7}, .radius = 3}};
   static const struct {
     const hl_cut *cut;
-    double across; /* the half width of what is cut away, seen along z; a square or a circle */
+    double across; /* half of the width of the part that is cut away, seen along z: a square or a circle */
   } cases[] = {{planes, 100}, {boxes, 3}, {balls, 2.8}};
   for (int n = 0; n < 12; n++) {
     const bool by_reference = n % 2, opaque = n / 6;
@@ -547,7 +547,7 @@ static void test_isosurface(void **state) {
       const double expected = opaque ? cosine : 0.75, found = (double)pixels[4 * p + (opaque ? 0 : 3)];
       if (!(fabs(found - expected) <= (!opaque ? 0.002
                                        : k < 2 ? 0.01
-                                               : 0.02))) /* a pixel is a mean over 0.95 */
+                                               : 0.02))) /* a pixel is the mean over its width of 0.95 */
         fail_msg("cut %zu, reference %d, (%.2f, %.2f): %.4f is not %.4f", k, by_reference, origin.x, origin.y,
                  found, expected);
     }

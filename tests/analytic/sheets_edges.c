@@ -1,5 +1,5 @@
-/* analytic/sheets_edges.c - the faces of a long box without normals are evenly lit: it has edges, however
- * little its short faces count at its corners. */
+/* analytic/sheets_edges.c - a long box without normals has edges, although its short faces are a small part
+ * of the area at its corners. So its faces are evenly lit. */
 #include "../asserts.h"
 #include "mesh_stage.h"
 
@@ -20,7 +20,7 @@ static void test_long_box(void **state) {
     d.positions = positions, d.vertex_count = 8;
     d.triangles = triangles, d.triangle_count = 12;
     hl_scene_mesh *box = mesh_stage_describe(&all, &d);
-    box->rotate_axis[0] = 1; /* its edge along x is towards the eye */
+    box->rotate_axis[0] = 1; /* the box's edge along x is turned to the eye */
     box->rotate_axis[2] = 0;
     box->rotate_angle_deg = 40;
     double turn = 40 * HL_PI / 180;
@@ -28,7 +28,8 @@ static void test_long_box(void **state) {
          towards = vec3_normalise((vec3){0.3, k < 2 ? 0.4 : -0.3, 1});
     stage_add_directional(&all.set, vec3_scale(towards, -1));
     stage_render_by(&all.set, k % 2, pixels);
-    double edge = 3 * cos(turn) - 2 * sin(turn); /* y of the edge between the two faces that are seen */
+    /* the y of the edge between the two faces that the eye sees */
+    double edge = 3 * cos(turn) - 2 * sin(turn);
     int counted[2] = {0, 0};
     for (int i = 0; i < PIXELS; i++) {
       double y = 6 - (i / SIDE + 0.5) * 12 / SIDE;

@@ -1,5 +1,5 @@
-/* analytic/sheets_emission.c - lights with an image of their own: its shape and colours in penumbrae, against
- * plane geometry and the reference. */
+/* analytic/sheets_emission.c - lights that have an image on their own surface: the image's shape and colours
+ * in penumbrae, against plane geometry and the reference. */
 #include <stdlib.h>
 #include <string.h>
 
@@ -8,27 +8,28 @@
 
 enum { WIDE = 160, ROWS = 6, SIDE = 48, SMALL = 16, IMAGE = 32 };
 
-/* An opaque floor with its surface at z = 0, which casts nothing, seen from straight above. */
+/* An opaque floor with its surface at z = 0, seen from straight above. It casts no shadow. */
 static void stage_floor(stage *set, int width, int height, double across) {
   hl_scene_volume *floor = stage_add_grid(set, (size_t[3]){40, 40, 2}, (double[3]){1, 1, 1},
                                           (vec3){-20, -20, -2}, NULL);
   stage_set_opacity(set, floor, 0.999, 0.01);
   floor->casts_shadow = 0;
   set->scene.render.shadows = HL_SHADOWS_SOFT;
-  set->scene.render.sheet_spacing = 2; /* of the plates' thickness */
+  set->scene.render.sheet_spacing = 2; /* in thicknesses of the plates */
   set->scene.width = width;
   set->scene.height = height;
   set->scene.camera.height = across * height / width;
   stage_look(set, (vec3){0, 0, 100}, (vec3){0, 0, 0}, (vec3){0, 1, 0});
 }
 
-/* In plates' thicknesses, where light from straight above makes sheets parallel to the plates: a plate
- * thinner than a slab counts as if it filled the slab. Measured with sheets 2, 1 and 0.5 thicknesses apart:
- * errors of the two colours .032, .026 and .024 (cascade), .018, .011 and .009 (sub-lights); the pin hole's
- * colours, which should be 1, are 1.06 to 1.07, 1.01 to 1.04 and .97 to .99 (cascade). */
+/* The distance of the sheets, in thicknesses of the plates, if light from straight above makes sheets
+ * parallel to the plates: a plate that is thinner than a slab counts as if it filled the slab. With sheets 2,
+ * 1 and 0.5 thicknesses apart, the errors of the two colours were .032, .026 and .024 (cascade) and .018,
+ * .011 and .009 (sub-lights). The colours behind the pin hole, which should be 1, were 1.06 to 1.07, 1.01
+ * to 1.04 and .97 to .99 (cascade). */
 static const double PARALLEL_SPACING = 0.5;
 
-/* A hidden opaque plate an eighth of a unit thick, its middle at the height. */
+/* An opaque plate that the eye does not see, an eighth of a unit thick. height: of its middle. */
 static void add_plate(stage *set, double x0, double x1, double y0, double y1, double height) {
   hl_scene_volume *plate = stage_add_grid(
       set, (size_t[3]){(size_t)ceil(x1 - x0), (size_t)ceil(y1 - y0), 1},
@@ -51,7 +52,8 @@ static void set_emission(hl_light *light, int side, const float *pixels) {
   light->emission.width = light->emission.height = side;
 }
 
-/* Red and blue halves, or quarters of red, green, blue and white in the order of reading. */
+/* An image with a red and a blue half, or with quarters of red, green, blue and white in the order of
+ * reading. */
 static const float *halves(void) {
   static float pixels[IMAGE * IMAGE * 3];
   for (int i = 0; i < IMAGE * IMAGE; i++) pixels[3 * i + (i % IMAGE < IMAGE / 2 ? 0 : 2)] = 1;
@@ -67,9 +69,9 @@ static const float *quarters(void) {
   return pixels;
 }
 
-/* Over the edge of a plate the right half of the light, blue, rises on one side and the left half on the
- * other, each over half the width of eq. (5): light 6 wide at 24, plate at 8; what is seen from x of the
- * light lies right of -2 x. */
+/* Beyond the edge of a plate, the light's right half, which is blue, rises on one side, and the left half on
+ * the other. Each rises over half of the width of equation (5). The light is 6 wide at the height 24, and the
+ * plate is at 8. From x, the part of the light right of -2 x is seen. */
 static void check_two_colors(hl_soft_method method, int samples, bool reference, double tolerance) {
   static float pixels[WIDE * ROWS * 4];
   int wide = reference ? WIDE / 4 : WIDE;
@@ -107,8 +109,9 @@ static void test_two_colors_over_an_edge(void **state) {
   check_two_colors(HL_SOFT_SUBLIGHTS, 8, false, 0.015);
 }
 
-/* A pin hole shows the light upside down, half as large: light 12 wide at 24, hole 1 wide at 8. From the
- * middle of a quarter's picture the hole shows 3 x 3 of the light, of 12 x 12 parts about nine. */
+/* A pin hole shows the light upside down and half as large. The light is 12 wide at 24, and the hole is 1
+ * wide at 8. From the middle of a quarter's picture, the hole shows 3 x 3 units of the light, which is about
+ * nine of its 12 x 12 parts. */
 static void render_camera(hl_soft_method method, int samples, const float *image, float *pixels) {
   stage set;
   stage_open(&set);
@@ -135,7 +138,7 @@ static void check_camera(hl_soft_method method, int samples) {
   static float pixels[SIDE * SIDE * 4];
   render_camera(method, samples, quarters(), pixels);
   for (int quarter = 0; quarter < 4; quarter++) {
-    /* red, upper left in the image, falls to the lower right */
+    /* red, the upper left of the image, falls on the lower right */
     const float *at = pixel_at(pixels, quarter % 2 == 0 ? 1.5 : -1.5, quarter / 2 == 0 ? -1.5 : 1.5);
     print_message("# camera, method %d: quarter %d is %.3f %.3f %.3f\n", (int)method, quarter, (double)at[0],
                   (double)at[1], (double)at[2]);
@@ -144,16 +147,16 @@ static void check_camera(hl_soft_method method, int samples) {
       assert_near((double)at[c], lit ? 1 : 0, lit ? (method == HL_SOFT_SUBLIGHTS ? 0.2 : 0.05) : 0.02);
     }
   }
-  for (int i = 0; i < SIDE;
-       i++) { /* beyond the picture, its blur by the hole and a twelfth of the light: 3 + 0.75 + 0.5 */
+  for (int i = 0; i < SIDE; i++) {
+    /* beyond 4.25: half of the picture, 3, its blur by the hole, 0.75, and by a twelfth of the light, 0.5 */
     double x = fabs(-6 + (i + 0.5) * 12 / SIDE);
     for (int c = 0; c < 3 && x > 4.25; c++)
       assert_near((double)pixels[4 * (SIDE * SIDE / 2 + i) + c], 0, 0.03);
   }
 }
 
-/* The paper's convolutions add variances, so that its picture is too small; but they add means rightly: each
- * colour's middle is where it should be, 1.5 from the hole's. */
+/* The paper's convolutions add variances, so that the picture is too small. But they add means rightly: the
+ * middle of each colour lies 1.5 from the hole's middle. */
 static void check_camera_of_paper(void) {
   static float pixels[SIDE * SIDE * 4];
   double light[2] = {0, 0}, middle[2] = {0, 0};
@@ -177,13 +180,13 @@ static void test_a_pin_hole_shows_the_light(void **state) {
   check_camera_of_paper();
 }
 
-/* A plate over a quarter of the floor, so that the light's image counts in both directions. */
+/* A plate over a quarter of the floor, so that the light's image matters in both directions. */
 static void stage_corner(stage *set, int side) {
   stage_floor(set, side, side, 12);
   add_plate(set, -20, 0, -20, 0, 9);
 }
 
-/* An even image changes nothing; a grey one, how much light there is. */
+/* An even white image changes nothing. A grey image changes the strength of the light. */
 static void test_an_even_image_is_none(void **state) {
   (void)state;
   static float white[IMAGE * IMAGE * 3], gray[IMAGE * IMAGE * 3];
@@ -208,7 +211,7 @@ static void test_an_even_image_is_none(void **state) {
   }
 }
 
-/* Without soft shadows the light has its image's mean. */
+/* Without soft shadows, the light has the mean of its image. */
 static void test_hard_shadows_have_the_mean(void **state) {
   (void)state;
   static float pixels[SMALL * SMALL * 4];
@@ -235,8 +238,8 @@ static void turn_rect(hl_light *light) {
   memcpy(light->edge2, (double[3]){1, 6, -1}, sizeof light->edge2);
 }
 
-/* Lights of every kind, with the colours of a quartered image: right, left, up and down of it are told
- * apart. */
+/* Lights of every kind with an image of four coloured quarters. Right, left, up and down of the image are in
+ * their places. */
 static hl_light *add_light(stage *set, hl_light_type type) {
   if (type == HL_LIGHT_DIRECTIONAL) {
     hl_light *light = stage_add_directional(set, (vec3){0.2, 0.1, -1});
@@ -290,7 +293,7 @@ static void test_every_kind_of_light_against_the_reference(void **state) {
       assert_true(error < 0.03);
     }
     light->emission.pixels = NULL;
-    light->intensity = 0.5; /* of a grey light as bright the error is that of the colours */
+    light->intensity = 0.5; /* a grey light of the same brightness has the same error as the colours */
     stage_render_sheets(&set, pixels);
     assert_true(difference(expected, pixels) > 0.045);
     stage_close(&set);

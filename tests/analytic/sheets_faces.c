@@ -1,5 +1,5 @@
-/* analytic/sheets_faces.c - faces of a box that light grazes, and the normals of clipped ones: the picture
- * against the closed form. Balls with a corner or a half cut away: light that leaves through a face. */
+/* analytic/sheets_faces.c - faces of a box that light grazes, and the normals of clipped faces, against
+ * closed forms. Balls with a corner or a half cut away: light that leaves matter through a face. */
 #include <setjmp.h>
 #include <stdarg.h>
 #include <stdint.h>
@@ -14,12 +14,12 @@ enum { VOXELS = 32, SIDE = 72, RADIUS = 13 };
 
 static const double OPACITY = 0.95, HALF = VOXELS / 2.0, INSIDE = 7;
 
-/* Of even matter under a face, the eye sees what is left after s / g of the light's way for each s / c of its
- * own: with extinction x, int x exp(-x s) exp(-x s c / g) ds = 1 / (1 + c / g), c and g the eye's and the
- * light's cosines to the face's normal (derived). */
+/* The light that the eye sees from even matter under a face. For each length s / c of the eye's way, the
+ * light's way is s / g, where c and g are the cosines of the eye and of the light to the face's normal. With
+ * the extinction x it is the integral of x exp(-x s) exp(-x s c / g) ds = 1 / (1 + c / g) (derived). */
 static double brightness(vec3 eye, vec3 light) { return 1 / (1 + fabs(eye.z) / fabs(light.z)); }
 
-/* The light's elevation above the face is in degrees; its diameter, 0 for hard shadows, too. */
+/* elevation: of the light above the face, in degrees. diameter: of the light, in degrees; 0: hard shadows. */
 typedef struct face_case {
   double elevation, diameter, spacing, most_mean, most;
 } face_case;
@@ -75,7 +75,7 @@ static void test_even_under_grazing_light(void **state) {
 
 static float noisy_ball[VOXELS * VOXELS * VOXELS];
 
-/* 1 within a radius of 11, falling to 0 over 4 voxels; noise of 2 % to either side. */
+/* The value is 1 within the radius 11 and falls to 0 over 4 voxels, with noise of 2 % to either side. */
 static void make_noisy_ball(void) {
   uint32_t random = 1;
   for (int n = 0; n < VOXELS * VOXELS * VOXELS; n++) {
@@ -87,7 +87,7 @@ static void make_noisy_ball(void) {
   }
 }
 
-/* Of the ball, what lies from low to high along z. */
+/* The part of the ball that lies from low to high along z. */
 static void add_part(stage *set, double low, double high) {
   static const hl_opacity_point opacity[] = {{0.3, 0}, {0.6, 0.98}};
   hl_scene_volume *part = stage_add_grid(set, (size_t[3]){VOXELS, VOXELS, VOXELS}, (double[3]){1, 1, 1},
@@ -114,7 +114,7 @@ static void open_cut_ball(stage *set, vec3 light) {
   stage_look(set, (vec3){20, -30, 60}, (vec3){0, 0, 0}, (vec3){0, 1, 0});
 }
 
-/* The cut is as bright as the cosine of the light's angle to it, whatever the noise. */
+/* The face of the cut is as bright as the cosine of the light's angle to it, whatever the noise is. */
 static void test_normal_of_a_cut(void **state) {
   (void)state;
   static float pixels[SIDE * SIDE * 4];
@@ -143,7 +143,8 @@ static void test_normal_of_a_cut(void **state) {
   stage_close(&set);
 }
 
-/* Seen from behind, where the cut is an outline, it does not show: the picture is the data's own. */
+/* Seen from behind, the cut is a part of the outline and does not show: with the face's normals and with the
+ * data's gradients the picture is the same. */
 static void test_cut_behind(void **state) {
   (void)state;
   static float pixels[2][SIDE * SIDE * 4];
@@ -165,7 +166,7 @@ static void test_cut_behind(void **state) {
   }
 }
 
-/* Where another part goes on, the cut does not show. */
+/* If another part of the matter touches the cut, the cut does not show. */
 static void test_joined_parts(void **state) {
   (void)state;
   static float pixels[2][SIDE * SIDE * 4];
@@ -187,8 +188,8 @@ static void test_joined_parts(void **state) {
 
 /* ---- light that leaves matter through a face ---- */
 
-/* An opaque ball around the origin, or a layer below the height RADIUS, with a cut and a light. The edge of
- * the matter is two voxels wide. */
+/* A scene of an opaque ball around the origin, or of a layer below the height RADIUS, with a cut and a light.
+ * The edge of the matter is two voxels wide. */
 static void open_cut_matter(stage *set, int layer, const hl_cut *cut, vec3 light) {
   static float voxels[VOXELS * VOXELS * VOXELS];
   static const hl_opacity_point opacity[] = {{0, 0}, {1, 0.999}};
@@ -211,8 +212,8 @@ static void open_cut_matter(stage *set, int layer, const hl_cut *cut, vec3 light
   stage_add_directional(set, light);
 }
 
-/* A corner of the ball is cut away, from five voxels below its surface on. The corner's floor lies behind
- * five voxels of opaque matter, as the light sees it: it is dark, up to the wall. */
+/* A corner of the ball is cut away, from five voxels below its surface on. For the light, the corner's floor
+ * lies behind five voxels of opaque matter. So the floor is dark, up to the wall. */
 static void test_inner_corner(void **state) {
   (void)state;
   static float pixels[SIDE * SIDE * 4];
@@ -241,7 +242,7 @@ static void test_inner_corner(void **state) {
 }
 
 /* Beside a cut through which light leaves, the ball's own surface is as bright as without the cut. The light
- * grazes the surface, by 8 degrees. */
+ * grazes the surface at 8 degrees. */
 static void test_rim(void **state) {
   (void)state;
   static float pixels[2][SIDE * SIDE * 4];
@@ -269,9 +270,9 @@ static void test_rim(void **state) {
   assert_true(greatest < 0.02);
 }
 
-/* A layer, up to two voxels thick, hangs above a floor. The sheets lie along its cut, and for some heights of
- * the cut a sheet lies in it: the light leaves the layer at the end of a slab. The floor gets what the layer
- * lets through. */
+/* A layer, up to two voxels thick, hangs above a floor. The sheets are parallel to its cut. For some heights
+ * of the cut a sheet lies in the cut, and the light leaves the layer at the end of a slab. The floor gets the
+ * light that the layer lets through. */
 static void test_cut_at_a_sheet(void **state) {
   (void)state;
   static float pixels[SIDE * SIDE * 4];

@@ -1,5 +1,5 @@
-/* analytic/sheets_gradient.c - gradient opacity: the length of a ramp's and of a paraboloid's gradient are
- * known everywhere, so that what the eye sees and what light passes are. Asked of the sheets and of the
+/* analytic/sheets_gradient.c - gradient opacity. The length of the gradient of a ramp and of a paraboloid is
+ * known everywhere, and so are the picture and the light that passes. Tested on the sheets and on the
  * reference. */
 #include <stdlib.h>
 #include <string.h>
@@ -11,7 +11,8 @@ enum { SIDE = 24, PIXELS = SIDE * SIDE, N = 24 };
 
 typedef double field_function(double x, double y, double z);
 
-/* A cube of N^3 voxels, each `edge` long, around the origin; the field is a function of world positions. */
+/* A cube of N^3 voxels around the origin. The field is a function of the place in the world. edge: of a
+ * voxel. */
 static hl_scene_volume *add_cube(stage *set, field_function *field, double edge) {
   static float voxels[N * N * N];
   float *out = voxels;
@@ -40,7 +41,8 @@ static double ramp(double x, double y, double z) {
 
 static const hl_opacity_point HALF_AT_THREE[] = {{1, 0}, {4, 0.75}}; /* 1/2 at 3 */
 
-/* Opacity 0.1 per unit over the cube's 12 units, half of it counted: alpha = 1 - 0.9^(12 / 2). */
+/* The opacity is 0.1 per unit over the 12 units of the cube, and half of the extinction counts: alpha = 1 -
+ * 0.9^(12 / 2). */
 static void test_ramp(void **state) {
   (void)state;
   static float pixels[PIXELS * 4];
@@ -72,13 +74,13 @@ static double paraboloid(double x, double y, double z) { return x * x + y * y + 
 enum { SHELL_POINTS = 4 };
 static const hl_opacity_point SHELL[SHELL_POINTS] = {{0, 0}, {10, 0}, {13, 1}, {16, 0}};
 
-/* What SHELL says at a distance from the middle. */
+/* The factor of the gradient opacity SHELL at a distance from the middle. */
 static double factor_at(double distance) {
   double gradient = 2 * distance;
   return fmax(0, fmin((gradient - 10) / 3, (16 - gradient) / 3));
 }
 
-/* The integral of the factor along a ray parallel to z that passes the middle at `beside`. */
+/* The integral of the factor along a ray parallel to z that passes the middle at the distance `beside`. */
 static double way_through_shell(double beside) {
   enum { STEPS = 4000 };
   double sum = 0;
@@ -101,7 +103,7 @@ static void test_ball(void **state) {
     hl_scene_volume *cube = add_cube(&set, paraboloid, 1);
     stage_set_opacity(&set, cube, 0.3, 1);
     set_gradient(cube, SHELL, SHELL_POINTS);
-    cube->clipped = 1; /* at the cube's faces gradients are shorter */
+    cube->clipped = 1; /* at the cube's faces gradients are shorter, so that a clip box leaves them out */
     for (int a = 0; a < 3; a++) cube->clip_min[a] = -9, cube->clip_max[a] = 9;
     set.scene.render.sheet_spacing = k % 2 ? 0.5 : 0.25;
     stage_render_by(&set, k >= 2, pixels);
@@ -119,8 +121,8 @@ static void test_ball(void **state) {
 
 /* ---- shadows: light loses to the ramp what the factor leaves of its extinction ---- */
 
-/* The light on a plate under the ramp, seen from below: the plate alone is seen, and the ramp casts its
- * shadow. */
+/* The light on a plate under the ramp, seen from below. The eye sees the plate alone, and the ramp casts its
+ * shadow on it. */
 static double light_below_ramp(bool reference, int method, const hl_opacity_point *points, double intensity) {
   static float pixels[PIXELS * 4];
   stage set;
@@ -163,7 +165,7 @@ static void test_ramp_shadow(void **state) {
     }
 }
 
-/* Root mean square over the middle: the ramp's gradient ends at its faces. */
+/* The root mean square over the middle of the picture. At the faces of the cube the ramp's gradient ends. */
 static double difference_inside(const float *a, const float *b) {
   double sum = 0;
   for (int y = 6; y < SIDE - 6; y++)
@@ -177,8 +179,8 @@ static double difference_inside(const float *a, const float *b) {
 
 /* ---- what the gradient hides casts no shadow within the matter either ---- */
 
-/* Half of the ramp's extinction is the same picture as a ramp of half the opacity: in a medium and on
- * surfaces, lit by every method. */
+/* A ramp with half of its extinction by gradient opacity and a ramp of half of the extinction give the same
+ * picture, as a medium and as a surface, with light by every method. */
 static void test_halved_ramp_is_a_thinner_one(void **state) {
   (void)state;
   static float pixels[2][PIXELS * 4];
@@ -194,7 +196,8 @@ static void test_halved_ramp_is_a_thinner_one(void **state) {
       stage_set_opacity(&set, cube, half ? thin : thick, 4);
       if (half == 0) set_gradient(cube, HALF_AT_THREE, 2);
       if (k >= 4) cube->shading = HL_SHADING_PHONG;
-      cube->cut_shading = HL_CUT_SHADING_GRADIENT; /* not by the grid's faces: by the ramp */
+      /* the surface is that of the ramp, and not that of the grid's faces */
+      cube->cut_shading = HL_CUT_SHADING_GRADIENT;
       stage_add_directional(&set, (vec3){-0.6, -0.3, -1});
       if (k % 4 > 0) set.lights[0].angular_diameter_deg = 12;
       set.scene.render.shadows = k % 4 > 0 ? HL_SHADOWS_SOFT : HL_SHADOWS_HARD;
@@ -218,8 +221,8 @@ static void light_from_everywhere(stage *set, bool sky, hl_scene_volume *cube) {
   }
 }
 
-/* The same for the light of a sky and for light that is scattered again. What a renderer kept of the cube
- * without gradient opacity is not taken for the cube with it. */
+/* The same for the light of a sky and for light that is scattered repeatedly. A renderer does not take what
+ * it kept of the cube without gradient opacity for the cube with it. */
 static void test_light_from_everywhere(void **state) {
   (void)state;
   static float pixels[3][PIXELS * 4];

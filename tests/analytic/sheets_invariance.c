@@ -19,12 +19,13 @@ enum { MOST_SIDE = 96, MOST_FLOATS = MOST_SIDE * MOST_SIDE * 4 };
 
 typedef struct watch {
   atomic_int allocations;
-  int reports; /* of the stage "render", in this picture */
+  int reports; /* the number of reports of the stage "render" in this picture */
   int allocations_at_report;
-  int allocations_in_loop; /* between two reports of the sheet loop */
+  int allocations_in_loop; /* the number of allocations between two reports of the sheet loop */
   double last_fraction;
-  int falls;                   /* reports of a smaller fraction than the one before */
-  int sweeps;                  /* of the picture: each has a loop and an equal share of the fraction */
+  int falls; /* the number of reports whose fraction is smaller than the one before */
+  /* the picture's number of sweeps; each has a loop and an equal share of the fraction */
+  int sweeps;
   int questions, cancel_after; /* 0: never */
 } watch;
 
@@ -38,16 +39,15 @@ static void watched_release(void *data, void *memory) {
   free(memory);
 }
 
-/* The number of the sweep whose share of the picture a fraction lies in. */
+/* The number of the sweep whose share of the picture contains a fraction. */
 static int share_of(const watch *w, double fraction) { return (int)(fraction * w->sweeps + 1e-9); }
 
 static void watched_progress(void *data, const char *name, double fraction) {
   watch *w = data;
   if (strcmp(name, "render") != 0) return;
   int allocations = atomic_load(&w->allocations);
-  /* fractions below 1 in one sweep's share are reports of one sheet loop: nothing may be allocated between
-   * them
-   */
+  /* Two fractions below 1 in one sweep's share are reports of one sheet loop. Nothing may be allocated
+   * between them. */
   if (w->reports > 0 && fraction < 1 && share_of(w, fraction) == share_of(w, w->last_fraction))
     w->allocations_in_loop += allocations - w->allocations_at_report;
   w->falls += fraction < w->last_fraction;
@@ -186,7 +186,7 @@ static void test_threads(void **state) {
   }
 }
 
-/* Slabs at once, and threads: all numbers up to seven with hard shadows and the cascade. */
+/* All numbers of slabs at once, and of threads, up to seven, with hard shadows and with the cascade. */
 static void test_stretches(void **state) {
   (void)state;
   static float one[MOST_FLOATS], more[MOST_FLOATS];
@@ -209,7 +209,8 @@ static void test_stretches(void **state) {
   }
 }
 
-/* Threads wait once a stretch with hard shadows; three times a slab where nothing can be run ahead. */
+/* Threads wait once for each range of slabs with hard shadows, and three times for each slab if no slab can
+ * be worked on ahead. */
 static void test_waits(void **state) {
   (void)state;
   static float pixels[MOST_FLOATS];
@@ -253,8 +254,8 @@ static void test_instruction_sets(void **state) {
     }
 }
 
-/* The volume's voxels with gaps between rows and between slices, borrowed; *memory is for the caller to free.
- * What lies in the gaps is not finite as a float; nothing follows the last row. */
+/* The volume's voxels with gaps between rows and between slices; borrowed. The gaps hold bytes that are not
+ * finite floats, and nothing follows the last row. *memory: the caller frees it. */
 static hl_volume *with_gaps(hl_context *context, const hl_volume *volume, void **memory) {
   const size_t *n = volume->dimension, bytes = hl_storage_bytes(volume->storage);
   size_t row = (n[0] + 3) * bytes, slice = (n[1] + 2) * row, end = n[0] * bytes;
@@ -283,7 +284,7 @@ static hl_volume *with_gaps(hl_context *context, const hl_volume *volume, void *
   return made;
 }
 
-/* Rows of borrowed voxels that lie apart give the bytes of packed ones. */
+/* Borrowed rows of voxels with gaps give the bytes of packed rows. */
 static void test_rows_that_lie_apart(void **state) {
   (void)state;
   static float packed[MOST_FLOATS], apart[MOST_FLOATS];
@@ -311,7 +312,7 @@ static void test_rows_that_lie_apart(void **state) {
   }
 }
 
-/* Renders once more with the same renderer, with a new one, and with one whose buffers another scene of
+/* Renders a scene again: by the same renderer, by a new one, and by one whose buffers another scene of
  * another size has used. */
 static void test_history(void **state) {
   (void)state;
@@ -352,7 +353,7 @@ static void test_history(void **state) {
   }
 }
 
-/* One renderer, many sizes: each picture is the one that a fresh renderer gives. */
+/* One renderer makes pictures of many sizes. Each is the one that a new renderer makes. */
 static void test_sizes(void **state) {
   (void)state;
   static const int sizes[][2] = {{1, 1}, {96, 7}, {16, 16}, {17, 65}, {8, 8}, {64, 48}};
@@ -374,8 +375,8 @@ static void test_sizes(void **state) {
   }
 }
 
-/* A small picture of fine voxels is the mean of a large one: no voxel falls between pixels. 12 pixels over a
- * grid of 36 voxels call for three pixels to one. */
+/* A small picture of fine voxels is the mean of a large one, so that no voxel falls between pixels. A picture
+ * of 12 pixels over a grid of 36 voxels is rendered with three pixels in place of one. */
 static void test_small_pictures_are_averaged(void **state) {
   (void)state;
   enum { WIDTH = 12, HEIGHT = 10, SIDE = 3 };
@@ -404,8 +405,8 @@ static void test_small_pictures_are_averaged(void **state) {
   stage_close(&set);
 }
 
-/* The reference averages as many rays: one ray through each pixel's centre is another picture. Two volumes
- * overlap. */
+/* The reference averages as many rays. One ray through each pixel's centre would make another picture. Two
+ * volumes overlap. */
 static void test_reference_of_small_pictures(void **state) {
   (void)state;
   enum { SIDE = 24 };
@@ -457,7 +458,7 @@ static int count_sweeps(stage *set) {
   return statistics.sweeps;
 }
 
-/* The reported part of a picture rises, over all sweeps, to 1; and nothing is allocated in a sweep's loop. */
+/* The reported fraction of a picture rises to 1 over all sweeps. Nothing is allocated in a sweep's loop. */
 static void test_reports_of_the_loop(void **state) {
   (void)state;
   static float pixels[MOST_FLOATS];
@@ -478,7 +479,7 @@ static void test_reports_of_the_loop(void **state) {
     assert_int_equal(w.allocations_in_loop, 0);
     assert_int_equal(w.falls, 0);
     assert_true(w.last_fraction == 1);
-    stage_close(&set); /* asserts that all memory is back */
+    stage_close(&set); /* fails if memory is still held */
   }
   assert_true(most_sweeps > 1);
 }
@@ -512,8 +513,8 @@ static void test_cancel(void **state) {
   }
 }
 
-/* Only the picture's part of each row is written; and a picture of whole tiles made where the caller wants it
- * is that made elsewhere. */
+/* Only the picture's part of each row is written. A picture of whole tiles, which is made in the caller's
+ * memory, has the bytes of one that is made elsewhere. */
 static void test_row_stride(void **state) {
   (void)state;
   static _Alignas(64) float packed[MOST_FLOATS];
@@ -541,8 +542,8 @@ static void test_row_stride(void **state) {
   stage_close(&set);
 }
 
-/* With no light but the ambient one, the way that sheets go makes no difference but for what is left out
- * behind opaque matter, 1/2048 either way. */
+/* With ambient light alone, the order of the sheets does not matter, except for the matter behind opaque
+ * matter that is left out: up to 1/2048 of the light. */
 static void test_order_of_sheets(void **state) {
   (void)state;
   enum { WIDTH = 272, HEIGHT = 200, FLOATS = WIDTH * HEIGHT * 4 };

@@ -1,5 +1,5 @@
-/* analytic/sheets_labels.c - pictures of label maps: what a skin and solid matter take of light, which labels
- * show, and the same from the reference. */
+/* analytic/sheets_labels.c - pictures of label maps: the light that skins and solid matter take, and which
+ * labels show. Tested on the sheets and on the reference. */
 #include <stdlib.h>
 #include <string.h>
 
@@ -8,7 +8,7 @@
 
 enum { SIDE = 32, PIXELS = SIDE * SIDE, N = 40 };
 
-/* Two balls side by side, labels 1 (left) and 2 (right), radius 7, seen along -z. */
+/* Two balls of the radius 7 side by side, label 1 on the left and label 2 on the right, seen along -z. */
 static hl_scene_volume *open_balls(stage *set, const hl_label *labels, size_t count) {
   static float voxels[N * N * N];
   for (int k = 0; k < N; k++)
@@ -36,8 +36,8 @@ static const float *pixel_at(const float *pixels, double x, double y) {
   return &pixels[4 * (row * SIDE + column)];
 }
 
-/* A ray through the middle crosses the skin twice: it passes (1 - o)^2. The reference marches in steps that
- * are short beside the skin. */
+/* A ray through the middle of a ball crosses its skin twice, so that (1 - o)^2 of the light passes. The
+ * reference's steps are short near the skin. */
 static void test_skin_takes_its_opacity(void **state) {
   (void)state;
   static float pixels[PIXELS * 4];
@@ -79,7 +79,7 @@ static void test_hidden_labels_are_not_there(void **state) {
   }
 }
 
-/* Lit labels with shadows are near the reference's picture of them. */
+/* Labels with shadows look nearly like the reference's picture of them. */
 static void test_labels_against_the_reference(void **state) {
   (void)state;
   static float pixels[2][PIXELS * 4];
@@ -100,8 +100,8 @@ static void test_labels_against_the_reference(void **state) {
   assert_near(sqrt(sum), 0, 0.012);
 }
 
-/* Where a scene's kernel is the interpolating one, labels keep the B-spline, which their fields are made for,
- * in the sheets and in the reference. */
+/* In a scene with the interpolating kernel, labels keep the B-spline, for which their fields are made, by the
+ * sheets and the reference. */
 static void test_labels_keep_their_kernel(void **state) {
   (void)state;
   static float pixels[2][PIXELS * 4];

@@ -1,6 +1,6 @@
-/* analytic/sheets_levels.c - fields at random levels: every way to draw gives the picture of the dense volume
- * of their coefficients, the reference's picture and the same bytes by any instruction set; a homogeneous one
- * passes what Beer and Lambert say; no border of a level shows. */
+/* analytic/sheets_levels.c - fields at random levels. By every way to draw, they give the picture of the
+ * dense volume of their coefficients, the reference's picture, and the same bytes with any instruction set. A
+ * homogeneous field follows the law of Beer and Lambert. The borders of levels do not show. */
 #include <math.h>
 #include <setjmp.h>
 #include <stdarg.h>
@@ -27,8 +27,9 @@ enum { CELLS = 32, LEVELS = 4 };
 typedef struct field_kind {
   octree_value *value;
   int shift, levels;
-  bool on_points; /* whether voxels stand on the lattice's points between the outermost ones, and not in the
-                   * middles of its cells */
+  /* whether voxels stand on the lattice's points between the outermost ones, or in the middles of its cells
+   */
+  bool on_points;
 } field_kind;
 
 static hl_scene_volume *add_field(stage *set, uint64_t seed, field_kind kind) {
@@ -54,7 +55,7 @@ static hl_scene_volume *add_octree(stage *set, uint64_t seed, octree_value *valu
   return add_field(set, seed, (field_kind){value, shift, LEVELS, false});
 }
 
-/* Beer and Lambert: what passes is exp(-extinction * length), whatever the levels are. */
+/* By the law of Beer and Lambert, exp(-extinction * length) of the light passes, whatever the levels are. */
 static void test_homogeneous(void **state) {
   (void)state;
   for (uint64_t seed = 0; seed < 6; seed++) {
@@ -178,8 +179,8 @@ static double greatest(const float *pixels) {
   return most;
 }
 
-/* Asserts that two maximum projections are the same. A value counts where its opacity is above 0, which the
- * tables of the two volumes tell to a step of their ranges. So one of a pixel's four samples may show such a
+/* Asserts that two maximum projections are the same. A value counts if its opacity is above 0. The tables of
+ * the two volumes tell that to a step of their ranges, so that one of a pixel's four samples may show such a
  * value in one of the pictures alone. */
 static void assert_same_projections(const float *levels, const float *dense) {
   int apart = 0;
@@ -192,7 +193,8 @@ static void assert_same_projections(const float *levels, const float *dense) {
   assert_true(apart <= 1);
 }
 
-/* The whole field is one B-spline of level 0: its coefficients there give the picture by every way. */
+/* The whole field is one B-spline of level 0. The dense volume of its coefficients gives the same picture by
+ * every way to draw. */
 static void test_ways_against_dense(void **state) {
   (void)state;
   for (size_t n = 0; n < WAYS; n++) {
@@ -206,7 +208,8 @@ static void test_ways_against_dense(void **state) {
     stage_render_sheets(&set, levels);
     make_dense(&set);
     stage_render_sheets(&set, dense);
-    /* Sheets lie by what may be visible, which bricks of coarse levels tell less closely than voxels. */
+    /* the places of sheets follow from what may be visible, and bricks of coarse levels tell that less
+     * exactly than voxels */
     if (ways[n].draw == draw_maximum) assert_same_projections(levels, dense);
     else if (!(difference(levels, dense) < 2e-3))
       fail_msg("%s: the picture at levels differs from the dense one by %.4g", ways[n].name,
@@ -262,7 +265,8 @@ static void draw_wide(octree_value *value, int levels, float spoil, float *pixel
   stage_close(&set);
 }
 
-/* What is left of the difference of two pictures without its mean over (2 REACH + 1)^2 pixels, at most. */
+/* The greatest difference that is left of two pictures' difference after its mean over (2 REACH + 1)^2 pixels
+ * is subtracted. */
 static double high_passed(const float *a, const float *b) {
   const int around = (2 * REACH + 1) * (2 * REACH + 1);
   double most = 0;
@@ -280,9 +284,9 @@ static double high_passed(const float *a, const float *b) {
   return most;
 }
 
-/* A smooth field at random levels is a picture without borders: it differs from the field at one level by
- * less than .1 % from pixel to pixel. Coefficients at the borders of bricks that are wrong by 1 % are seen.
- */
+/* The picture of a smooth field at random levels shows no borders. From the picture of the field at one level
+ * it differs by less than .1 % from pixel to pixel. If coefficients at the borders of bricks were wrong by 1
+ * %, the test would fail. */
 static void test_borders(void **state) {
   (void)state;
   octree_value *values[] = {quadratic_value, wave_value};
@@ -299,15 +303,16 @@ static void test_borders(void **state) {
 
 /* ---- the box's faces ---- */
 
-/* Matter at the far end of x alone, and not at the far end of y. */
+/* There is matter at the far end of x, and none at the far end of y. */
 static double far_value(uint64_t seed, int level, const ptrdiff_t point[3]) {
   (void)seed;
   const ptrdiff_t scale = (ptrdiff_t)1 << level;
   return point[0] * scale > CELLS - 6 && point[1] * scale < CELLS / 2 ? 1 : 0;
 }
 
-/* The last cell of a lattice of corners ends on the box's far face: the face looks at that cell's brick, and
- * not at the brick behind it, which begins the next row, where nothing shows. */
+/* The last cell of a lattice of corners ends at the box's far face. The light at the face depends on that
+ * cell's brick. The next brick in memory begins the next row, in which nothing shows, and must not be read.
+ */
 static void test_far_faces(void **state) {
   (void)state;
   stage set;
@@ -327,7 +332,7 @@ static void test_far_faces(void **state) {
   hl_grid_mark_relevant(&grid, functions, &classifier, pool);
   hl_faces_find(pool, kernel, &classifier, &grid);
   assert_int_equal(grid.dimension[0] % HL_BRICK_CELLS,
-                   HL_BRICK_CELLS - 1); /* a brick ends with the last cell */
+                   HL_BRICK_CELLS - 1); /* a brick ends at the last cell */
   assert_true(grid.face_shows[0][1] && !grid.face_shows[0][0]);
   hl_classifier_release(set.context, &classifier);
   hl_grid_release(set.context, &grid);
@@ -342,7 +347,8 @@ static double with_holes(uint64_t seed, int level, const ptrdiff_t point[3]) {
   return place % 64 < 24 ? (double)NAN : octree_random_value(seed, level, point);
 }
 
-/* Coefficients that are no numbers are empty space for the sheets and the reference, and no statistics. */
+/* Coefficients that are not finite are empty space, for the sheets and for the reference. They do not count
+ * in the statistics. */
 static void test_holes(void **state) {
   (void)state;
   stage set;

@@ -1,6 +1,6 @@
-/* analytic/sheets_mask.c - a label map over a volume: what each label and the rest leave of the volume's
- * extinction and colour is known in closed form far from borders and, summed up, across them. Asked of the
- * sheets and of the reference. */
+/* analytic/sheets_mask.c - a label map as the mask of a volume. The extinction and colour that labels and the
+ * rest leave of the volume are known in closed form, far from borders and as a sum across borders. Tested on
+ * the sheets and on the reference. */
 #include <stdlib.h>
 #include <string.h>
 
@@ -12,8 +12,8 @@
 
 enum { SIDE = 32, PIXELS = SIDE * SIDE, N = 32, HALF = 16 };
 
-/* A label map of 16^3 voxels, each two units long, around the origin: labels 1 where x < 0 and 2 where x > 0,
- * for |y| < 8; 0 elsewhere. */
+/* A label map of 16^3 voxels around the origin, each two units long. For |y| < 8 the label is 1 where x < 0
+ * and 2 where x > 0; else it is 0. */
 static hl_volume *make_map(stage *set) {
   static unsigned char voxels[HALF * HALF * HALF];
   hl_volume_description d;
@@ -34,7 +34,7 @@ static hl_volume *make_map(stage *set) {
   return map;
 }
 
-/* A cube of 32^3 voxels with the same extinction everywhere, 0.05 a unit, seen along -z, with the mask; the
+/* A cube of 32^3 voxels, seen along -z, with the same extinction of 0.05 a unit everywhere, and the mask. The
  * caller releases volume->mask.volume. */
 static hl_scene_volume *open_masked(stage *set, const hl_label *labels, size_t count, double rest) {
   stage_open(set);
@@ -60,14 +60,14 @@ static const float *pixel_at(const float *pixels, double x, double y) {
   return &pixels[4 * (row * SIDE + column)];
 }
 
-/* A ray through a part with the factor f: alpha = 1 - 0.95^(32 f). */
+/* In a part with the factor f, alpha is 1 - 0.95^(32 f). */
 static double alpha_of(double factor) { return 1 - pow(0.95, N * factor); }
 
 static const hl_label LABELS[] = {
     {.value = 1, .color = {0.81, 0.09, 0.25}, .opacity = 0.5, .visible = 1, .tint = 1},
     {.value = 2, .color = {0.04, 0.64, 0.16}, .opacity = 1, .visible = 1, .tint = 0}};
 
-/* Each label's factor and colour far from its borders, and the rest's. */
+/* The factor and the colour of each label and of the rest, far from borders. */
 static void test_factors_and_colors(void **state) {
   (void)state;
   static float pixels[PIXELS * 4];
@@ -81,7 +81,7 @@ static void test_factors_and_colors(void **state) {
     assert_near((double)right[3], alpha_of(1), 1e-4);
     assert_near((double)rest[3], k % 2 ? alpha_of(0.1) : 0, 1e-4);
     static const double colors[3] = {0.2, 0.4, 0.8};
-    for (int c = 0; c < 3; c++) { /* codes of colours have 8 bits */
+    for (int c = 0; c < 3; c++) { /* a channel of a colour is stored with 8 bits */
       assert_near((double)left[c] / (double)left[3], LABELS[0].color[c], 4e-3);
       assert_near((double)right[c] / (double)right[3], colors[c], 1e-4);
     }
@@ -89,8 +89,8 @@ static void test_factors_and_colors(void **state) {
   }
 }
 
-/* Across a border the factor runs from one label's to the other's; its mean over a line that is symmetric
- * about the border is the mean of the two, so that the border is where the labels meet. */
+/* Across a border, the factor changes from one label's to the other's. Its mean over a line that is symmetric
+ * to the border is the mean of the two factors. So the border lies where the labels meet. */
 static void test_border_is_smooth_and_in_place(void **state) {
   (void)state;
   static float pixels[PIXELS * 4];
@@ -110,7 +110,7 @@ static void test_border_is_smooth_and_in_place(void **state) {
   }
 }
 
-/* Whether all points of a lattice's brick have the bytes of its first one. */
+/* Returns whether all points of a brick of the lattice have the bytes of the first one. */
 static bool brick_is_even(const void *values, size_t bytes, const size_t brick[3]) {
   const unsigned char *from = values, *one = NULL;
   for (int n = 0; n < 5 * 5 * 5; n++) {
@@ -124,7 +124,7 @@ static bool brick_is_even(const void *values, size_t bytes, const size_t brick[3
   return true;
 }
 
-/* 32^3 voxels: half of them label 1, a corner label 2, and the others 0. */
+/* A label map of 32^3 voxels: label 1 in one half, label 2 in a corner, and 0 elsewhere. */
 static hl_volume *make_large_map(stage *set) {
   static unsigned char voxels[N * N * N];
   hl_volume_description d;
@@ -142,7 +142,8 @@ static hl_volume *make_large_map(stage *set) {
   return map;
 }
 
-/* A lattice's bricks tell where it is even, and what it is there; some are even and some are not. */
+/* The lattice's bricks that are marked as even have one value, and the mark holds it. Some bricks are even
+ * and some are not. */
 static void test_bricks_are_told(void **state) {
   (void)state;
   stage set;
@@ -175,7 +176,8 @@ static void test_bricks_are_told(void **state) {
   stage_close(&set);
 }
 
-/* Bricks that are told to be even are not looked into: the same picture, but for the rounding of tints. */
+/* Bricks that are marked as even are not read. The picture is the same, except for the rounding of colours.
+ */
 static void test_bricks_change_nothing(void **state) {
   (void)state;
   static float pixels[2][PIXELS * 4];
@@ -190,7 +192,7 @@ static void test_bricks_change_nothing(void **state) {
     cube->mask.volume = make_large_map(&set);
     cube->shading = HL_SHADING_PHONG;
     stage_render_by(&set, false, pixels[0]);
-    /* the lattice stays on the map's shelf */
+    /* the label map keeps the lattice for later scenes */
     assert_int_equal(hl_label_mask(set.context, 1, &cube->mask, &made, NULL), HL_OK);
     for (int n = 0; n < N * N * N / 64; n++) {
       even += (made->mask_bricks[n][0] & HL_MASK_EVEN) != 0;
@@ -205,7 +207,7 @@ static void test_bricks_change_nothing(void **state) {
   }
 }
 
-/* A label that is not visible, or not listed, hides the matter. */
+/* A label that is set invisible, or is not listed, hides the matter. */
 static void test_hidden(void **state) {
   (void)state;
   static float pixels[PIXELS * 4];
@@ -222,7 +224,8 @@ static void test_hidden(void **state) {
   }
 }
 
-/* The mask moves with the volume: turned and moved with the camera, the picture stays. */
+/* The mask moves with the volume. If both are turned and moved with the camera, the picture stays the same.
+ */
 static void test_moves_with_the_volume(void **state) {
   (void)state;
   static float pixels[2][PIXELS * 4];
@@ -241,7 +244,7 @@ static void test_moves_with_the_volume(void **state) {
   for (int i = 0; i < 4 * PIXELS; i++) assert_near((double)pixels[1][i], (double)pixels[0][i], 2e-3);
 }
 
-/* A label map like make_map()'s, with label 1 everywhere but between two heights. */
+/* A label map of the same size as make_map()'s, with label 1 everywhere except between two heights. */
 static hl_volume *make_layer(stage *set) {
   static unsigned char voxels[HALF * HALF * HALF];
   hl_volume *map = make_map(set);
@@ -254,9 +257,9 @@ static hl_volume *make_layer(stage *set) {
   return map;
 }
 
-/* A ball above a floor. Between them, if more is set, a sheet of matter in the layer that the mask hides. The
- * sheet lies where the mask's factor is 0, but not in a brick that is left out because the mask hides it with
- * its surroundings. */
+/* A ball above a floor. more: adds a sheet of matter between them, in the layer that the mask hides. The
+ * mask's factor is 0 there, but the sheet does not lie in a brick that is left out because the mask hides it
+ * and its neighbours. */
 static void fill_ball_and_floor(float *voxels, bool more) {
   for (int n = 0; n < N * N * N; n++) {
     const int i = n % N - 16, j = n / N % N - 16, k = n / (N * N) - 16;
@@ -266,8 +269,8 @@ static void fill_ball_and_floor(float *voxels, bool more) {
   }
 }
 
-/* Matter that a mask hides changes nothing, to the last bit, in the soft shadows of surfaces: it absorbs no
- * light. */
+/* Matter that a mask hides absorbs no light. So it does not change the soft shadows of surfaces, to the last
+ * bit. */
 static void test_hidden_matter_leaves_no_trace(void **state) {
   (void)state;
   static float pixels[2][PIXELS * 4], voxels[N * N * N];
@@ -301,7 +304,7 @@ static void test_hidden_matter_leaves_no_trace(void **state) {
 
 enum { COARSE = 12 };
 
-/* The masked cube as a lit medium of 12 x 12 pixels. method: -1: hard shadows. */
+/* The masked cube as a lit medium, in a picture of 12 x 12 pixels. method: -1: hard shadows. */
 static void render_lit(int method, bool reference, float *pixels) {
   stage set;
   hl_scene_volume *cube = open_masked(&set, LABELS, 2, 0.1);
@@ -314,8 +317,8 @@ static void render_lit(int method, bool reference, float *pixels) {
   close_masked(&set, cube);
 }
 
-/* What light loses on its way through the mask's parts: lit matter with shadows by every method is near the
- * reference's picture of it. */
+/* Light that passes the mask's parts loses what their factors say. By every method of shadows, the picture is
+ * near the reference's. */
 static void test_shadows_against_the_reference(void **state) {
   (void)state;
   static float expected[COARSE * COARSE * 4], pixels[COARSE * COARSE * 4];
@@ -335,7 +338,8 @@ static void test_shadows_against_the_reference(void **state) {
 
 static const hl_label KNIFE[] = {{.value = 2, .opacity = 1}};
 
-/* Even, dense matter, of which the mask takes the half with x > 0, seen from there. Shadows are off. */
+/* Even, dense matter. The mask takes away the half with x > 0, and the eye looks from that side. Shadows are
+ * off. */
 static hl_scene_volume *open_cut(stage *set) {
   hl_scene_volume *cube = open_masked(set, KNIFE, 1, 1);
   stage_set_opacity(set, cube, 0.9, 1);
@@ -347,9 +351,9 @@ static hl_scene_volume *open_cut(stage *set) {
   return cube;
 }
 
-/* The matter itself has no gradient: where the label takes it, it is lit as a surface with the normal of the
- * label's border, by its cosine to the light. By the data's gradient, it is a medium, the same from any side.
- */
+/* The matter itself has no gradient. With shading by faces, the matter is lit at the label's border as a
+ * surface, by the cosine of the border's normal to the light. With shading by the data's gradient it is a
+ * medium, which looks the same from any side. */
 static void test_faces_of_a_knife(void **state) {
   (void)state;
   static float pixels[PIXELS * 4];
@@ -369,8 +373,8 @@ static void test_faces_of_a_knife(void **state) {
       }
 }
 
-/* Bricks that the mask hides, and that are no neighbours of visible matter, are left out: two fifths of the
- * half with x > 0, where the label is hidden. Where the rest shows, all are kept. */
+/* Bricks that the mask hides are left out unless they are neighbours of visible matter: two fifths of the
+ * half with x > 0, if the label there is hidden. If the rest shows, all bricks are kept. */
 static void test_hidden_voxels_are_not_kept(void **state) {
   (void)state;
   static float pixels[PIXELS * 4];
@@ -385,8 +389,8 @@ static void test_hidden_voxels_are_not_kept(void **state) {
   }
 }
 
-/* Waves of 32^3 voxels, whose surfaces show where sheets lie; of them a mask shows all, or the half with x <
- * 0. */
+/* Waves in 32^3 voxels. If sheets lay elsewhere, their surfaces would look different. The mask shows all of
+ * them, or the half with x < 0. */
 static void render_waves(bool masked, float *pixels) {
   static float voxels[N * N * N];
   static const hl_opacity_point steep[] = {{0.45, 0}, {0.55, 0.9}};
@@ -412,8 +416,8 @@ static void render_waves(bool masked, float *pixels) {
   stage_close(&set);
 }
 
-/* Hidden bricks are left out, and the sheets stay: rays that cross matter with the factor 1 alone give the
- * same bytes. */
+/* If hidden bricks are left out, the sheets stay in their places. Rays that cross only matter with the factor
+ * 1 give the same bytes. */
 static void test_no_mask_moves_the_sheets(void **state) {
   (void)state;
   static float pixels[2][PIXELS * 4];
@@ -428,8 +432,8 @@ static void test_no_mask_moves_the_sheets(void **state) {
   assert_true(seen > 2 * SIDE);
 }
 
-/* Haze for x < -4 that scatters light again and again, and beside it what is all but clear; of both a mask
- * shows all, or the half with x < 0. */
+/* Haze at x < -4 scatters light repeatedly, and the rest is nearly transparent. The mask shows all, or the
+ * half with x < 0. */
 static void render_haze(bool masked, float *pixels) {
   static float voxels[N * N * N];
   static const hl_opacity_point faint[] = {{0.3, 1e-7}, {0.4, 1e-7}, {0.5, 0.2}};
@@ -455,7 +459,7 @@ static void render_haze(bool masked, float *pixels) {
   stage_close(&set);
 }
 
-/* Bricks that a mask hides take nothing away from the grid of scattered light. */
+/* Bricks that a mask hides do not change the grid of scattered light. */
 static void test_no_mask_moves_the_nodes(void **state) {
   (void)state;
   static float pixels[2][PIXELS * 4];
@@ -464,8 +468,8 @@ static void test_no_mask_moves_the_nodes(void **state) {
   assert_true(pixels[1][4 * (SIDE / 2 * SIDE + 4)] > 0.3f);
 }
 
-/* A scene made of the same map, labels and rest takes the lattice that was made before; a changed label has
- * another. */
+/* A scene with the same map, labels and rest uses the lattice that an earlier scene has made. A scene with a
+ * changed label makes another. */
 static void test_lattice_is_kept(void **state) {
   (void)state;
   hl_label labels[2] = {LABELS[0], LABELS[1]};

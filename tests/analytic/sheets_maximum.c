@@ -1,5 +1,5 @@
-/* analytic/sheets_maximum.c - maximum projection: fields whose greatest value along a ray is known, and noise
- * against the reference. Each closed form is asked of both. */
+/* analytic/sheets_maximum.c - maximum projections: fields whose greatest value along a ray is known, and
+ * noise beside the reference. Each closed form is tested on the sheets and on the reference. */
 #include <stdlib.h>
 #include <string.h>
 
@@ -8,7 +8,7 @@
 
 enum { SIDE = 24, PIXELS = SIDE * SIDE, N = 24 };
 
-/* Grey is the value itself, from 0 to 1; values above 0 are shown. */
+/* The colour is the grey of the value itself, from 0 to 1. Values above 0 are shown. */
 static const hl_opacity_point ABOVE_ZERO[] = {{0, 0}, {1, 1}};
 static const hl_color_point GREY[] = {{0, {0, 0, 0}}, {1, {1, 1, 1}}};
 
@@ -55,7 +55,7 @@ static void render(stage *set, bool reference, float *pixels) {
 
 static double ramp(double x, double y, double z) { return 0.5 + (x + 2 * y - z) * 0.01; }
 
-/* The ends of the ray in a box; false where it misses. */
+/* Sets the distances at which the ray enters and leaves the box. Returns false if it misses the box. */
 static bool ends(const stage *set, int pixel, vec3 low, vec3 high, vec3 end[2]) {
   vec3 origin, direction;
   stage_eye_ray(set, pixel % SIDE, pixel / SIDE, &origin, &direction);
@@ -72,7 +72,7 @@ static bool ends(const stage *set, int pixel, vec3 low, vec3 high, vec3 end[2]) 
   return enter < leave;
 }
 
-/* Clip boxes are honoured, and a perspective eye within the box sees what is before it. Lights do not
+/* Clip boxes cut projections. A perspective eye within the box sees only what is before it. Lights do not
  * matter. */
 static void test_ramp_in_a_clip_box(void **state) {
   (void)state;
@@ -81,8 +81,8 @@ static void test_ramp_in_a_clip_box(void **state) {
   for (int k = 0; k < 12; k++) {
     stage set;
     open_maximum(&set);
-    hl_scene_volume *volume = add_field(&set,
-                                        ramp); /* exact away from the borders, where voxels are repeated */
+    /* the field is exact away from the borders, where voxels are repeated */
+    hl_scene_volume *volume = add_field(&set, ramp);
     volume->clipped = 1;
     memcpy(volume->clip_min, &low, sizeof low);
     memcpy(volume->clip_max, &high, sizeof high);
@@ -110,8 +110,8 @@ static void test_ramp_in_a_clip_box(void **state) {
 
 static double blob(double x, double y, double z) { return exp(-(x * x + y * y + z * z) / 50); }
 
-/* The kernel's own widening: a B-spline adds a variance of 1/3 of a voxel, so the blob is (v / (v + 1/3))^1.5
- * exp(-r^2 / (2 v + 2/3)) with v = 25 (derived; beyond it 1e-3). */
+/* The B-spline widens a blob, by a variance of 1/3 of a voxel. So the blob's values are (v / (v + 1/3))^1.5
+ * exp(-r^2 / (2 v + 2/3)) with v = 25 (derived; the rest is below 1e-3). */
 static void test_blob(void **state) {
   (void)state;
   static float pixels[PIXELS * 4];
@@ -120,7 +120,8 @@ static void test_blob(void **state) {
     stage set;
     open_maximum(&set);
     (void)add_field(&set, blob);
-    set.scene.render.sheet_spacing = k % 2 ? 2 : 0.25; /* more than half a voxel is as half a voxel */
+    /* distances of more than half a voxel count as half a voxel */
+    set.scene.render.sheet_spacing = k % 2 ? 2 : 0.25;
     set.scene.render.reconstruction = k / 4 ? HL_RECONSTRUCTION_GATHER : HL_RECONSTRUCTION_SPLAT;
     if (k % 4 == 3) look_in_perspective(&set);
     render(&set, k == 2, pixels);
@@ -137,8 +138,8 @@ static void test_blob(void **state) {
 
 /* ---- what the transfer function shows ---- */
 
-/* Values of some range only: the greatest shown one, whatever lies above; the colour of that value
- * exactly. */
+/* If only a range of values is shown, the pixel has exactly the colour of the greatest value in the range,
+ * whatever greater values the ray meets. */
 static void test_hidden_values_do_not_count(void **state) {
   (void)state;
   static float pixels[PIXELS * 4];
@@ -156,7 +157,7 @@ static void test_hidden_values_do_not_count(void **state) {
       double r = vec3_length(vec3_add(origin, vec3_scale(direction, -vec3_dot(origin, direction))));
       double greatest = pow(25 / (25 + 1.0 / 3), 1.5) * exp(-r * r / (50 + 2.0 / 3));
       const float *pixel = &pixels[4 * i];
-      if (greatest > 0.61) { /* passes through 0.6 on its way up */
+      if (greatest > 0.61) { /* the value passes 0.6 on its way up */
         inner++;
         for (int c = 0; c < 3; c++) assert_near((double)pixel[c], c == 1 ? 1 : c == 2 ? 0.2 : 0, 2e-3);
       } else if (greatest > 0.31 && greatest < 0.59) {
@@ -172,7 +173,7 @@ static void test_hidden_values_do_not_count(void **state) {
   }
 }
 
-/* A background that has opacity 0 is not seen, though things beside it are, down to the next whole value. */
+/* A background of the opacity 0 does not show. Values beside it do, down to the next whole value. */
 static double steps(double x, double y, double z) {
   (void)z;
   return (x < 0 ? 38 : y < 0 ? 39 : 41) / 255.0;
@@ -207,15 +208,15 @@ static void test_the_background_is_not_shown(void **state) {
 
 static double shifted_blob(double x, double y, double z) { return blob(x - 4, y + 2, z); }
 
-/* Each volume alone, then of each channel the greatest; hidden volumes count for nothing, and order does not
- * matter. */
+/* If there are several volumes, each is projected alone. A pixel then has the greatest of each channel.
+ * Hidden volumes do not count, and the order of volumes does not matter. */
 static void test_several_volumes(void **state) {
   (void)state;
   static float pixels[4][PIXELS * 4];
   static const hl_color_point red[] = {{0, {0, 0.1, 0}}, {1, {1, 0.1, 0}}},
                               green[] = {{0, {0, 0, 0}}, {1, {0.2, 1, 0}}};
   for (int reference = 0; reference < 2; reference++) {
-    for (int k = 0; k < 4; k++) { /* one, the other, both, both the other way round */
+    for (int k = 0; k < 4; k++) { /* the first volume, the second, both, and both in the other order */
       stage set;
       open_maximum(&set);
       for (int n = 0; n < 2; n++) {
@@ -241,7 +242,7 @@ static double noise(double x, double y, double z) {
   return fmax(0.05, (double)((hash ^ hash >> 16) & 0xffff) / 65535);
 }
 
-/* The worst for peaks between sheets: voxels that know nothing of each other. */
+/* The greatest errors are at peaks between sheets: the voxels are independent random numbers. */
 static void test_noise_against_the_reference(void **state) {
   (void)state;
   static float sheets[PIXELS * 4], reference[PIXELS * 4];
@@ -282,16 +283,16 @@ static void test_noise_against_the_reference(void **state) {
 
 static double ridge_height, beside_ridge;
 
-/* Left of x = 4, a ridge across the rays along z, whose middle is at another depth in each row; on the right,
- * one value, and a strip of ones, so that all fields have the same range of values. */
+/* For x < 4, a ridge crosses the rays along z, and its middle is at another depth in each row. For x > 4
+ * there is one value, and a strip of ones gives all fields the same range of values. */
 static double ridge(double x, double y, double z) {
   const double off = z - 0.17 * y;
   return x < 4 ? ridge_height * exp(-off * off / 4) : y > 10 ? 1 : beside_ridge;
 }
 
-/* The ridge is about as high as the least shown value. Between two sheets a ray may meet a greater value than
- * on any sheet. Whether this value is shown must not depend on whether other pixels of the same block see
- * anything. */
+/* The ridge is about as high as the least value that is shown. Between two sheets a ray may meet a greater
+ * value than on any sheet. Whether the pixel shows it must not depend on whether other pixels of its block
+ * show anything. */
 static void test_pixels_beside_do_not_matter(void **state) {
   (void)state;
   static float pixels[2][PIXELS * 4];
@@ -310,7 +311,7 @@ static void test_pixels_beside_do_not_matter(void **state) {
     }
     for (int i = 0; i < PIXELS; i++) {
       if (i % SIDE != 12 && i % SIDE != 13)
-        continue; /* pixels 14 and 15 of these blocks see the right side */
+        continue; /* pixels 14 and 15 of these blocks show the right side */
       assert_memory_equal(&pixels[0][4 * i], &pixels[1][4 * i], 4 * sizeof(float));
       shown += pixels[0][4 * i + 3] > 0;
       hidden += pixels[0][4 * i + 3] == 0;

@@ -1,6 +1,6 @@
-/* analytic/sheets_open_surfaces.c - a volume's surface is lit by the light that arrives at its outside: a
- * white surface sends the cosine of the light's angle, whatever its edge, its transfer function, the eye and
- * the method of shadows; and a layer shades what lies behind it. */
+/* analytic/sheets_open_surfaces.c - a volume's surface is lit by the light at its outside. A white surface is
+ * as bright as the cosine of the light's angle, whatever its edge, its transfer function, the eye and the
+ * method of shadows are. A layer shades the matter behind it. */
 #include "../asserts.h"
 #include "reference_stage.h"
 
@@ -8,7 +8,7 @@ enum { SIDE = 12, PIXELS = SIDE * SIDE, GRID = 48 };
 
 static const double DEGREE = HL_PI / 180;
 
-/* A floor at z = 0, wide, whose values fall from 1 to 0 over `edge` voxels. */
+/* A wide floor at z = 0. Its values fall from 1 to 0 over `edge` voxels. */
 static hl_scene_volume *add_floor(stage *set, double edge) {
   static float voxels[16 * 16 * GRID];
   for (int i = 0; i < 16 * 16 * GRID; i++) {
@@ -53,14 +53,14 @@ static const hl_opacity_point FUNCTIONS[4][3] = {{{0, 0}, {1, 0.999}, {2, 0.999}
                                                  {{0.4, 0}, {0.405, 0.9}, {1, 0.9}},
                                                  {{0.4, 0}, {0.405, 0.999}, {1, 0.999}}};
 
-/* An open floor sends N.L. */
+/* A floor that nothing shades is as bright as N.L. */
 static void test_floors(void **state) {
   (void)state;
   static float pixels[PIXELS * 4];
   static const double lights[4] = {10, 25, 50, 90}, eyes[3] = {15, 45, 90}, edges[3] = {1, 3, 6};
   for (int trial = 0; trial < 4 * 4 * 3 * 3; trial++) {
     const double light = lights[trial % 4] * DEGREE, eye = eyes[trial / 4 % 3] * DEGREE;
-    const int method = trial % 3; /* hard; soft: the cascade, the paper's */
+    const int method = trial % 3; /* hard shadows, or soft shadows by the cascade or the paper's method */
     stage set;
     open_floor(&set, method == 0 ? HL_SHADOWS_HARD : HL_SHADOWS_SOFT,
                method == 1 ? HL_SOFT_CASCADE : HL_SOFT_PAPER);
@@ -75,7 +75,7 @@ static void test_floors(void **state) {
   }
 }
 
-/* The same of sub-lights, with fewer trials: each is many lights. */
+/* The same floor lit by sub-lights. There are fewer trials, because each has many lights. */
 static void test_floors_by_sublights(void **state) {
   (void)state;
   static float pixels[PIXELS * 4];
@@ -93,8 +93,8 @@ static void test_floors_by_sublights(void **state) {
   }
 }
 
-/* White bone below black skin, whose values are each other's neighbours: what bone sends, by what it sends
- * without shadows, is the light that the skin lets pass. Eye and light come from above. */
+/* White bone lies below black skin, and the two have neighbouring values. Returns the brightness of the bone,
+ * divided by its brightness without shadows: the light that the skin lets pass. Eye and light are above. */
 static double light_on_bone(const hl_opacity_point *function, size_t count, double skin) {
   static float pixels[PIXELS * 4], voxels[16 * 16 * GRID];
   static const hl_color_point colors[] = {
@@ -123,7 +123,8 @@ static double light_on_bone(const hl_opacity_point *function, size_t count, doub
   return sent[1] / sent[0];
 }
 
-/* Without skin, the values of skin in bone's blurred edge do not shade the bone; a skin of voxels does. */
+/* Without skin, the bone's blurred edge has values of skin. They do not shade the bone. A skin that is voxels
+ * thick does. */
 static void test_layers(void **state) {
   (void)state;
   static const hl_opacity_point stair[] = {{0.3, 0}, {0.32, 0.3}, {0.6, 0.3}, {0.7, 0.999}, {1, 0.999}};
@@ -145,7 +146,7 @@ static double greatest(const float *pixels) {
   return most;
 }
 
-/* A wall on a floor. Its voxels go from 4 below the origin on. */
+/* A wall on a floor. Its first voxel is 4 voxels below the origin. */
 static void add_wall(stage *set, int thickness, const hl_opacity_point *function) {
   static float voxels[64 * 8 * GRID];
   for (int i = 0; i < 64 * 8 * GRID; i++) {
@@ -161,8 +162,8 @@ static void add_wall(stage *set, int thickness, const hl_opacity_point *function
   volume->material = (hl_material){.diffuse = 1};
 }
 
-/* Behind a wall on a floor no light comes through the corner, also where the wall is thin and the light low;
- * before it the floor sends N.L. */
+/* No light comes through the corner behind a wall on a floor, even if the wall is thin and the light is low.
+ * Before the wall, the floor is as bright as N.L. */
 static void test_wall_on_a_floor(void **state) {
   (void)state;
   static float pixels[PIXELS * 4];

@@ -1,5 +1,5 @@
-/* analytic/sheets_order.c - the order in which a scene lists its lights, volumes and meshes changes nothing:
- * the same bytes, by every method; layers follow what they are of. */
+/* analytic/sheets_order.c - the order in which a scene lists its lights, volumes and meshes does not change
+ * the picture, to the byte and by every method. Layers follow the objects to which they belong. */
 #include <setjmp.h>
 #include <stdarg.h>
 #include <string.h>
@@ -23,8 +23,8 @@ static const int LIGHTS_IN_ORDER[LIGHT_ORDERS][LIGHTS] = {{0, 1, 2}, {0, 2, 1}, 
 
 static const hl_opacity_point EDGE[] = {{0.3, 0}, {0.7, 0.9}};
 
-/* Two overlapping blobs that differ in nothing but `alike` or in place, a floor and a board of triangles,
- * and three lights of which two alone may share sheets. */
+/* Two overlapping blobs, a floor and a board of triangles, and three lights, two of which may share sheets.
+ * alike: whether the blobs have the same place and the same colour. */
 static void build(mesh_stage *all, bool alike) {
   stage *set = &all->set;
   float voxels[2][10 * 10 * 10];
@@ -54,7 +54,7 @@ static void build(mesh_stage *all, bool alike) {
   for (int l = 0; l < LIGHTS; l++) set->lights[l].color[l] = 0.37;
 }
 
-/* Where the things of the order stand in the scene as it was built. */
+/* The places in the built scene of the things that the ordered scene lists. */
 typedef struct order {
   int lights[LIGHTS], volumes[VOLUMES], meshes[MESHES];
 } order;
@@ -76,13 +76,13 @@ static void put_in_order(mesh_stage *all, const order *by) {
   for (int i = 0; i < MESHES; i++) all->meshes[i] = from.meshes[by->meshes[i]];
 }
 
-/* A picture and its layers; lights by their places in the scene as it was built. */
+/* A picture and its layers. Lights are in the order of the built scene. */
 typedef struct frame_made {
   float pixels[PIXELS * 4], lights[LIGHTS][PIXELS * 3], shadows[LIGHTS][PIXELS * 3], depth[PIXELS],
       object[PIXELS];
 } frame_made;
 
-/* The number in the built scene of an object of the ordered one. */
+/* The number in the built scene of an object of the ordered scene. */
 static float object_in_built(const order *by, float object) {
   const int number = (int)object;
   if (number == 0) return 0;
@@ -105,7 +105,7 @@ static void render(mesh_stage *all, const order *by, frame_made *made) {
   for (int p = 0; p < PIXELS; p++) made->object[p] = object_in_built(by, made->object[p]);
 }
 
-/* Shadows off, hard, and by each soft method; hard ones below a sky. */
+/* Shadows are off, hard, and soft by each method. Hard ones are tested under a sky, too. */
 static const char *const KINDS[] = {"off", "hard", "sky", "cascade", "paper", "sublights"};
 enum { KIND_COUNT = sizeof KINDS / sizeof *KINDS };
 
@@ -142,7 +142,7 @@ static void test_orders(void **state) {
     }
 }
 
-/* Volumes whose voxels alone differ, and not in their histograms. */
+/* Volumes that differ in their voxels, but not in their histograms. */
 static void test_alike(void **state) {
   (void)state;
   for (int number = 0; number < ORDERS; number += LIGHT_ORDERS) {

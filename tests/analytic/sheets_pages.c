@@ -19,7 +19,7 @@ enum { SIDE = 24, FLOATS = SIDE * SIDE * 4, MOST_VOXELS = 40 * 40 * 40 };
 
 /* ---- the same volume in pages ---- */
 
-/* Stores the voxels in pieces that begin and end anywhere in a row. */
+/* Stores the voxels in pieces that begin and end within rows. */
 static hl_volume *in_pages(hl_context *context, const hl_volume *volume, int shift) {
   hl_volume_description description = stage_describe_volume(volume);
   hl_pages *pages;
@@ -58,7 +58,7 @@ static const size_t shapes[][3] = {{1, 1, 1},   {2, 3, 1},   {3, 40, 5},   {4, 4
 enum { SHAPES = sizeof shapes / sizeof *shapes };
 static const hl_voxel_type types[] = {HL_VOXEL_U8, HL_VOXEL_U16, HL_VOXEL_F32};
 
-/* Every voxel, every row, and the statistics. */
+/* All voxels, rows and statistics are the same. */
 static void test_voxels(void **state) {
   (void)state;
   stage set;
@@ -169,7 +169,7 @@ static void draw_sky(stage *set) {
   set->scene.sky.type = HL_SKY_UNIFORM;
   for (int c = 0; c < 3; c++) set->scene.sky.color[c] = 0.7;
 }
-/* Cells in which single voxels are visible, and the values that the kernel draws of them are not. */
+/* Cells in which single voxels are visible, but the values that the kernel makes of them are not. */
 static void draw_noise_under_a_sky(stage *set) {
   static const hl_opacity_point opacity[] = {{0.6, 0}, {0.9, 0.9}};
   set->scene.sky.type = HL_SKY_UNIFORM;
@@ -227,7 +227,7 @@ static void test_ways(void **state) {
 
 /* ---- memory ---- */
 
-/* Leaves room for LEAST_PAGES pages alone: as if other volumes' pages took all that the limit allows. */
+/* Leaves room for LEAST_PAGES pages alone, as if pages of other volumes took the rest of the limit. */
 static void leave_no_room(hl_context *context) {
   context->options.memory_limit = (uint64_t)1 << 40;
   atomic_store(&context->paged, (uint64_t)1 << 40);
@@ -238,7 +238,7 @@ static void make_room_again(hl_context *context) {
   atomic_store(&context->paged, 0);
 }
 
-/* The bytes of a mapping that are in memory, by the system's own count. */
+/* The number of bytes of a mapping that are in memory, by the system's own count. */
 static size_t resident_bytes(const unsigned char *mapping) {
   FILE *maps = fopen("/proc/self/smaps", "r");
   char line[512];
@@ -263,7 +263,8 @@ static void assert_held(const hl_pages *pages, size_t most) {
   assert_in_range(held, 0, most * pages->page_bytes);
 }
 
-/* Where there is room for few pages, few are in memory, with the same voxels; none when all are forgotten. */
+/* If there is room for few pages, few are in memory, with the same voxels. After all are forgotten, none is.
+ */
 static void test_few_pages(void **state) {
   (void)state;
   enum { WIDE = 40 };
@@ -290,7 +291,7 @@ static void test_few_pages(void **state) {
   hl_context_destroy(context);
 }
 
-/* What a pass over 8 million voxels leaves in memory. */
+/* The bytes that a pass over 8 million voxels leaves in memory. */
 static void test_resident_bytes(void **state) {
   (void)state;
   enum { WIDE = 200, WINDOW = 1 << 16, ROWS_AND_HALF = 5 * WIDE / 2 };
@@ -306,7 +307,8 @@ static void test_resident_bytes(void **state) {
   assert_int_equal(hl_pages_create(context, "/tmp", &grid, PAGE_SHIFT, &pages, NULL), HL_OK);
   for (size_t k = 0; k < WIDE; k++) {
     memset(slice, (int)k, sizeof slice);
-    for (size_t done = 0; done < sizeof slice; done += ROWS_AND_HALF) /* whole rows, and parts of rows */
+    /* each piece has whole rows and a part of a row */
+    for (size_t done = 0; done < sizeof slice; done += ROWS_AND_HALF)
       hl_pages_store(pages, k * sizeof slice + done, ROWS_AND_HALF, slice);
   }
   static uint64_t counts[256];
@@ -326,10 +328,10 @@ static void test_resident_bytes(void **state) {
   hl_context_destroy(context);
 }
 
-/* Pictures while pages come and go, on several threads. */
+/* Renders on several threads while pages come and go. */
 static void test_pictures_of_few_pages(void **state) {
   (void)state;
-  enum { MOST_THREADS = 64 }; /* each may hold one more than there is room for at a moment */
+  enum { MOST_THREADS = 64 }; /* each thread may hold one page beyond the limit for a moment */
   for (size_t n = 0; n < 4; n++) {
     stage set;
     stage_open(&set);
@@ -347,7 +349,8 @@ static void test_pictures_of_few_pages(void **state) {
 /* ---- memory that a frame allocates ---- */
 
 static void *(*plain_allocate)(void *, size_t, size_t);
-static uint64_t most_in_memory; /* blocks and pages together, when a block was allocated */
+/* the greatest sum of blocks and pages in memory, at the times when a block was allocated */
+static uint64_t most_in_memory;
 
 static void *watch_allocation(void *user_data, size_t size, size_t alignment) {
   hl_context *context = user_data;
@@ -365,12 +368,12 @@ static void render_size(stage *set, hl_renderer *renderer, int side) {
   hl_scene_release(scene);
 }
 
-/* Pages that fill the memory are let go of before a larger frame takes its share of it. */
+/* Pages that fill the memory are forgotten before a larger frame takes its memory. */
 static void test_pages_make_room(void **state) {
   (void)state;
   enum { SMALL = 16, LARGE = 160, PAGE_SIZES = 125 /* pages */, SLACK = 64 << 10 };
   uint64_t limit = 0;
-  for (int round = 0; round < 2; round++) { /* the first finds how much the larger frame holds */
+  for (int round = 0; round < 2; round++) { /* the first frame finds how much memory the larger frame takes */
     stage set;
     hl_renderer *renderer = NULL;
     stage_open(&set);
@@ -422,7 +425,8 @@ static void test_no_room(void **state) {
 
 /* ---- other values than the voxels' ---- */
 
-/* What is not finite is replaced, and the interpolating kernel's coefficients are found, as in memory. */
+/* Values that are not finite are replaced, and the interpolating kernel's coefficients are computed, as in
+ * memory. */
 static void test_other_values(void **state) {
   (void)state;
   static const size_t sizes[][3] = {{40, 38, 39}, {9, 9, 2}, {12, 9, 1}, {4, 30, 21}};
@@ -469,7 +473,7 @@ static void test_no_scratch_folder(void **state) {
   stage_close(&set);
 }
 
-/* Before anything is allocated or read: the volume has no voxels. */
+/* The frame is refused before memory is allocated or voxels are read: the volume has no voxels. */
 static void test_too_many_bricks(void **state) {
   (void)state;
   hl_context *context = NULL;

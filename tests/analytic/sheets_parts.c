@@ -1,5 +1,5 @@
-/* analytic/sheets_parts.c - a volume in parts looks like the whole: boxes that share faces, copies that
- * overlap, boxes within boxes. */
+/* analytic/sheets_parts.c - a volume that is divided into parts looks like the whole volume. Parts are boxes
+ * that share faces, copies that overlap, and boxes within boxes. */
 #include <setjmp.h>
 #include <stdarg.h>
 #include <stdio.h>
@@ -11,7 +11,8 @@
 
 enum { BALL = 44, SIDE = 80, PIXELS = SIDE * SIDE };
 
-/* Parts may differ from the whole by this share of full scale, in all but one pixel of a thousand. */
+/* The greatest difference between parts and the whole, as a fraction of full brightness, in all pixels but
+ * one of a thousand. */
 static const double GREATEST = 0.005;
 
 typedef enum layout { WHOLE, EIGHTHS, SLICES, OVERLAP, NESTED } layout;
@@ -35,8 +36,8 @@ static const setting SETTINGS[] = {
 };
 enum { SETTINGS_COUNT = sizeof SETTINGS / sizeof *SETTINGS };
 
-/* A ball with an edge four voxels wide; or waves that fill their grid. All parts reach the outermost faces of
- * the whole: sheets and shadow buffers then lie where they lie for the whole. */
+/* A ball whose edge is four voxels wide, or waves that fill their grid. The matter of all parts together
+ * reaches the outermost faces of the whole, so that sheets and shadow buffers lie in the same places. */
 static float *make_voxels(layout layout) {
   float *voxels = malloc((size_t)BALL * BALL * BALL * sizeof *voxels);
   assert_non_null(voxels);
@@ -68,8 +69,8 @@ static hl_scene_volume *add_ball(stage *set, const float *voxels, double opacity
   return volume;
 }
 
-/* Thin matter in slices, half as dense twice, or with a hole that holds a box: 1 - o to the density's power
- * passes. */
+/* Thin matter in slices, twice with half of the density, or with a hole that holds a box. The light that
+ * passes is 1 - o to the power of the density. */
 static void add_thin(stage *set, const float *voxels, layout layout) {
   static const double FACES[5] = {-22, -9, 3, 15, 22};
   if (layout == OVERLAP)

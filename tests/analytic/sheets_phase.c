@@ -1,5 +1,5 @@
-/* analytic/sheets_phase.c - media before wide lights and skies: the mean of Henyey and Greenstein's phase
- * function over the light, in the renderer and in the reference. */
+/* analytic/sheets_phase.c - media under wide lights and skies: the mean of Henyey and Greenstein's phase
+ * function over the light, by the renderer and the reference. */
 #include <stdlib.h>
 
 #include "../asserts.h"
@@ -24,19 +24,19 @@ static hl_scene_volume *open_stage(stage *set, double anisotropy) {
   return volume;
 }
 
-/* Towards a light that stands at an angle to where it would shine straight into the eye. */
+/* The way to a light, at an angle from the direction in which the light would shine straight into the eye. */
 static vec3 at_angle(int k) {
   double angle = (k < ANGLES / 2 ? 5.0 * k : 50 + 13 * (k - ANGLES / 2)) * HL_PI / 180;
   return (vec3){0.6 * sin(angle), 0.8 * sin(angle), -cos(angle)};
 }
 
-/* p for light from a direction, into the eye at +z. */
+/* The phase function for light from a direction that is scattered into the eye at +z. */
 static double phase(double g, vec3 towards) {
   vec3 unit = vec3_normalise(towards);
   return (1 - g * g) / pow(1 + g * g + 2 * g * unit.z, 1.5);
 }
 
-/* The light that the middle of the cube sends, over that of an evenly scattering one. */
+/* The light from the middle of the cube, divided by the light of a cube that scatters evenly. */
 static double measure(void (*add_light)(stage *set, int k), int k, double g, bool reference) {
   static float pixels[PIXELS * 4];
   double sent[2];
@@ -54,13 +54,14 @@ static double measure(void (*add_light)(stage *set, int k), int k, double g, boo
 
 /* ---- parallel lights ---- */
 
-static double diameter; /* degrees, of the lights that add_sun() adds */
+static double diameter; /* the diameter of the lights of add_sun(), in degrees */
 
 static void add_sun(stage *set, int k) {
   stage_add_directional(set, vec3_scale(at_angle(k), -1))->angular_diameter_deg = diameter;
 }
 
-/* By rings around the cone's axis, narrower towards it, where p may be sharp: of their solid angles. */
+/* The mean over rings around the cone's axis, weighted by their solid angles. Rings are narrower near the
+ * axis, where p may be sharp. */
 static double mean_over_cone(double g, vec3 axis, double half) {
   vec3 u = vec3_perpendicular(axis), v = vec3_cross(axis, u);
   double sum = 0;
@@ -75,7 +76,7 @@ static double mean_over_cone(double g, vec3 axis, double half) {
   return sum / (STEPS * STEPS);
 }
 
-/* At twenty angles, the mean of p over the light's cone. */
+/* At twenty angles, the picture has the mean of p over the light's cone. */
 static void test_mean_over_a_cone(void **state) {
   (void)state;
   static const double diameters[] = {0.5, 20, 60, 120}, anisotropies[] = {0.5, 0.8, 0.95, -0.6};
@@ -94,10 +95,11 @@ static void test_mean_over_a_cone(void **state) {
 typedef enum near_shape { SPHERE, DISK, SQUARE, LONG_RECT, TILTED_RECT, POLYGON, SHAPES } near_shape;
 
 static near_shape shape;
-static double size; /* of the lights that add_near() adds */
+static double size; /* the size of the lights of add_near() */
 static const double DISTANCE = 200;
 
-/* Axes of the light's plane, `size` long, across the way to the light; some shapes are tilted. */
+/* The axes of the light's plane, of the length `size`, across the way to the light. Some shapes are tilted.
+ */
 static void axes_at(int k, vec3 *u, vec3 *v) {
   vec3 way = at_angle(k);
   *u = vec3_scale(vec3_perpendicular(way), size);
@@ -128,7 +130,7 @@ static void add_near(stage *set, int k) {
   light->vertex_count = 4;
 }
 
-/* Over points of the light, equal areas alike. */
+/* The mean over points that cover the light evenly. */
 static double mean_over_shape(double g, int k) {
   vec3 u, v, place = vec3_scale(at_angle(k), DISTANCE);
   double sum = 0;
@@ -145,8 +147,9 @@ static double mean_over_shape(double g, int k) {
   return sum / (STEPS * STEPS);
 }
 
-/* A light's parts are seen as round caps: p is off by at most these fractions (g = 0.5, 0.8), lights half and
- * a third as wide as they are far away. The reference takes points of the light itself. */
+/* The renderer sees parts of a light as round caps, so that p deviates at most by these fractions (g = 0.5,
+ * 0.8) for lights that are half and a third as wide as they are far away. The reference uses points on the
+ * light itself. */
 static void test_mean_over_near_lights(void **state) {
   (void)state;
   static const double bars[SHAPES][2] = {{0.002, 0.004}, {0.002, 0.022}, {0.002, 0.006},
@@ -166,7 +169,7 @@ static void test_mean_over_near_lights(void **state) {
   assert_true(most_reference < 0.01);
 }
 
-/* A point has no extent: p of its direction, not a mean. */
+/* A point light has no extent: the picture has p of its direction. */
 static void test_points_stay_points(void **state) {
   (void)state;
   static float pixels[2][PIXELS * 4];
@@ -190,9 +193,9 @@ static void add_half_sky(stage *set, int k) {
   store(set->scene.sky.up, at_angle(k));
 }
 
-/* Half of an even sky: the mean of p over it, also where a lobe points away from it, where it is a twentieth
- * of what it is towards the middle. The sky is cut into squares, so that p is off by at most these fractions.
- */
+/* Half of an even sky: the picture has the mean of p over that half, even if the lobe points away from it and
+ * p is a twentieth of its value towards the half's middle. The sky is cut into squares, so that p deviates at
+ * most by these fractions. */
 static void test_mean_over_half_a_sky(void **state) {
   (void)state;
   static const double anisotropies[] = {0.5, 0.8, -0.6}, bars[] = {0.015, 0.045, 0.02};
@@ -206,8 +209,8 @@ static void test_mean_over_half_a_sky(void **state) {
 
 enum { NARROW = 48 };
 
-/* A wide light before a thin cube is the mean of narrow lights over its cone: also what goes on after a first
- * turn, which is scattered by p of g^2. */
+/* A wide light before a thin cube gives the mean of narrow lights over its cone. This holds for light that is
+ * scattered more than once, too, which has p of g^2 at first. */
 static void test_scattered_again(void **state) {
   (void)state;
   static float pixels[PIXELS * 4];

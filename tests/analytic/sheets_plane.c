@@ -1,6 +1,6 @@
-/* analytic/sheets_plane.c - transfer functions of two numbers: of a ramp the gradient, and of a second volume
- * the value, is known everywhere, so that what the eye sees and what light passes are. Asked of the sheets
- * and of the reference. */
+/* analytic/sheets_plane.c - transfer functions of two numbers: value and gradient of a ramp, or the values of
+ * two volumes. Both numbers are known everywhere, and so are the picture and the light that passes. Tested on
+ * the sheets and on the reference. */
 #include <stdlib.h>
 #include <string.h>
 
@@ -22,7 +22,7 @@ static double rising_along_y(double x, double y, double z) {
 }
 static double paraboloid(double x, double y, double z) { return x * x + y * y + z * z; }
 
-/* A cube of N^3 voxels of the field, a unit each, around the origin. */
+/* A cube of N^3 voxels of edge 1 around the origin with a field. */
 static hl_scene_volume *add_cube(stage *set, field_function *field) {
   static float voxels[N * N * N];
   float *out = voxels;
@@ -60,7 +60,7 @@ static void assert_seen(const float *pixel, const double color[3], double alpha,
 
 static const double RED[3] = {0.9, 0.2, 0.1}, BLUE[3] = {0.1, 0.3, 0.8};
 
-/* The boxes' values are those of x from -8 to -2 and from 2 to 8. */
+/* The values within the boxes are those of x from -8 to -2 and from 2 to 8. */
 static void test_ramp_shows_the_box_with_its_gradient(void **state) {
   (void)state;
   static float pixels[PIXELS * 4];
@@ -86,7 +86,8 @@ static void test_ramp_shows_the_box_with_its_gradient(void **state) {
   }
 }
 
-/* World units do not matter: a cube ten times as large has a tenth of the gradient. */
+/* The picture does not depend on world units. A cube that is ten times as large has a tenth of the gradient.
+ */
 static void test_gradients_are_of_the_world(void **state) {
   (void)state;
   static float pixels[2][PIXELS * 4];
@@ -113,8 +114,8 @@ static void test_gradients_are_of_the_world(void **state) {
 
 /* ---- weights ---- */
 
-/* A box's soft edges, a polygon's cone and an image, each with the gradient 3 in its middle: the weight is a
- * known function of x alone. */
+/* A box with soft edges, a polygon's cone and an image, each with the gradient 3 in its middle. The weight is
+ * a known function of x. */
 static double weight_of_edges(double x) { return fmin(fmax((24 - fabs(3 * x)) / 12, 0), 1); }
 static double weight_of_cone(double x) { return fmax(1 - fabs(3 * x) / 24, 0); }
 
@@ -148,16 +149,16 @@ static void test_weights(void **state) {
     open_from_z(&set);
     hl_scene_volume *cube = add_cube(&set, ramp);
     cube->shading = HL_SHADING_FLAT;
-    cube->clipped = 1; /* at the cube's faces gradients are shorter */
+    cube->clipped = 1; /* at the cube's faces gradients are shorter, so that a clip box leaves them out */
     for (int a = 0; a < 3; a++) cube->clip_min[a] = -10, cube->clip_max[a] = 10;
     cube->transfer_function.unit_distance = 2;
     set_shape(cube, shape);
     stage_render_by(&set, k >= 3, pixels);
     for (int x = -8; x < 8; x++) {
       double weight = shape == 0 ? weight_of_edges(x + 0.5) : weight_of_cone(x + 0.5);
-      /* of the image, opacity is linear between the middles of pixels, not extinction */
+      /* in an image, the opacity is linear between the middles of pixels, and not the extinction */
       double opacity = shape == 2 ? 0.1 * weight : 1 - pow(0.9, weight);
-      /* the sheets' table has 256 rows for four units: at a ridge it is lower by 1/250 */
+      /* the sheets' table has 256 rows for four units, so that a ridge is lower by 1/250 */
       assert_seen(pixel_at(pixels, x + 0.5, 0.5), RED, 1 - pow(1 - opacity, 10),
                   k >= 3 || shape == 0 ? 1e-4 : 4.5e-3);
     }
@@ -165,7 +166,8 @@ static void test_weights(void **state) {
   }
 }
 
-/* Where boxes overlap, extinctions add up and colours are averaged by them. */
+/* Where boxes overlap, their extinctions are added, and their colours are averaged with the extinctions as
+ * weights. */
 static void test_overlaps(void **state) {
   (void)state;
   static float pixels[PIXELS * 4];
@@ -192,8 +194,12 @@ static void test_two_volumes(void **state) {
   (void)state;
   static float pixels[PIXELS * 4];
   const hl_function_box boxes[] = {
-      {.low = {-24, 104}, .high = {0, 116}, .color = {0.9, 0.2, 0.1}, .opacity = 0.1}, /* y from 2 to 8 */
-      {.low = {0, 84}, .high = {24, 96}, .color = {0.1, 0.3, 0.8}, .opacity = 0.2}};   /* y from -8 to -2 */
+      /* the values of y from 2 to 8 */
+      {.low = {-24, 104}, .high = {0, 116}, .color = {0.9, 0.2, 0.1}, .opacity = 0.1},
+      {.low = {0, 84},
+       .high = {24, 96},
+       .color = {0.1, 0.3, 0.8},
+       .opacity = 0.2}}; /* the values of y from -8 to -2 */
   for (int k = 0; k < 6; k++) {
     stage set;
     open_from_z(&set);
@@ -202,7 +208,8 @@ static void test_two_volumes(void **state) {
     cube->shading = HL_SHADING_FLAT;
     cube->transfer_function.unit_distance = 2;
     hl_scene_volume *other = add_cube(&set, rising_along_y);
-    if (k % 3 == 1) { /* half as large, turned, and as much larger in the scene */
+    if (k % 3 == 1) {
+      /* the second volume is half as large and turned; its scale in the scene makes up for that */
       other->scale = 2;
       other->translate[1] = -12; /* 2 (y + 12) / 2 + 100 = 2 (y / 2) + 112 */
     }
@@ -225,8 +232,8 @@ static void test_two_volumes(void **state) {
   }
 }
 
-/* The function follows the other volume from frame to frame: a renderer that has drawn another one, and the
- * same at another place, makes the bytes of a new one. */
+/* The function follows the second volume from frame to frame. A renderer that has drawn another second
+ * volume, or the same one at another place, makes the bytes of a new renderer. */
 static void test_second_volume_changes(void **state) {
   (void)state;
   static float pixels[2][PIXELS * 4];
@@ -261,9 +268,9 @@ static void test_second_volume_changes(void **state) {
 static const hl_function_box HALF[] = {
     {.low = {-1000, 2}, .high = {1000, 4}, .color = {1, 1, 1}, .opacity = 0}};
 
-/* The ramp as a medium of even opacity, by the value alone or by a box around its gradient under another one
- * that shows more and has another gradient, is the same picture: lit by every method, by a sky and by light
- * that is scattered again. */
+/* A ramp is a medium of even opacity, by its value alone, or by a box around its gradient below another box
+ * that shows more and has another gradient. The two pictures are the same under each method, under a sky, and
+ * with light that is scattered repeatedly. */
 static void test_light(void **state) {
   (void)state;
   static float pixels[2][PIXELS * 4];
@@ -372,9 +379,9 @@ static classifier classifier_of(stage *set, const hl_scene_volume *volume) {
   return made;
 }
 
-/* A box over all gradients below the value 0, and one over some above 20: up to 20 no gradient is asked for.
- * Where the first box has some gradients only, it is from its lower edge on; where there is no other box,
- * nowhere. */
+/* One box covers all gradients of values below 0, and another box covers some gradients of values above 20.
+ * For values up to 20 no gradient is needed. If the first box covers some gradients only, gradients are
+ * needed from its lower edge on. If there is no other box, they are needed nowhere. */
 static void test_even_columns_are_known(void **state) {
   (void)state;
   const hl_function_box boxes[] = {{.low = {-30, -1}, .high = {0, 1e4}, .color = {1, 1, 1}, .opacity = 0.5},
@@ -399,7 +406,7 @@ static void test_even_columns_are_known(void **state) {
   }
 }
 
-/* Gradient opacity that is 1 for all gradients is none. */
+/* A gradient opacity of 1 for all gradients has no effect. */
 static void test_opaque_gradients_are_left_out(void **state) {
   (void)state;
   const hl_opacity_point points[2][2] = {{{0, 1}, {5, 1}}, {{0, 0.99}, {5, 1}}};

@@ -18,15 +18,16 @@
 
 enum { SIDE = 24, FLOATS = SIDE * SIDE * 4, MOST_VOXELS = 40 * 40 * 40 };
 
-static hl_context *context; /* of all volumes over ranks */
+static hl_context *context; /* the context of all volumes over ranks */
 static hl_ranks *ranks;
 
 /* ---- a volume's blocks ---- */
 
-enum { BY_SLICES = 1u << 31 }; /* a seed: each rank has its share of whole slices, in the order of ranks */
+/* a seed of part_of(): each rank has its share of whole slices, in the order of ranks */
+enum { BY_SLICES = 1u << 31 };
 
-/* Cuts a box into as many parts as there are ranks, again and again along another axis and at another place;
- * returns the part of a rank. Parts may be empty. */
+/* Cuts a box into as many parts as there are ranks: again and again, along another axis and at another place.
+ * Returns the part of a rank. Parts may be empty. */
 static hl_box part_of(const size_t n[3], int rank, int size, unsigned seed) {
   hl_box box = {{0, 0, 0}, {n[0], n[1], n[2]}};
   if (seed == BY_SLICES) {
@@ -50,13 +51,13 @@ static hl_box part_of(const size_t n[3], int rank, int size, unsigned seed) {
   return box;
 }
 
-/* This rank's block in memory of its own. */
+/* The memory of this rank's own block. */
 typedef struct held_block {
   hl_block block;
   unsigned char *memory;
 } held_block;
 
-/* How a block lies in memory: packed; with ghosts; with ghosts and gaps between all voxels. */
+/* How a block lies in memory: packed; with ghost layers; with ghost layers and gaps between all voxels. */
 enum { PACKED = 0, WITH_GHOSTS = 1, WITH_GAPS = 2, LAYOUTS = 3 };
 
 static held_block hold_block(const hl_volume *volume, const hl_box *box, int layout) {
@@ -72,7 +73,8 @@ static held_block hold_block(const hl_volume *volume, const hl_box *box, int lay
     count *= around[a];
   }
   held.memory = malloc(count + 1);
-  memset(held.memory, 0xa5, count + 1); /* ghosts and gaps: read, they would show */
+  /* if bytes of ghost layers and gaps were read, the picture would show it */
+  memset(held.memory, 0xa5, count + 1);
   for (size_t k = 0; k < box->count[2]; k++)
     for (size_t j = 0; j < box->count[1]; j++)
       for (size_t i = 0; i < box->count[0]; i++) {
@@ -87,7 +89,7 @@ static held_block hold_block(const hl_volume *volume, const hl_box *box, int lay
   return held;
 }
 
-/* The same volume over ranks, with small pages. *held: to be released after the volume. */
+/* The same volume over ranks, with small pages. *held: released after the volume. */
 static hl_volume *over_ranks(const hl_volume *volume, const hl_box *box, int layout, int shift,
                              held_block *held) {
   hl_volume_description whole = stage_describe_volume(volume);
@@ -103,7 +105,7 @@ static hl_volume *over_ranks(const hl_volume *volume, const hl_box *box, int lay
   return made;
 }
 
-/* Renders a scene with its volumes in memory and then over ranks. */
+/* Renders a scene with its volumes in memory, and then over ranks. */
 static void assert_same(stage *set, int shift, unsigned seed, const char *what) {
   static float packed[FLOATS], shared[FLOATS];
   held_block held[STAGE_VOLUMES];
@@ -130,7 +132,7 @@ static void assert_same(stage *set, int shift, unsigned seed, const char *what) 
     hl_volume_release(set->volumes[v].volume);
     free(held[v].memory);
   }
-  set->scene.volume_count = 0; /* the stage has released what it held */
+  set->scene.volume_count = 0; /* the stage has already released the volume */
   stage_close(set);
 }
 
@@ -158,7 +160,7 @@ static hl_volume *noisy_volume(const size_t n[3], hl_voxel_type type) {
   return made;
 }
 
-/* Every voxel and the statistics, of blocks of every shape and layout. */
+/* All voxels and the statistics are the same, for blocks of every shape and layout. */
 static void test_voxels(void **state) {
   (void)state;
   for (int n = 0; n < 3 * SHAPES; n++) {
@@ -185,8 +187,8 @@ static void test_voxels(void **state) {
   }
 }
 
-/* A label map of 64-bit numbers that floats round, in blocks of any shape: its labels, and the voxels of its
- * copy in memory. */
+/* A label map with 64-bit numbers that floats would round, in blocks of any shape. Its labels, and the voxels
+ * of its copy in memory, are exact. */
 static void test_label_shapes(void **state) {
   (void)state;
   static int64_t voxels[MOST_VOXELS];
@@ -290,7 +292,7 @@ static void test_ways(void **state) {
     set.scene.camera.type = HL_CAMERA_PERSPECTIVE;
     set.scene.camera.fovy_deg = 40;
     stage_add_directional(&set, (vec3){-1, 0.5, -1})->angular_diameter_deg = 10;
-    stage_add_directional(&set, (vec3){0, 0, -1}); /* along the blocks' faces */
+    stage_add_directional(&set, (vec3){0, 0, -1}); /* this light shines along the faces of blocks */
     stage_add_point(&set, (vec3){14, 25, 30})->radius = 3;
     stage_add_point(&set, (vec3){1.5, -2.5, 3.5})->radius = 1;
     ways[n](&set);
@@ -298,7 +300,7 @@ static void test_ways(void **state) {
   }
 }
 
-/* One visible voxel, where the blocks of eight ranks meet, as far as there are so many. */
+/* One visible voxel lies where the blocks of eight ranks meet, or of as many as there are. */
 static void test_corner(void **state) {
   (void)state;
   enum { N = 16 };
@@ -340,7 +342,7 @@ static void test_corner(void **state) {
 
 /* ---- memory ---- */
 
-/* Pictures while pages come and go, on several threads: room for LEAST_PAGES alone. */
+/* Renders on several threads while pages come and go. There is room for LEAST_PAGES alone. */
 static void test_few_pages(void **state) {
   (void)state;
   context->options.memory_limit = (uint64_t)1 << 40;
@@ -382,7 +384,7 @@ static void test_coefficients_refused(void **state) {
   (void)state;
   static float pixels[16 * 16 * 4];
   stage set;
-  if (hl_ranks_size(ranks) == 1) return; /* one rank has all slices */
+  if (hl_ranks_size(ranks) == 1) return; /* a single rank has all slices */
   stage_open(&set);
   add_noise(&set, (const size_t[3]){8, 8, 8}, HL_VOXEL_U16);
   set.scene.render.kernel = HL_KERNEL_INTERPOLATING;
@@ -444,7 +446,8 @@ static int compare_doubles(const void *a, const void *b) {
   return x < y ? -1 : x > y;
 }
 
-/* Prints how long rank 0 takes for a page, from another rank where there are two or more: 67^3 voxels. */
+/* Prints the time that rank 0 takes for a page of 67^3 voxels: from another rank, if there are two or more.
+ */
 static void print_times(void) {
   enum { N = 258, PAGES = 4 * 4 * 4, ROUNDS = 20, MEASURED = PAGES * ROUNDS };
   static double seconds[MEASURED];
@@ -481,7 +484,7 @@ static hl_status join(bool by_communicator, mpi *mpi, hl_error *error) {
   if (!by_communicator) return hl_ranks_join(context, NULL, &ranks, error);
   hl_status status = hl_mpi_load(context->options.mpi, mpi, error);
   if (status != HL_OK || hl_mpi_init_thread(mpi, MPI_MULTIPLE, &given) != 0) return HL_ERROR_IO;
-  context->options.mpi = HL_MPI_AUTO; /* the one that the process has */
+  context->options.mpi = HL_MPI_AUTO; /* the library of MPI that this process has already loaded */
   void *world = mpi->calls == hl_mpich.calls ? (void *)(intptr_t)mpi->world.number : mpi->world.address;
   return hl_ranks_join(context, world, &ranks, error);
 }
@@ -494,7 +497,7 @@ static hl_status make_context(hl_error *error) {
   return hl_context_create(&options, &context, error);
 }
 
-/* usage: sheets_ranks [TESTS [communicator]]: tests whose names match; --time: prints times. */
+/* usage: sheets_ranks [TESTS [communicator]]: runs the tests whose names match; --time: prints times. */
 int main(int count, char **arguments) {
   const struct CMUnitTest tests[] = {
       cmocka_unit_test(test_voxels),       cmocka_unit_test(test_label_shapes),
@@ -517,7 +520,8 @@ int main(int count, char **arguments) {
   }
   if (count > 1) cmocka_set_test_filter(arguments[1]);
   int failed = cmocka_run_group_tests(tests, NULL, NULL);
-  if (failed) hl_ranks_abort(ranks, 1); /* others may wait for what this rank has skipped */
+  /* other ranks may wait for messages of this rank, which has skipped the rest of its test */
+  if (failed) hl_ranks_abort(ranks, 1);
   hl_ranks_leave(ranks);
   if (by_communicator) hl_mpi_finalize(&mpi);
   if (hl_context_memory_held(context) != 0) failed = 1;

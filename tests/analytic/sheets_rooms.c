@@ -1,6 +1,5 @@
-/* analytic/sheets_rooms.c - rooms of thin walls, seen from within, with the sun outside: dark where no window
- * lets the light in, at their corners, too.
- */
+/* analytic/sheets_rooms.c - rooms of thin walls, seen from within, with the sun outside. They are dark if no
+ * window lets the light in, also at their corners. */
 #include <string.h>
 
 #include "../asserts.h"
@@ -11,8 +10,8 @@ enum { SIDE = 96, PIXELS = SIDE * SIDE };
 /* The room is a cube of half this width; the window a rectangle of its ceiling. */
 static const double HALF = 30, WINDOW_LOW[2] = {-9, -5}, WINDOW_HIGH[2] = {7, 12};
 
-/* CLOSED: the walls share their vertices, with their fronts outwards; INWARDS: inwards; APART: each wall has
- * vertices of its own; WINDOW: the ceiling has a hole. */
+/* How the walls are made. CLOSED: they share their vertices, and their fronts are outwards. INWARDS: the
+ * fronts are inwards. APART: each wall has vertices of its own. WINDOW: the ceiling has a hole. */
 typedef enum room { CLOSED, INWARDS, APART, WINDOW, ROOMS } room;
 
 static const uint32_t BOX[12][3] = {{0, 2, 1}, {1, 2, 3}, {0, 1, 4}, {1, 5, 4}, {2, 6, 3}, {3, 6, 7},
@@ -54,7 +53,7 @@ static void add_room(mesh_stage *all, room kind) {
   mesh_stage_describe(all, &d)->smooth = false;
 }
 
-/* The distance along a ray from within the room to its walls; *normal: of the wall met, inwards. */
+/* The distance along a ray from within the room to its walls. *normal: of the wall, inwards. */
 static double way_out(vec3 from, vec3 way, vec3 *normal) {
   const double o[3] = {from.x, from.y, from.z}, w[3] = {way.x, way.y, way.z};
   *normal = (vec3){0, 0, 0};
@@ -69,8 +68,8 @@ static double way_out(vec3 from, vec3 way, vec3 *normal) {
   return least;
 }
 
-/* What is known of the light at the point where a ray of the eye ends, -1: nothing. margin: around the
- * window's edge. */
+/* The light that is known at the point where a ray of the eye ends; -1: it is not known. margin: the width
+ * around the window's edge in which it is not known. */
 static double expected(room kind, vec3 sun, double margin, vec3 eye, vec3 way) {
   vec3 normal, unused;
   vec3 at = vec3_add(eye, vec3_scale(way, way_out(eye, way, &normal)));
@@ -79,13 +78,13 @@ static double expected(room kind, vec3 sun, double margin, vec3 eye, vec3 way) {
   vec3 out = vec3_add(at, vec3_scale(sun, way_out(vec3_add(at, vec3_scale(normal, 1e-9)), sun, &unused)));
   if (out.z < HALF - 1e-6) return 0;
   const double place[2] = {out.x, out.y};
-  double inside = INFINITY; /* from the window's edge, inwards */
+  double inside = INFINITY; /* the distance inwards from the window's edge */
   for (int axis = 0; axis < 2; axis++)
     inside = fmin(inside, fmin(place[axis] - WINDOW_LOW[axis], WINDOW_HIGH[axis] - place[axis]));
   return fabs(inside) < margin ? -1 : inside > 0 ? facing : 0;
 }
 
-/* least, greatest: of what is known at the corners and the middle of a pixel. */
+/* least, greatest: of the light that is known at the corners and the middle of a pixel. */
 static void expect_in_pixel(const mesh_stage *all, room kind, vec3 sun, double margin, int i, double *least,
                             double *greatest) {
   vec3 eye, way, right, down;
@@ -101,7 +100,7 @@ static void expect_in_pixel(const mesh_stage *all, room kind, vec3 sun, double m
   }
 }
 
-/* Returns how many pixels are lit. */
+/* Asserts that pixels are lit or dark as is known. Returns the number of lit pixels. */
 static int check(const mesh_stage *all, room kind, vec3 sun, double margin, double tolerance,
                  const float *pixels) {
   int dark = 0, lit = 0;
@@ -117,7 +116,7 @@ static int check(const mesh_stage *all, room kind, vec3 sun, double margin, doub
   return lit;
 }
 
-/* shadows: as in mesh_stage_choose_shadows(). */
+/* shadows: a kind of mesh_stage_choose_shadows(). */
 static void open_room(mesh_stage *all, room kind, vec3 sun, int shadows, int view) {
   static const vec3 eyes[] = {{-20, -24, 12}, {0, -25, 0}, {24, 22, 24}},
                     targets[] = {{30, 30, -22}, {0, 30, -15}, {-30, -22, -30}};
@@ -129,7 +128,7 @@ static void open_room(mesh_stage *all, room kind, vec3 sun, int shadows, int vie
   mesh_stage_choose_shadows(all, stage_add_directional(&all->set, vec3_scale(sun, -1)), shadows, 3);
 }
 
-/* Returns how many pixels are lit. */
+/* Renders a room. Returns the number of lit pixels. */
 static int render_room(room kind, vec3 sun, int shadows, int view, double tolerance) {
   static float pixels[PIXELS * 4];
   mesh_stage all;
@@ -140,7 +139,7 @@ static int render_room(room kind, vec3 sun, int shadows, int view, double tolera
   return lit;
 }
 
-/* The light in pixels that are dark. */
+/* The greatest light, and the sum, in pixels that must be dark; and their number. */
 typedef struct leaks {
   double greatest, sum;
   int count;
@@ -159,7 +158,8 @@ static void add_leaks(mesh_stage *all, room kind, vec3 sun, leaks *found) {
   }
 }
 
-/* The way to a sun. None grazes a wall by less than 15 degrees: of open walls single pixels would be lit. */
+/* The direction to a sun. No sun grazes a wall by less than 15 degrees, since single pixels of open walls
+ * would then be lit. */
 static vec3 sun_of(int k) {
   static const vec3 ways[] = {{-1, -0.4, 0.6}, {-0.4, -1, 0.9}, {-0.3, 0.35, 1}, {0.35, 0.3, 0.8}};
   return vec3_normalise(ways[k]);
@@ -175,7 +175,7 @@ static void test_hard(void **state) {
   }
 }
 
-/* Soft shadows, by each method. */
+/* Rooms under soft shadows, by each method. */
 static void test_soft_closed(void **state) {
   (void)state;
   for (int kind = 0; kind < APART; kind++)
@@ -183,7 +183,7 @@ static void test_soft_closed(void **state) {
       for (int k = 0; k < 3; k++) assert_int_equal(render_room((room)kind, sun_of(k), shadows, k, 1e-6), 0);
 }
 
-/* Open rooms, by each method: the light that comes through where walls meet. */
+/* Rooms whose walls are not joined, by each method: the light that enters where walls meet. */
 static void test_soft_open(void **state) {
   static const double GREATEST[] = {0.035, 0.025, 0.005};
   (void)state;

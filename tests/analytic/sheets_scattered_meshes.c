@@ -1,5 +1,5 @@
-/* analytic/sheets_scattered_meshes.c - meshes take scattered light and the sky's: closed forms, the
- * reference, the same bytes. */
+/* analytic/sheets_scattered_meshes.c - meshes absorb scattered light and the light of a sky: closed forms,
+ * the reference, and the same bytes by any number of threads. */
 #include <stdlib.h>
 #include <string.h>
 
@@ -8,7 +8,7 @@
 
 enum { SIDE = 16, PIXELS = SIDE * SIDE };
 
-/* A block of haze 24 x 24 x 24 that keeps most light, seen from above; its picture is 20 wide. */
+/* A block of haze, 24 x 24 x 24, that keeps most of its light, seen from above. The picture's width is 20. */
 static hl_scene_volume *open_stage(stage *set, double opacity) {
   stage_open(set);
   set->scene.width = set->scene.height = SIDE;
@@ -23,7 +23,7 @@ static hl_scene_volume *open_stage(stage *set, double opacity) {
   return volume;
 }
 
-/* Walls are meshes that the eye does not see. */
+/* Walls are meshes that do not show in the picture. */
 typedef struct walls {
   hl_scene_mesh meshes[2];
 } walls;
@@ -43,7 +43,7 @@ static void close_stage(stage *set) {
   stage_close(set);
 }
 
-/* The mean of a rectangle of pixels, x and y from `low` up to `high`. */
+/* The mean of a rectangle of pixels. x and y go from `low` up to `high`. */
 static double mean_of(const float *pixels, const int low[2], const int high[2]) {
   double sum = 0;
   for (int y = low[1]; y < high[1]; y++)
@@ -54,8 +54,8 @@ static double mean_of(const float *pixels, const int low[2], const int high[2]) 
 static const int LEFT[2][2] = {{0, 0}, {SIDE / 2 - 1, SIDE}}, RIGHT[2][2] = {{SIDE / 2 + 1, 0}, {SIDE, SIDE}},
                  ALL[2][2] = {{0, 0}, {SIDE, SIDE}};
 
-/* An opaque wall through the middle of the haze parts it: light from the left leaves the right half dark, and
- * a wall that takes nothing changes nothing. */
+/* An opaque wall divides the haze in the middle. Light from the left leaves the right half dark. A wall that
+ * absorbs nothing changes nothing. */
 static void test_haze_behind_a_wall(void **state) {
   (void)state;
   static float pixels[3][4 * PIXELS];
@@ -79,8 +79,8 @@ static void test_haze_behind_a_wall(void **state) {
   assert_true(left[0] > 0.5 * left[2] && left[0] < left[1] && left[1] < left[2]);
 }
 
-/* A wall beside the haze, between it and the light, leaves it dark; a pane leaves what it lets through, since
- * all light passes it once. */
+/* A wall stands beside the haze, between it and the light, so that the haze is dark. A pane in its place
+ * passes its fraction of the light, since all light passes the pane once. */
 static void test_wall_before_haze(void **state) {
   (void)state;
   static float pixels[4 * PIXELS];
@@ -102,8 +102,8 @@ static void test_wall_before_haze(void **state) {
   assert_near(all[2], 0, 1e-4);
 }
 
-/* A third of a wide light is hidden: haze gets two thirds, scattered once and again. A light that is taken
- * for a point gives all of it. */
+/* A third of a wide light is hidden. The haze gets two thirds of the light, for once and for repeatedly
+ * scattered light. If the light were taken for a point, it would get all of it. */
 static void test_part_of_a_wide_light(void **state) {
   (void)state;
   static float pixels[4 * PIXELS];
@@ -122,11 +122,12 @@ static void test_part_of_a_wide_light(void **state) {
     close_stage(&set);
   }
   assert_true(all[0] > 0.1);
-  assert_near(all[1] / all[0], 2.0 / 3, 1.0 / 27); /* a third of what one of nine points sends */
+  /* a third of the light that one of the light's nine points sends */
+  assert_near(all[1] / all[0], 2.0 / 3, 1.0 / 27);
 }
 
-/* Thin haze that keeps all light is lit by the grid alone: above a wide wall by half of the sky, above a pane
- * of 0.4 by 0.8 of it. */
+/* Thin haze that keeps all light gets its light from the grid of scattered light alone. Above a wide wall it
+ * is lit by half of the sky, above a pane of the opacity 0.4 by 0.8 of it. */
 static void test_sky_behind_walls(void **state) {
   (void)state;
   static float pixels[4 * PIXELS];
@@ -148,7 +149,7 @@ static void test_sky_behind_walls(void **state) {
   }
 }
 
-/* A wall that stands in a part of the haze, and a pane across all of it. */
+/* A wall stands in a part of the haze, and a pane goes through all of it. */
 static void add_reference_scene(stage *set, walls *walls) {
   (void)open_stage(set, 0.06);
   (void)stage_add_directional(set, (vec3){1, 0.2, -0.3});
@@ -156,8 +157,8 @@ static void add_reference_scene(stage *set, walls *walls) {
   add_wall(set, walls, stage_make_quad(set, (vec3){0, 0, -5}, (vec3){20, 0, 0}, (vec3){0, 20, 0}), 0.5);
 }
 
-/* Halves of the picture differ from the reference's by less than 6 percent and four of its standard errors.
- */
+/* The mean of each half of the picture differs from the reference's by less than 6 percent and four of the
+ * reference's standard errors. */
 static void test_against_the_reference(void **state) {
   (void)state;
   static float pixels[4 * PIXELS], exact[4 * PIXELS], errors[3 * PIXELS];
@@ -182,7 +183,8 @@ static void test_against_the_reference(void **state) {
   close_stage(&set);
 }
 
-/* The same bytes with any number of threads, and in a renderer that made another wall's picture before. */
+/* The picture has the same bytes with any number of threads, and by a renderer that has rendered another wall
+ * before. */
 static void test_same_bytes(void **state) {
   (void)state;
   static float first[4 * PIXELS], other[4 * PIXELS];

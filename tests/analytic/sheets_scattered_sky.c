@@ -1,5 +1,5 @@
-/* analytic/sheets_scattered_sky.c - the sky's light, scattered again and again: the white furnace, a half
- * space, paths of the reference. */
+/* analytic/sheets_scattered_sky.c - the light of a sky, scattered repeatedly: the white furnace, a half
+ * space, and random paths of the reference. */
 #include <stdlib.h>
 #include <string.h>
 
@@ -9,7 +9,7 @@
 
 enum { SIDE = 16, PIXELS = SIDE * SIDE, MIDDLE = SIDE / 2 * SIDE + SIDE / 2 };
 
-/* A block of white matter 48 x 48 x 24 under an even sky of radiance 1. */
+/* A block of white matter, 48 x 48 x 24, under an even sky of radiance 1. */
 static hl_scene_volume *open_stage(stage *set, double opacity, double albedo) {
   stage_open(set);
   set->scene.width = set->scene.height = SIDE;
@@ -27,8 +27,9 @@ static hl_scene_volume *open_stage(stage *set, double opacity, double albedo) {
   return volume;
 }
 
-/* White furnace: matter that keeps all light, in light 1 from everywhere, sends 1 everywhere: it vanishes
- * before a sky of 1. Thin and thick, scattering evenly, onwards and back, from a corner. */
+/* White furnace: matter that keeps all light, in light 1 from everywhere, sends 1 everywhere, so that it does
+ * not show before a sky of 1. The matter is thin or thick, scatters evenly, forwards or backwards, and is
+ * seen from a corner. */
 static void test_white_furnace(void **state) {
   (void)state;
   static const double opacities[] = {0.02, 0.4, 0.9}, anisotropies[] = {0, 0.6, -0.4};
@@ -52,7 +53,7 @@ static void test_white_furnace(void **state) {
   }
 }
 
-/* An even sky enters alike along each line, in each colour. */
+/* The light of an even sky enters equally along each line of the grid, in each colour. */
 static void test_inflow_of_an_even_sky(void **state) {
   (void)state;
   scatter_inflow inflow[3];
@@ -68,7 +69,8 @@ static void test_inflow_of_an_even_sky(void **state) {
     }
 }
 
-/* A sky's inflow has the sky's mean, and comes from where the sky is bright. */
+/* The light that enters along all lines has the mean of the sky, and more enters from where the sky is
+ * bright. */
 static void test_inflow_of_a_hemisphere(void **state) {
   (void)state;
   scatter_inflow inflow[3];
@@ -82,12 +84,12 @@ static void test_inflow_of_a_hemisphere(void **state) {
     mean += (double)hl_scatter_line_weight(line) / 2 *
             ((double)inflow[0].along[line] + (double)inflow[0].against[line]);
   assert_near(mean, 0.5, 1e-6);
-  int up = 2; /* the line along z: light that travels down comes from the zenith */
+  int up = 2; /* along z, the light that travels down comes from the zenith */
   assert_true(inflow[0].against[up] > 0.95f && inflow[0].along[up] == 0);
 }
 
-/* Chandrasekhar's H of even scattering ("Radiative transfer", 1950, chapter V): 1 / H(m) = sqrt(1 - w) + w/2
- * times the integral of n H(n) / (m + n) over n from 0 to 1; by iteration. */
+/* Chandrasekhar's function H of even scattering ("Radiative transfer", 1950, chapter V), by iteration: 1 /
+ * H(m) = sqrt(1 - w) + w/2 times the integral of n H(n) / (m + n) over n from 0 to 1. */
 static double chandrasekhar(double albedo) {
   enum { N = 200 };
   static double h[N + 1];
@@ -101,8 +103,8 @@ static double chandrasekhar(double albedo) {
   return h[N];
 }
 
-/* A half space under an even sky of 1 sends out 1 - sqrt(1 - w) H(m) (Chandrasekhar 1950; a layer returns to
- * m of even light what it returns of light from m, all in all). */
+/* A half space under an even sky of 1 sends out 1 - sqrt(1 - w) H(m) (Chandrasekhar 1950). By reciprocity, a
+ * layer sends to m of even light as much as it sends out in all of light from m. */
 static void test_half_space(void **state) {
   (void)state;
   static const double albedos[] = {0.5, 0.9, 0.99};
@@ -117,9 +119,9 @@ static void test_half_space(void **state) {
   }
 }
 
-/* What a slab of albedo 1 and even scattering sends on of a hemisphere of 1 above it, along its normal: up,
- * and down. By paths of light in another program, for blocks of 64 x 64 x 16 with this optical depth (200,000
- * paths, which enter along the normal; standard error .001). */
+/* The light that a slab of albedo 1 with even scattering sends on of a hemisphere of 1 above it, along its
+ * normal: upwards and downwards. Another program traced 200,000 paths, which enter along the normal, in
+ * blocks of 64 x 64 x 16 of this optical depth (standard error .001). */
 static void test_slab_below_a_hemisphere(void **state) {
   (void)state;
   static const double depths[] = {1, 2, 4, 8}, up[] = {0.339, 0.517, 0.690, 0.821},
@@ -146,7 +148,7 @@ static void test_slab_below_a_hemisphere(void **state) {
   }
 }
 
-/* The reference's paths find that the white furnace vanishes, within four of their standard errors. */
+/* The reference's random paths find the white furnace, too, within four of their standard errors. */
 static void test_paths_of_the_reference(void **state) {
   (void)state;
   static float pixels[PIXELS * 4], errors[PIXELS * 3];
@@ -171,7 +173,7 @@ static void test_paths_of_the_reference(void **state) {
   stage_close(&set);
 }
 
-/* A medium sends on its albedo of the sky's light, by sheets and reference. */
+/* A medium sends on its albedo times the sky's light, by the sheets and the reference. */
 static void test_albedo(void **state) {
   (void)state;
   static float white[PIXELS * 4], grey[PIXELS * 4];

@@ -1,4 +1,4 @@
-/* analytic/sheets_scattering.c - light that media scatter again and again: closed forms and invariances. */
+/* analytic/sheets_scattering.c - light that media scatter repeatedly: closed forms and invariances. */
 #include <stdlib.h>
 #include <string.h>
 
@@ -11,7 +11,7 @@ enum { SIDE = 16, PIXELS = SIDE * SIDE, DEEP = 24 };
 
 /* ---- the transport on the grid ---- */
 
-/* A block of nodes that all hold the same matter, and the arrays of a solution. */
+/* A block of nodes with the same matter, and the arrays of a solution. */
 typedef struct block {
   hl_context *context;
   hl_pool *pool;
@@ -39,7 +39,7 @@ static void lay_out(block *b, hl_layout *layout) {
   b->flux = take(layout, 3 * b->count);
 }
 
-/* side^3 nodes, the outermost empty. */
+/* Makes side^3 nodes, of which the outermost are empty. */
 static void open_block(block *b, int side, float extinction, float albedo) {
   *b = (block){.nodes = {{side, side, side}, {0, 0, 0}, 0.5f}, .count = (size_t)(side * side * side)};
   hl_context_options options;
@@ -72,7 +72,8 @@ static void solve(block *b) {
                    b->flux);
 }
 
-/* Deep inside, where light b arrives everywhere, each collision keeps the fraction w: w b + w^2 b + ... */
+/* Deep inside, the light b arrives everywhere, and each collision keeps the fraction w of the light. The sum
+ * is w b + w^2 b + ... */
 static void test_deep_inside(void **state) {
   (void)state;
   static const float albedos[] = {0.3f, 0.6f, 0.8f};
@@ -87,9 +88,9 @@ static void test_deep_inside(void **state) {
   }
 }
 
-/* White furnace: light 1 from all around, matter that keeps all of it. What is not scattered and what is make
- * 1 everywhere. Where nothing is scattered again, G s = 1 - b for the light b that arrives: both are
- * solutions of u = 1. */
+/* White furnace: light 1 from all around, and matter that keeps all of it. Scattered and unscattered light
+ * add up to 1 everywhere. If no light is scattered again, G s = 1 - b for the light b that arrives: both
+ * solve the equations of u = 1. */
 static void test_white_furnace(void **state) {
   (void)state;
   static const float extinctions[] = {0.05f, 0.5f, 3};
@@ -106,8 +107,8 @@ static void test_white_furnace(void **state) {
   }
 }
 
-/* Beside a block that shines evenly the flux leads away from it, is no more than the light, and is none in
- * its middle. */
+/* Beside a block that shines evenly, the flux points away from the block and is at most the light. In its
+ * middle the flux is 0. */
 static void test_flux_leads_out(void **state) {
   (void)state;
   block b;
@@ -126,7 +127,7 @@ static void test_flux_leads_out(void **state) {
 
 /* ---- pictures ---- */
 
-/* A block 48 x 48 x 24 that takes half of a unit's light, lit and seen from above. */
+/* A block, 48 x 48 x 24, that absorbs half of the light in one unit, lit and seen from above. */
 static hl_scene_volume *open_stage(stage *set, double albedo, bool multiple) {
   stage_open(set);
   set->scene.width = set->scene.height = SIDE;
@@ -145,8 +146,8 @@ static hl_scene_volume *open_stage(stage *set, double albedo, bool multiple) {
   return volume;
 }
 
-/* Chandrasekhar's H of even scattering ("Radiative transfer", 1950, chapter V): 1 / H(m) = sqrt(1 - w) + w/2
- * times the integral of n H(n) / (m + n) over n from 0 to 1; by iteration. */
+/* Chandrasekhar's function H of even scattering ("Radiative transfer", 1950, chapter V), by iteration: 1 /
+ * H(m) = sqrt(1 - w) + w/2 times the integral of n H(n) / (m + n) over n from 0 to 1. */
 static double chandrasekhar(double albedo, double cosine) {
   enum { N = 400 };
   static double h[N];
@@ -164,7 +165,7 @@ static double chandrasekhar(double albedo, double cosine) {
   return 1 / (sqrt(1 - albedo) + albedo / 2 * sum);
 }
 
-/* A half space returns H(m) H(m0) times what it returns after one scattering. */
+/* A half space returns H(m) H(m0) times the light that it returns after one scattering. */
 static void test_half_space(void **state) {
   (void)state;
   static const double albedos[] = {0.5, 0.9};
@@ -178,13 +179,13 @@ static void test_half_space(void **state) {
     }
     double h = chandrasekhar(albedos[k], 1), once = albedos[k] / 2;
     size_t middle = 4 * (SIDE / 2 * SIDE + SIDE / 2);
-    assert_near((double)pixels[0][middle], once, 0.01 * once); /* w m0 / (m + m0) */
+    assert_near((double)pixels[0][middle], once, 0.01 * once); /* the expected light is w m0 / (m + m0) */
     assert_near((double)pixels[1][middle], once * h * h, 0.06 * once * h * h);
   }
 }
 
-/* The reference's paths find what the half space returns, within four of their standard errors, and the same
- * numbers at every run; more paths have smaller errors. */
+/* The reference's random paths find the light that a half space returns, within four of their standard
+ * errors. They find the same numbers at every run, and more paths have smaller errors. */
 static void test_paths_of_the_reference(void **state) {
   (void)state;
   static float pixels[3][4 * PIXELS], errors[3 * PIXELS];
@@ -205,13 +206,14 @@ static void test_paths_of_the_reference(void **state) {
       mean[k] += (double)pixels[k][4 * i] / PIXELS;
       square[k] += (double)errors[3 * i] * (double)errors[3 * i] / PIXELS / PIXELS;
     }
-    assert_near(mean[k], 0.45 * h * h, 4 * sqrt(square[k]) + 0.02); /* the first scattering's step: 0.02 */
+    /* the step of the first scattering is 0.02 */
+    assert_near(mean[k], 0.45 * h * h, 4 * sqrt(square[k]) + 0.02);
   }
   assert_memory_equal(pixels[0], pixels[2], sizeof pixels[0]);
   assert_near(sqrt(square[0] / square[1]), 2, 0.4);
 }
 
-/* Where nothing is scattered again the picture is the same, whatever the albedo of what does not shine. */
+/* If no light is scattered again, the picture does not depend on the albedo of matter that is not lit. */
 static void test_albedo_scales_one_scattering(void **state) {
   (void)state;
   static float full[4 * PIXELS], half[4 * PIXELS];
@@ -226,7 +228,8 @@ static void test_albedo_scales_one_scattering(void **state) {
     assert_near((double)half[i], (double)full[i] * (i % 4 == 3 ? 1 : 0.5), 1e-6);
 }
 
-/* The same bytes with any number of threads, and in a renderer that made other pictures before. */
+/* The picture has the same bytes with any number of threads, and by a renderer that has made other pictures
+ * before. */
 static void test_same_bytes(void **state) {
   (void)state;
   static float first[4 * PIXELS], pixels[4 * PIXELS];
@@ -253,8 +256,8 @@ static void test_same_bytes(void **state) {
   stage_close(&set);
 }
 
-/* What one light and the layer of ambient light show is the picture; the latter holds what is scattered
- * again. */
+/* The layers of one light and of ambient light add up to the picture. The layer of ambient light holds the
+ * light that is scattered again. */
 static void test_layers_are_the_picture(void **state) {
   (void)state;
   static float pixels[4 * PIXELS], picture[3 * PIXELS], ambient[3 * PIXELS];

@@ -1,4 +1,4 @@
-/* analytic/sheets_shadow.c - where shadows fall and how wide their edges are, against plane geometry. */
+/* analytic/sheets_shadow.c - the places of shadows and the widths of their edges, against plane geometry. */
 #include <stdlib.h>
 #include <string.h>
 
@@ -7,8 +7,8 @@
 
 enum { WIDE = 160, WIDEST = 320, ROWS = 6, MOST = 96 * 96 };
 
-/* An opaque floor with its surface at z = 0, which casts nothing, and a hidden opaque plate half a unit
- * thick; the eye looks straight down. */
+/* An opaque floor with its surface at z = 0, which casts no shadow, and an opaque plate, half a unit thick,
+ * that does not show. The eye looks straight down. */
 static void stage_plate(stage *set, vec3 low, double nx, double ny) {
   hl_scene_volume *floor = stage_add_grid(set, (size_t[3]){40, 40, 2}, (double[3]){1, 1, 1},
                                           (vec3){-20, -20, -2}, NULL);
@@ -20,7 +20,8 @@ static void stage_plate(stage *set, vec3 low, double nx, double ny) {
   plate->visible = 0;
 }
 
-/* Where brightness along a row first passes a level between two places; world x. */
+/* The place in x, in world units, at which the brightness of a row first passes a level between two places.
+ */
 static double crossing(const float *row, int count, double left, double pitch, double level, double from,
                        double to) {
   for (int x = 0; x + 1 < count; x++) {
@@ -42,9 +43,9 @@ static void open_under_point_light(stage *set) {
   set->scene.camera.height = 24;
 }
 
-/* Similar triangles: seen from a light at height H an edge at height h falls H / (H - h) as far out. The
- * outline is that of the plate's upper face here, which is the nearer to the light. Half of the smallest
- * voxel edge. */
+/* By similar triangles, an edge at the height h under a light at the height H casts its shadow H / (H - h)
+ * times as far out. The plate's upper face, which is nearer to the light, makes the outline. The tolerance is
+ * half of the smallest voxel edge. */
 static void test_size_under_point_light(void **state) {
   (void)state;
   static float pixels[MOST * 4];
@@ -69,8 +70,9 @@ static void render_hard(stage *set, double spacing, hl_shadow_lookup lookup, flo
   stage_render_sheets(set, pixels);
 }
 
-/* Light along the faces of a cube of haze, seen from the side: what is left falls by exp(-sigma way), and no
- * light that passes beside the cube shines through its faces, wherever the pixels of the buffer lie. */
+/* Light shines along the faces of a cube of haze, which is seen from the side. Within, the light falls by
+ * exp(-sigma way). Light that passes beside the cube does not enter through its faces, wherever the pixels of
+ * the buffer lie. */
 static void test_light_along_faces(void **state) {
   (void)state;
   static float pixels[MOST * 4];
@@ -87,7 +89,8 @@ static void test_light_along_faces(void **state) {
   for (double spacing = 0.25; spacing < 0.8; spacing += 0.1) {
     set.scene.render.sheet_spacing = spacing;
     stage_render_sheets(&set, pixels);
-    int first = 12, last = 83; /* more than a slab inside the faces that light enters and leaves by */
+    /* pixels more than a slab away from the faces through which light enters and leaves */
+    int first = 12, last = 83;
     const float *row = &pixels[4 * 96 * 48];
     double left = pow(0.9, (last - first) * 0.25);
     assert_near((double)row[4 * last] / (double)row[4 * first], left, 0.005 * left);
@@ -95,8 +98,8 @@ static void test_light_along_faces(void **state) {
   stage_close(&set);
 }
 
-/* Where sheets lie closer than five sixths of a voxel, hard shadows are read by cubic convolution; elsewhere
- * that would ask for pixels of more than three quarters of a voxel. */
+/* Hard shadows are read by cubic convolution if sheets are closer together than five sixths of a voxel. If
+ * they are farther apart, that would need buffers with pixels of more than three quarters of a voxel. */
 static void test_what_auto_reads(void **state) {
   (void)state;
   static float chosen[MOST * 4], cubic[MOST * 4], bilinear[MOST * 4];
@@ -116,7 +119,7 @@ static void test_what_auto_reads(void **state) {
   stage_close(&set);
 }
 
-/* A slanted light moves the shadow by h tan(angle), whichever side the sheets are on. */
+/* A slanting light moves the shadow by h tan(angle), on whichever side of the light the sheets are. */
 static void test_offset_of_directional_light(void **state) {
   (void)state;
   static float pixels[MOST * 4];
@@ -140,14 +143,14 @@ static void test_offset_of_directional_light(void **state) {
 
 /* ---- soft shadows ---- */
 
-/* Part of a disk of radius 1 on the side u < s. */
+/* The fraction of a disk of radius 1 that has u < s. */
 static double disk_below(double s) {
   if (s <= -1) return 0;
   if (s >= 1) return 1;
   return 0.5 + (s * sqrt(1 - s * s) + asin(s)) / HL_PI;
 }
 
-/* From the tenth to nine tenths of the light: 2 s with disk_below(s) = 0.9, by bisection. */
+/* The width between a tenth and nine tenths of a disk's light: 2 s with disk_below(s) = 0.9, by bisection. */
 static double disk_width(void) {
   double low = 0, high = 1;
   for (int i = 0; i < 60; i++) {
@@ -158,8 +161,8 @@ static double disk_width(void) {
   return 2 * low;
 }
 
-/* The edge of a plate over x < 0 whose middle is at the height, lit from straight above; its 10 to 90 %
- * width. */
+/* The width between 10 and 90 % of the edge of a plate over x < 0, lit from straight above. height: of the
+ * plate's middle. */
 static double penumbra(double angle_deg, double height, hl_soft_method method) {
   static float pixels[WIDE * ROWS * 4];
   stage set;
@@ -200,8 +203,8 @@ static void test_penumbra_of_cascade(void **state) {
     }
 }
 
-/* The paper's convolutions add variances: four times the distance, about twice the width, and narrower than
- * the truth. */
+/* The paper's convolutions add variances. Four times the distance gives about twice the width, and the edge
+ * is narrower than the true one. */
 static void test_penumbra_of_paper(void **state) {
   (void)state;
   static const double angles[] = {15, 30};
@@ -215,11 +218,11 @@ static void test_penumbra_of_paper(void **state) {
   }
 }
 
-/* A rect light above the plate's edge, and how wide its penumbra is in pixels. */
+/* A rectangular light above the plate's edge, and the width of its penumbra in pixels. */
 typedef struct rect_case {
-  double across, along; /* the light's sides against and along the edge */
+  double across, along; /* the light's sides across the edge and along it */
   double light, plate;  /* heights */
-  int width;            /* pixels, for 16 units */
+  int width;            /* the number of pixels for 16 units */
   double spacing;
 } rect_case;
 
@@ -228,17 +231,18 @@ static const rect_case rect_cases[] = {
     {6, 12, 24, 8, 160, 0.5},  {10, 3, 30, 15, 320, 0.5}, {10, 8, 30, 15, 320, 1},
 };
 
-/* The 10 to 90 % width of the edge's penumbra as a part of eq. (5)'s: a rect's profile is linear, so 0.8 L dZ
- * / Z. */
+/* The width between 10 and 90 % of the penumbra, divided by the width of equation (5). The profile of a
+ * rectangular light is linear, so that 0.8 L dZ / Z is expected. */
 static double rect_penumbra(const rect_case *c, hl_soft_method method, int samples) {
   static float pixels[WIDEST * ROWS * 4];
   stage set;
   stage_open(&set);
   stage_plate(&set, (vec3){-20, -20, c->plate - 0.25}, 20, 40);
-  /* as far to the right as the plate goes to the left: the light is above the middle of all, or nearly */
+  /* This plate reaches as far to the right as the other plate reaches to the left, so that the light is
+   * nearly above the middle of both. */
   hl_scene_volume *balance = stage_add_box(&set, (vec3){19, -20, c->plate - 0.25},
                                            (vec3){20, 20, c->plate + 0.25});
-  balance->visible = 0; /* its shadow falls beside all that is measured */
+  balance->visible = 0; /* its shadow falls beside the pixels that are measured */
   set.scene.render.shadows = HL_SHADOWS_SOFT;
   set.scene.render.soft_method = method;
   set.scene.render.light_samples = samples;
@@ -294,7 +298,7 @@ static hl_scene_volume *add_blob(stage *set) {
   return blob;
 }
 
-/* A ball on a floor, both with a skin of a voxel. */
+/* A ball on a floor. Each has a skin one voxel thick. */
 static void add_ball_on_floor(stage *set) {
   enum { N = 32 };
   float *voxels = malloc(N * N * N * sizeof *voxels);
@@ -319,7 +323,7 @@ static int by_size(const void *a, const void *b) {
   return (x > y) - (x < y);
 }
 
-/* Root mean square change of the colours. */
+/* The root mean square change of the colours. */
 static double change(const float *a, const float *b, int pixels) {
   double sum = 0;
   for (int i = 0; i < pixels * 4; i++)
@@ -327,9 +331,9 @@ static double change(const float *a, const float *b, int pixels) {
   return sqrt(sum / (3 * pixels));
 }
 
-/* At e.l = 0 the slicing direction turns by 90 degrees and the eye's order is reversed; an animation must not
- * show it: of 21 pictures a degree apart, no two neighbours differ by more than twice what they do in the
- * middle. */
+/* At e.l = 0 the slicing direction turns by 90 degrees, and the order of the sheets for the eye is reversed.
+ * An animation must not show that: of 21 pictures a degree apart, two neighbouring ones differ by at most
+ * twice as much as two in the middle of the range. */
 static void check_turn(void (*add)(stage *set), hl_shadows shadows, const char *name) {
   enum { FRAMES = 21, SIDE = 64 };
   static float frame[2][SIDE * SIDE * 4];

@@ -1,5 +1,5 @@
-/* analytic/sheets_sky.c - the sky's light in pictures of sheets: closed forms, the reference, the same bytes.
- */
+/* analytic/sheets_sky.c - the light of a sky in pictures of sheets: closed forms, the reference, and the same
+ * bytes by any number of threads. */
 #include <stdlib.h>
 #include <string.h>
 
@@ -21,7 +21,7 @@ static double middle(const float *pixels, int channel) {
   return (double)pixel[channel] / (double)pixel[3];
 }
 
-/* Haze so thin that it hides nothing gets the sky's mean radiance, in each colour. */
+/* Haze that is so thin that it hides nothing has the sky's mean radiance in each colour. */
 static void test_thin_haze(void **state) {
   (void)state;
   for (int kind = 0; kind < 2; kind++) {
@@ -42,8 +42,8 @@ static void test_thin_haze(void **state) {
   }
 }
 
-/* In a wide slab of haze of voxels, seen through: the mean of (E2(t) + E2(T - t)) / 2 over depth t, weighted
- * by what the eye sees; in each colour by its own depth. */
+/* In a wide slab of haze, seen through the slab: the mean of (E2(t) + E2(T - t)) / 2 over the depth t,
+ * weighted by what the eye sees of each depth, in each colour by its own optical depth. */
 static void test_slab(void **state) {
   (void)state;
   static float pixels[PIXELS * 4];
@@ -73,7 +73,7 @@ static void test_slab(void **state) {
   stage_close(&set);
 }
 
-/* A hemisphere's light comes from above alone. */
+/* The light of a hemisphere comes only from above. */
 static void test_hemisphere(void **state) {
   (void)state;
   static float pixels[PIXELS * 4];
@@ -99,7 +99,7 @@ static void add_scene(stage *set, const hl_opacity_point opacity[2]) {
 
 static const hl_opacity_point OPACITY[2] = {{0.3, 0}, {0.7, 0.9}};
 
-/* The light of every pixel is the reference's, up to the root of the mean square. */
+/* The light of all pixels is the reference's, to a root mean square difference. */
 static void test_against_the_reference(void **state) {
   (void)state;
   static float sheets[PIXELS * 4], exact[PIXELS * 4];
@@ -126,7 +126,8 @@ static void test_against_the_reference(void **state) {
   stage_close(&set);
 }
 
-/* A wide slab whose values fall at its upper face from 1 to 0 over `edge` voxels, or a ball of radius 9. */
+/* A wide slab, whose values fall from 1 to 0 over `edge` voxels at its upper face, or a ball of the radius 9.
+ */
 static hl_scene_volume *add_soft_matter(stage *set, bool ball, double edge) {
   static float voxels[GRID * GRID * GRID];
   for (int i = 0; i < GRID * GRID * GRID; i++) {
@@ -147,9 +148,9 @@ static hl_scene_volume *add_soft_matter(stage *set, bool ball, double edge) {
 static const hl_opacity_point FUNCTIONS[4][2] = {
     {{0.3, 0}, {0.7, 0.9}}, {{0.2, 0}, {0.6, 0.99}}, {{0.45, 0}, {0.55, 0.999}}, {{0.6, 0}, {0.8, 0.95}}};
 
-/* A white surface of a volume that sees half of an even sky sends its radiance, whatever the transfer
- * function and the width of its edge: it is lit by the light at its outside. So does a ball from all sides,
- * of which each point sees half of the sky. */
+/* A white surface of a volume that sees half of an even sky sends the sky's radiance, whatever the transfer
+ * function and the width of its edge are, since it is lit by the light at its outside. Each point of a ball
+ * sees half of the sky, so that the ball does so from all sides. */
 static void test_open_surfaces(void **state) {
   (void)state;
   static float pixels[PIXELS * 4];
@@ -167,7 +168,8 @@ static void test_open_surfaces(void **state) {
   }
 }
 
-/* A square ground of a half side, and a pane that the eye does not see. meshes: [2]; pane: owned by them. */
+/* A square ground, `half` to either side, and a pane that does not show. meshes: [2]. The ground and the pane
+ * own the meshes. */
 static void add_ground_and_pane(stage *set, hl_scene_mesh *meshes, double half, hl_mesh *pane) {
   for (int m = 0; m < 2; m++) {
     hl_scene_mesh_defaults(&meshes[m]);
@@ -181,9 +183,10 @@ static void add_ground_and_pane(stage *set, hl_scene_mesh *meshes, double half, 
   set->scene.mesh_count = 2;
 }
 
-/* A square below half of a plane gets (1 - sin a) / 2 of the sky, a the angle at which it sees the plane's
- * edge from the vertical: the mean of the pixels on both sides of the edge is 1/2, 0.8 below a pane that
- * takes 0.4. Nothing above it leaves 1. The pane is a mesh that the eye does not see. */
+/* A square below a plane that ends above it gets (1 - sin a) / 2 of the sky, where a is the angle from the
+ * vertical at which the square sees the plane's edge. The mean of the pixels on the two sides of the edge is
+ * 1/2, or 0.8 below a pane of the opacity 0.4. If nothing is above the square, it is 1. The pane is a mesh
+ * that does not show. */
 static void test_meshes(void **state) {
   (void)state;
   static float pixels[PIXELS * 4];
@@ -204,14 +207,15 @@ static void test_meshes(void **state) {
   }
 }
 
-/* The part of the light of a whole sky that a rectangle hides whose corner is above a square, parallel to it:
- * x and y its sides, by its height (the form factor of a corner). */
+/* The fraction of a whole sky's light that a rectangle hides from a parallel square below one of its corners
+ * (the form factor of a corner). x, y: the rectangle's sides divided by its height. */
 static double hidden_by_corner(double x, double y) {
   double a = sqrt(1 + x * x), b = sqrt(1 + y * y);
   return (x / a * atan(y / a) + y / b * atan(x / b)) / (2 * HL_PI);
 }
 
-/* Below the edge of a pane light grows evenly: steps do not show where the light of one direction ends. */
+/* The light below the edge of a pane grows evenly, without steps at the places where the light of one
+ * direction ends. */
 static void test_edge_of_a_mesh(void **state) {
   (void)state;
   static float pixels[PIXELS * 4];
@@ -237,8 +241,8 @@ static void test_edge_of_a_mesh(void **state) {
   stage_close(&set);
 }
 
-/* The face that a cut leaves of even matter sees half of the sky, as any plane: it gets the sky's radiance. A
- * clip box and a plane leave the same face. */
+/* The face that a cut leaves of even matter sees half of the sky, as any plane does, and gets the sky's
+ * radiance. A clip box and a plane leave the same face. */
 static void test_cut_faces(void **state) {
   (void)state;
   enum { HEIGHTS = 5 };
@@ -294,8 +298,8 @@ static void test_same_bytes(void **state) {
   assert_memory_equal(one, other, sizeof one);
 }
 
-/* A renderer that keeps the sky's light from frame to frame shows what a new one shows: after the camera, the
- * sky, and a volume's opacity have changed. */
+/* A renderer that keeps the sky's light between frames makes the picture of a new renderer after the camera,
+ * the sky, or a volume's opacity has changed. */
 static void test_kept_light(void **state) {
   (void)state;
   static float kept[PIXELS * 4], fresh[PIXELS * 4];

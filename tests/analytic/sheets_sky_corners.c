@@ -1,14 +1,14 @@
-/* analytic/sheets_sky_corners.c - the sky's light in the corner that a box cut out of an even block leaves:
- * closed forms. */
+/* analytic/sheets_sky_corners.c - the light of a sky in the corner of a cubic block from which a box is cut,
+ * against closed forms. */
 #include "../asserts.h"
 #include "reference_stage.h"
 
 enum { GRID = 48, SIDE = 96 };
 
-/* The part of the light of a half sky that a rectangle hides from a point before it, at a right angle to the
- * point's plane: the form factor of a rectangle whose lower side lies in the plane. out: the point's distance
- * from the rectangle's plane; before, after: how far the rectangle reaches to both sides of the point;
- * height: of the rectangle. (Howell, A Catalog of Radiation Heat Transfer Configuration Factors, B-3.) */
+/* The fraction of a half sky's light that an upright rectangle hides from a point (the form factor of a
+ * rectangle whose lower side lies in the point's plane). out: the point's distance from the rectangle's
+ * plane. before, after: the lengths of the rectangle to both sides of the point. height: of the rectangle.
+ * (Howell, A Catalog of Radiation Heat Transfer Configuration Factors, B-3.) */
 static double hidden_by_wall(double out, double before, double after, double height) {
   const double far = sqrt(out * out + height * height);
   return (atan(before / out) - out / far * atan(before / far) + atan(after / out) -
@@ -16,19 +16,19 @@ static double hidden_by_wall(double out, double before, double after, double hei
          (2 * HL_PI);
 }
 
-/* The light at a point of one of the three faces of the corner, each a square; x, y: its distances from the
- * two other faces. */
+/* The light at a point of one of the corner's three square faces. x, y: its distances from the two other
+ * faces. */
 static double light_of_face(double side, double x, double y) {
   return 1 - hidden_by_wall(x, y, side - y, side) - hidden_by_wall(y, x, side - x, side);
 }
 
-/* Finds the face of the corner that a ray meets, and the light there; corner: of the cut box, each
- * coordinate. Returns whether the place lies near the edge between two faces, but not where three meet. */
+/* Finds the face of the corner that a ray meets, and the light there. corner: each coordinate of the cut
+ * box's corner. Returns whether the place lies near the edge between two faces, but not where three meet. */
 static bool light_near_edge(vec3 origin, vec3 way, double corner, double side, double *light) {
   const double from[3] = {origin.x, origin.y, origin.z}, by[3] = {way.x, way.y, way.z};
   double at[3], nearest = INFINITY;
   int face = 0;
-  for (int a = 0; a < 3; a++) { /* behind the plane of the face that is met last lies matter */
+  for (int a = 0; a < 3; a++) { /* matter lies behind the face that the ray meets last */
     const double t = (corner - from[a]) / by[a];
     if (a == 0 || t < nearest) nearest = t, face = a;
   }
@@ -39,8 +39,8 @@ static bool light_near_edge(vec3 origin, vec3 way, double corner, double side, d
   return true;
 }
 
-/* Renders the corner with the box's corner at a place between the cells of the sky's field; returns the
- * greatest error near its edges. */
+/* Renders the corner. The cut box's corner lies at a place between the cells of the sky's field. Returns the
+ * greatest error near the corner's edges. */
 static double greatest_error(double corner) {
   static float pixels[SIDE * SIDE * 4];
   const double half = GRID / 2.0, side = half - corner;
@@ -76,8 +76,8 @@ static double greatest_error(double corner) {
   return greatest;
 }
 
-/* Beside the edge between two faces it is as bright as a little away from it, wherever the faces lie between
- * the middles of the field's cells. */
+/* Beside an edge between two faces, it is as bright as a little away from the edge, wherever the faces lie
+ * between the cells of the sky's field. */
 static void test_corner_of_a_cut(void **state) {
   (void)state;
   for (int i = 0; i < 5; i++) {

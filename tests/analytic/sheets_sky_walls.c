@@ -1,12 +1,12 @@
-/* analytic/sheets_sky_walls.c - the sky's light within thin walls, however they stand to the lattice of its
- * cells: closed forms. */
+/* analytic/sheets_sky_walls.c - the light of a sky within thin walls, at any angle to the lattice of the
+ * light's cells, against closed forms. */
 #include "../asserts.h"
 #include "mesh_stage.h"
 
 enum { SIDE = 32, PIXELS = SIDE * SIDE };
 
-/* A box without thickness on the plane z = 0, about the z axis, turned by an angle. The last two of its
- * triangles are its lid. */
+/* A box with walls of no thickness that stands on z = 0, turned around the z axis. Its last two triangles are
+ * its lid. */
 typedef struct walled_box {
   double half, height, angle;
 } walled_box;
@@ -35,14 +35,14 @@ static void open_under_sky(mesh_stage *all, double height) {
   all->set.scene.sky.type = HL_SKY_UNIFORM;
 }
 
-/* The part of the light of a half sky that comes through a rectangle from above a corner of it (the form
- * factor of a corner); x and y: its sides by its height, of either sign. */
+/* The fraction of a half sky's light that comes through a rectangle above a point below one of its corners
+ * (the form factor of a corner). x, y: the rectangle's sides divided by its height, of either sign. */
 static double light_of_corner(double x, double y) {
   const double a = sqrt(1 + x * x), b = sqrt(1 + y * y);
   return (x / a * atan(y / a) + y / b * atan(x / b)) / (2 * HL_PI);
 }
 
-/* The light on the floor of a black cup: of the sky through its opening. */
+/* The light of the sky that reaches the floor of a black cup through its opening. */
 static double light_in_cup(const walled_box *cup, double x, double y) {
   double light = 0;
   for (int corner = 0; corner < 4; corner++)
@@ -51,8 +51,8 @@ static double light_in_cup(const walled_box *cup, double x, double y) {
   return light;
 }
 
-/* Thin walls of a cup let no light through where they stand obliquely to the axes. (Along the axes errors are
- * of the sky's few directions, and twice as large.) */
+/* The thin walls of a cup that is turned against the axes let no light through. (If the walls are parallel to
+ * the axes, the errors are those of the sky's few directions, and twice as large.) */
 static void test_cups(void **state) {
   (void)state;
   static float pixels[PIXELS * 4];
@@ -78,7 +78,7 @@ static void test_cups(void **state) {
   }
 }
 
-/* Within a closed box it is dark, its edges and corners included. */
+/* The inside of a closed box is dark, also at its edges and corners. */
 static void test_closed_boxes(void **state) {
   (void)state;
   static float pixels[PIXELS * 4];

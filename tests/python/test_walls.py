@@ -1,6 +1,7 @@
 """The outer walls of meshes of cells: they are lit like the surfaces that they are, and light passes through matter up to them."""
 from __future__ import annotations
 
+import functools
 import warnings
 from typing import Any
 
@@ -31,6 +32,13 @@ def volume_of(places: Any, cells: Any, values: Any, **look: Any) -> hl.Volume:
         return hl.Volume.from_cells(places, cells, np.full(len(cells), 12, np.uint8), values, **look)
 
 
+@functools.cache
+def even_ring(around: int = AROUND, cells: int = 10) -> hl.Volume:
+    """A ring in which the value is 1 everywhere, made once."""
+    places, corners = ring(around, cells)
+    return volume_of(places, corners, np.ones(len(places)))
+
+
 def parallel_rays(position: Any, target: Any, height: float, size: tuple[int, int]) -> tuple[Any, Any]:
     """The direction of an orthographic camera's rays, whose up is z, and a point of the ray of each pixel."""
     forward = np.subtract(target, position) / np.linalg.norm(np.subtract(target, position))
@@ -55,8 +63,7 @@ def wall_of_hole(forward: Any, origins: Any, margin: float = 0.06) -> tuple[Any,
 def test_the_wall_of_a_hole_is_lit_like_a_cylinder() -> None:
     """Steps of the lattice would turn the normals by 15 degrees (root mean square), and change the light by .09. The faces
     of the mesh themselves turn them by up to 1.9 degrees."""
-    places, cells = ring()
-    volume = volume_of(places, cells, np.ones(len(places)), transfer_function=OPAQUE, shading="phong")
+    volume = even_ring().replace(transfer_function=OPAQUE, shading="phong")
     position, target, size = (0.9, -1.6, 3.2), (0, 0.1, 0.3), (600, 450)
     towards_light = np.array([0.5, -0.8, 0.9]) / np.sqrt(0.5**2 + 0.8**2 + 0.9**2)
     scene = hl.Scene(volume, size=size, shadows="off", camera=hl.Camera(position=position, target=target, up=(0, 0, 1), height=2.4),
@@ -107,8 +114,7 @@ def moving(scene: hl.Scene) -> hl.Scene:
 @pytest.mark.parametrize("spacing", [1.5, 3])
 def test_coarser_copies_have_walls(spacing: float) -> None:
     """While a camera moves, the wall stays a cylinder: steps of the coarser lattice turned its normals by 37 degrees."""
-    places, cells = ring(128, 14)
-    volume = volume_of(places, cells, np.ones(len(places)), transfer_function=OPAQUE, shading="phong")
+    volume = even_ring(128, 14).replace(transfer_function=OPAQUE, shading="phong")
     position, target, size = (0.9, -1.6, 3.2), (0, 0.1, 0.3), (300, 225)
     scene = hl.Scene(volume, size=size, shadows="off", camera=hl.Camera(position=position, target=target, up=(0, 0, 1), height=2.4),
                      lights=[hl.Directional(direction=(-0.5, 0.8, -0.9))], sheet_spacing=spacing)
@@ -159,8 +165,7 @@ def way_through(radius: float, at: Any) -> Any:
 def test_beer_and_lambert(from_zero: bool) -> None:
     """The mean fault across the walls was .0025, and the greatest .156, where walls were steps of the lattice."""
     function = hl.TransferFunction([(0, 0), (0.2, 0.5), (1, 0.5)] if from_zero else [(0, 0.5), (1, 0.5)], unit_distance=0.7)
-    places, cells = ring()
-    volume = volume_of(places, cells, np.full(len(places), 0.5), transfer_function=function, shading="flat")
+    volume = even_ring().replace(transfer_function=function, shading="flat")
     at = (np.arange(400) + 0.5 - 200) * 2.2 / 400
     above, radius = transmittance(volume, (0, 0, 5), (0, 1, 0), 400), np.hypot(at[None, :], at[:, None])
     np.testing.assert_allclose(above[(radius > 0.45) & (radius < 0.9)], 0.5 ** (HIGH / 0.7), atol=1e-5)
@@ -190,8 +195,8 @@ def test_seams_are_no_walls() -> None:
     copied = np.concatenate([cells[:half], cells[half:] + len(places)])
     look = {"transfer_function": hl.TransferFunction([(0, 0.5), (1, 0.5)], unit_distance=0.7), "shading": "phong"}
     camera = hl.Camera(position=(0.9, -1.6, 3.2), target=(0, 0.1, 0.3), up=(0, 0, 1), height=2.4)
-    one, other = (np.asarray(hl.render(volume_of(p, c, np.ones(len(p)), **look), size=(120, 90), camera=camera, shadows="hard"))
-                  for p, c in ((places, cells), (np.concatenate([places, places]), copied)))
+    pieces = volume_of(np.concatenate([places, places]), copied, np.ones(2 * len(places)))
+    one, other = (np.asarray(hl.render(volume.replace(**look), size=(120, 90), camera=camera, shadows="hard")) for volume in (even_ring(), pieces))
     assert one[..., 3].max() > 0.3
     np.testing.assert_allclose(one, other, atol=1e-6)
 

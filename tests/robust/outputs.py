@@ -1,9 +1,10 @@
 #!/usr/bin/env python3
 """The program when its outputs fail, its inputs stall and its user loses patience; prints TAP.
 
-usage: outputs.py PROGRAM
+usage: outputs.py [--quick] PROGRAM
 
 Whatever goes wrong: the exit code and one line on stderr say so, the old file stands, and nothing new lies beside it.
+--quick, for a sanitized program, leaves out kinds of files that the same code of the program writes.
 """
 import os
 import pathlib
@@ -17,7 +18,8 @@ import threading
 import time
 
 os.environ.pop("MALLOC_PERTURB_", None)  # fills what is freed, which takes longer than giving it back
-PROGRAM = str(pathlib.Path(sys.argv[1]).resolve())
+QUICK = sys.argv[1] == "--quick"
+PROGRAM = str(pathlib.Path(sys.argv[-1]).resolve())
 TOOL = str(pathlib.Path(__file__).resolve().parent.parent / "cli" / "tool.py")
 OLD = b"old"
 UNSUPPORTED = 4  # the exit code where the build lacks a library
@@ -43,6 +45,10 @@ OUTPUTS = [
     *((f"surface as {ending}", f"convert ball_16x16x16_uint8.raw --iso 100 -o out{ending}", [f"out{ending}"]) for ending in (".ply", ".stl", ".obj")),
     ("converted picture", "convert a.npy -o out.tif", ["out.tif"]),
 ]
+ALIKE = {"png 16", "exr", "npy", "svg with a scale bar", "looks", "converted to .nii", "converted to _16x16x16_uint8.raw"}  # another one is like each
+FILMS = (".gif", ".mp4", ".mov", ".mkv", ".webm")
+if QUICK:
+    OUTPUTS, FILMS = [output for output in OUTPUTS if output[0] not in ALIKE], FILMS[:1]
 
 
 class Skip(Exception):
@@ -94,7 +100,7 @@ def test_files_that_may_not_grow():
             continue
         check(whole == 0, f"{name} does not work at all")
         size = os.path.getsize(outputs[0])
-        for limit in (0, 1, size // 2, size - 1):
+        for limit in (0, size - 1) if QUICK else (0, 1, size // 2, size - 1):
             for other in outputs[1:]:
                 if limit >= os.path.getsize(other):
                     os.remove(other)  # written before the picture, and whole
@@ -110,7 +116,7 @@ def test_files_that_may_not_grow():
 
 def test_films_that_may_not_grow():
     """A film that ffmpeg cannot write whole is no film. Its frames are smaller than the limits here, so that they are written."""
-    for ending in (".gif", ".mp4", ".mov", ".mkv", ".webm") if shutil.which("ffmpeg") else ():
+    for ending in FILMS if shutil.which("ffmpeg") else ():
         film, arguments = f"film{ending}", f"animate ball_16x16x16_uint8.raw --size 24x24 --sheet-spacing 4 --turntable 40 -o film{ending}"
         check(run(arguments).returncode == 0, f"{film} cannot be made at all")
         size = os.path.getsize(film)
