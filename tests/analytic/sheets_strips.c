@@ -1,7 +1,7 @@
-/* analytic/sheets_strips.c - the parts of a picture that several renderers make are the picture, bit for
- * bit: with every method of shadows, several sweeps, hidden matter, oversampling and surfaces. And a part
- * works through the light that falls on it alone. Renderers in threads of one process exchange light as ranks
- * do. A renderer's next frame uses the memory of the one before. */
+/* analytic/sheets_strips.c - several renderers make a part of a picture each, and the parts together are the
+ * picture, bit for bit: with every method of shadows, several sweeps, hidden matter, oversampling and
+ * surfaces. A part computes only the light that falls on it. The renderers are threads of one process and
+ * exchange light as ranks do. A renderer's next frame uses the memory of the one before. */
 #include <math.h>
 #include <setjmp.h>
 #include <stdarg.h>
@@ -28,7 +28,7 @@ static void render_part(stage *set, int part, int parts, float *pixels) {
   hl_scene_release(scene);
 }
 
-/* What a part shows of a cell: all of its pixels, or nothing. */
+/* Whether the part's picture shows all pixels of a cell, or none. */
 static bool shows_cell(const float *whole, const float *shared, int x, int y, const char *what) {
   bool all = true, none = true;
   for (int row = y * HL_STRIP_ROWS; row < (y + 1) * HL_STRIP_ROWS && row < HEIGHT; row++)
@@ -41,7 +41,8 @@ static bool shows_cell(const float *whole, const float *shared, int x, int y, co
   return all && !none;
 }
 
-/* Each cell of the picture is in one part's picture, as it is in the whole picture, if it shows anything. */
+/* Each cell of the picture that shows anything is in one part's picture, with the same pixels as in the whole
+ * picture. */
 static void assert_parts(stage *set, const float *whole, int parts, const char *what) {
   enum { CELLS_X = (WIDTH + HL_STRIP_ROWS - 1) / HL_STRIP_ROWS, CELLS_Y = (HEIGHT + 15) / HL_STRIP_ROWS };
   static float shared[FLOATS], sum[FLOATS];
@@ -58,7 +59,7 @@ static void assert_parts(stage *set, const float *whole, int parts, const char *
   if (memcmp(sum, whole, sizeof sum) != 0) fail_msg("%s: %d parts do not add up", what, parts);
 }
 
-/* count: of the numbers of parts that are tried, at most 6. */
+/* count: the number of divisions into parts that are tried, at most 6. */
 static void assert_shared(stage *set, const char *what, size_t count) {
   static float whole[FLOATS];
   static const int numbers[] = {7, 2, 4, 8, 3, 1};
@@ -74,7 +75,7 @@ static void assert_shared(stage *set, const char *what, size_t count) {
 static const size_t noise_size[3] = {30, 28, 33};
 static float noise[30 * 28 * 33];
 
-/* Before any test: threads read it. */
+/* threads read it, so that it is set before the first test */
 static void make_noise(void) {
   const size_t *n = noise_size;
   for (size_t v = 0; v < sizeof noise / sizeof *noise; v++)
@@ -109,7 +110,7 @@ static void draw_isosurface(stage *set) {
   set->volumes[0].iso = &surface;
   set->volumes[0].iso_count = 1;
 }
-/* Light from behind: sheets go back to front, and a search finds what opaque matter hides. */
+/* Light from behind: sheets go from back to front, and a search finds the matter that opaque matter hides. */
 static void draw_hidden(stage *set) {
   stage_set_opacity(set, &set->volumes[0], 0.95, 1);
   stage_add_directional(set, (vec3){31, 17, 23});
@@ -136,7 +137,7 @@ static void draw_eye_within(stage *set) {
   set->scene.camera.type = HL_CAMERA_PERSPECTIVE;
   set->scene.camera.fovy_deg = 70;
 }
-/* Voxels smaller than pixels: each pixel is a mean of several. */
+/* Voxels are smaller than pixels, so that each pixel is the mean of several. */
 static void draw_small(stage *set) { stage_look(set, (vec3){93, 51, 69}, (vec3){0, 0, 0}, (vec3){0, 0, 1}); }
 
 typedef struct way {
@@ -172,9 +173,9 @@ static void test_ways(void **state) {
   }
 }
 
-/* An even cube, seen along z by parallel rays, under light from the left and from above it, at an angle of 45
- * degrees: parts are bands of rows, whose light is a band of the buffer as high. So each of 4 parts needs a
- * fourth of the light that the whole picture needs, and of a tile and some pixels on either side. */
+/* An even cube, seen along z by parallel rays, under light from the left and from above it, at 45 degrees.
+ * Parts are bands of rows, and the light of a part is a band of the buffer of the same height. So each of 4
+ * parts needs a fourth of the light of the whole picture, and a tile and some pixels on either side. */
 static void assert_light_of_part(const char *what, int side, void (*soften_light)(stage *set)) {
   enum { SIDE = 40, PARTS = 4 };
   static float voxels[SIDE * SIDE * SIDE];
@@ -238,21 +239,21 @@ static void exchange_colors(stage *set) {
   set->volumes[0].attenuation_color[1] = 0.6;
   set->volumes[0].attenuation_color[2] = 0.3;
 }
-/* Light along the volume's faces, and from behind, and wide light. */
+/* Light shines along the volume's faces and from behind; and one light is wide. */
 static void exchange_along(stage *set) {
   add_noise(set, 0.4);
   stage_add_directional(set, (vec3){1, 0, 0})->angular_diameter_deg = 20;
   stage_add_directional(set, (vec3){30, 18, 22})->angular_diameter_deg = 60;
   soften(set, HL_SOFT_CASCADE);
 }
-/* Most of the matter lies beside the picture: parts that need no light of it work through it for the others.
- */
+/* Most of the matter lies beside the picture. Parts that need no light of it compute its light for the other
+ * parts. */
 static void exchange_near(stage *set) {
   add_soft_noise(set);
   stage_look(set, (vec3){31, 17, 23}, (vec3){2, 3, -4}, (vec3){0, 0, 1});
   set->scene.camera.fovy_deg = 6;
 }
-/* Two slabs far apart: the chunks between them are empty, and so are the first chunks of most parts. */
+/* Two slabs far apart. The cascade's chunks between them are empty, as are the first chunks of most parts. */
 static void exchange_apart(stage *set) {
   add_soft_noise(set);
   const size_t n[3] = {24, 24, 6};
@@ -278,8 +279,8 @@ static const way soft_ways[] = {
     {"isosurface", exchange_isosurface}, {"mixed", exchange_mixed}};
 enum { SOFT_WAYS = sizeof soft_ways / sizeof *soft_ways };
 
-/* The parts' sum has the bytes of the whole picture. Parts that need not wait go on with their work until the
- * others' light is wanted, a chunk later. */
+/* The sum of the parts has the bytes of the whole picture. A part that need not wait goes on with its work
+ * until it needs the others' light, a chunk later. */
 static void test_exchange(void **state) {
   (void)state;
   static const int numbers[] = {7, 2, 8, 3, 4, 1};
@@ -308,14 +309,14 @@ static void test_exchange(void **state) {
   }
 }
 
-/* Opaque matter that hides much of what is behind it, lit from behind by one light with hard shadows. */
+/* Opaque matter hides much of the matter behind it. One light shines from behind, with hard shadows. */
 static void exchange_hidden(stage *set) {
   add_noise(set, 0.4);
   draw_hidden(set);
   draw_hard(set);
 }
 
-/* Each part tries its own tiles for what is hidden, and all decide by the sums of two counts. */
+/* Each part searches its own tiles for hidden matter. All parts decide by the sums of two counts. */
 static void test_exchanged_search(void **state) {
   (void)state;
   enum { PARTS = 4, SIDE_X = 100, SIDE_Y = 75, COUNTS = 2 };
@@ -328,7 +329,7 @@ static void test_exchanged_search(void **state) {
     assert_int_equal(threads[part].gathered, COUNTS * sizeof(uint64_t));
 }
 
-/* A sky that differs all round, over matter of which much stands alone. */
+/* A sky with another colour in each direction, over matter of which much stands alone. */
 static void exchange_sky(stage *set) {
   exchange_hidden(set);
   set->scene.sky.type = HL_SKY_GRADIENT;
@@ -342,7 +343,7 @@ static void exchange_sky_colors(stage *set) {
   exchange_sky(set);
   set->volumes[0].attenuation_color[1] = 0.6;
 }
-/* Surfaces have a sky of more directions. */
+/* scenes with surfaces have a sky of more directions */
 static void exchange_sky_surface(stage *set) {
   exchange_sky(set);
   draw_isosurface(set);
@@ -352,7 +353,7 @@ static void exchange_even_sky(stage *set) {
   draw_sky(set);
 }
 
-/* Each part finds the sky's light in some slabs of cells and gets the others' from those that do, once: the
+/* Each part finds the sky's light in some slabs of cells and gets the rest from the other parts, once. The
  * next frame keeps it. */
 static void test_exchanged_sky(void **state) {
   (void)state;
@@ -367,7 +368,7 @@ static void test_exchanged_sky(void **state) {
   for (size_t n = 0; n < sizeof skies / sizeof *skies; n++) {
     uint64_t gathered[2];
     render_together(threads, 1, WAITING, SIDE_X, SIDE_Y, 1, skies[n].draw, whole);
-    assert_true(threads[0].gathered < 100); /* the search for what is hidden has a few bytes */
+    assert_true(threads[0].gathered < 100); /* the search for hidden matter sends a few bytes */
     render_together(threads, numbers[n], WAITING, SIDE_X, SIDE_Y, 1, skies[n].draw, sum);
     if (memcmp(sum, whole, sizeof sum) != 0) fail_msg("%s: %d parts differ", skies[n].name, numbers[n]);
     for (int frames = 1; frames <= 2; frames++) {
@@ -401,8 +402,8 @@ static void exchange_cube(stage *set) {
   look_under_a_sun(set);
 }
 
-/* Each of 4 parts fills a fourth of the light, and of a tile and some pixels on either side; what the others
- * absorb comes in messages. */
+/* Each of 4 parts fills a fourth of the light, and a tile and some pixels on either side. Messages bring what
+ * matter of the other parts absorbs. */
 static void test_exchanged_light(void **state) {
   (void)state;
   enum { PARTS = 4 };
@@ -419,10 +420,11 @@ static void test_exchanged_light(void **state) {
   }
 }
 
-/* Matter before the picture's upper half, near the light, and before its lower half, far from it. */
+/* The matter before the picture's upper half is near the light, and the matter before its lower half is far
+ * from the light. */
 static void exchange_two_depths(stage *set) {
   enum { WIDE = 40, HIGH = 20, DEEP = 4 };
-  float voxels[WIDE * HIGH * DEEP]; /* of each part's thread */
+  float voxels[WIDE * HIGH * DEEP]; /* each part's thread has its own */
   const size_t n[3] = {WIDE, HIGH, DEEP};
   const double spacing[3] = {1, 1, 1};
   for (size_t v = 0; v < sizeof voxels / sizeof *voxels; v++) voxels[v] = 1;
@@ -434,8 +436,8 @@ static void exchange_two_depths(stage *set) {
   look_under_a_sun(set);
 }
 
-/* Of two parts of a band each one would wait for the other at all depths. So they have bands of both halves
- * of the picture: about as many rows of each. */
+/* If two parts had a band of rows each, one would wait for the other at all depths. So each part has bands of
+ * both halves of the picture, with about as many rows of each. */
 static void test_bands_at_depths(void **state) {
   (void)state;
   enum { PARTS = 2, HALF = TOGETHER_SIDE / 2 };
@@ -452,7 +454,7 @@ static void test_bands_at_depths(void **state) {
     }
 }
 
-/* A mesh of balls within the noise: there is matter in the dark behind them. */
+/* A mesh of balls stands in the noise, so that there is matter in their shadow. */
 static hl_mesh *add_balls(stage *set, hl_scene_mesh *balls) {
   static const float spheres[3][4] = {{0, 0, 0, 3}, {4, -5, 2, 2}, {-5, 3, -3, 2.5f}};
   hl_mesh_description d;
@@ -468,7 +470,7 @@ static hl_mesh *add_balls(stage *set, hl_scene_mesh *balls) {
   return made;
 }
 
-/* Soft shadows of methods whose parts need not talk to each other, with balls in the noise and without. */
+/* Soft shadows of the methods whose parts need not exchange light, with balls in the noise and without. */
 static void test_divided(void **state) {
   (void)state;
   static const hl_soft_method methods[] = {HL_SOFT_SUBLIGHTS, HL_SOFT_PAPER};
@@ -488,7 +490,8 @@ static void test_divided(void **state) {
     }
 }
 
-/* Lights take the cascade's memory in turn, and so does the next frame: each leaves it filled with zeros. */
+/* Lights use the cascade's memory in turn, and so does the next frame. Each light leaves the memory filled
+ * with zeros. */
 static void test_next_frame(void **state) {
   (void)state;
   static const struct {
@@ -543,7 +546,7 @@ static void test_refused(void **state) {
   stage_close(&set);
 }
 
-/* usage: sheets_strips [TESTS]: tests whose names match. */
+/* usage: sheets_strips [TESTS]: runs the tests whose names match. */
 int main(int count, char **arguments) {
   const struct CMUnitTest tests[] = {cmocka_unit_test(test_ways),
                                      cmocka_unit_test(test_light_of_part),

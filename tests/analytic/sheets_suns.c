@@ -1,6 +1,6 @@
-/* analytic/sheets_suns.c - a sun in the image of a sky: its light on surfaces and media, its shadow's width,
- * and its part of the sky's layers, against closed forms and the reference; what stays as it is without one.
- */
+/* analytic/sheets_suns.c - a sun in the image of a sky: its light on surfaces and media, the width of its
+ * shadow, and its part of the sky's layers, against closed forms and the reference. Pictures without a sun
+ * stay the same. */
 #include <stdlib.h>
 #include <string.h>
 
@@ -13,7 +13,7 @@ static const double DEGREE = HL_PI / 180, RADIUS = 3; /* degrees, of suns */
 
 static float image[WIDTH * HEIGHT * 3];
 
-/* Paints a sun, towards a direction with up along z, of this radiance; the sky around it is even. */
+/* Paints a sun of a radiance towards a direction, with `up` along z. The sky around it is even. */
 static void paint(vec3 towards, double radiance, double around) {
   enum { SUB = 8 };
   vec3 middle = vec3_normalise(towards);
@@ -58,8 +58,8 @@ static hl_scene_mesh quad(stage *set, vec3 centre, vec3 u, vec3 v) {
   return mesh;
 }
 
-/* A white plane gets radiance / pi times the integral of the cosine, pi sin^2 a cos b for a disk of half
- * angle a at the angle b, and has no highlight. */
+/* A disk of the half angle a at the angle b gives a white plane radiance / pi times the integral of the
+ * cosine, pi sin^2 a cos b. The plane has no highlight. */
 static void test_surface(void **state) {
   (void)state;
   static float pixels[PIXELS * 4];
@@ -79,14 +79,14 @@ static void test_surface(void **state) {
   }
 }
 
-/* p for light from a direction, into the eye at +z. */
+/* The phase function for light from a direction that is scattered into the eye at +z. */
 static double phase(double g, vec3 towards) {
   vec3 unit = vec3_normalise(towards);
   return (1 - g * g) / pow(1 + g * g + 2 * g * unit.z, 1.5);
 }
 
-/* Thin haze gets 1 / (4 pi) of the integral of the radiance, times its phase function's mean over the disk.
- */
+/* Thin haze gets 1 / (4 pi) of the integral of the radiance, times the mean of its phase function over the
+ * disk. */
 static void test_haze(void **state) {
   (void)state;
   static float pixels[PIXELS * 4];
@@ -112,8 +112,8 @@ static void test_haze(void **state) {
   }
 }
 
-/* A board 50 above a floor, below a sun at the zenith: at its edge the floor gets half of the sun, and beyond
- * the penumbra, 50 tan a to either side, all of it or nothing. */
+/* A board stands 50 above a floor, below a sun at the zenith. At its edge the floor gets half of the sun.
+ * Beyond the penumbra, which is 50 tan a wide on either side, it gets all of the sun or nothing. */
 static void test_penumbra(void **state) {
   (void)state;
   static float pixels[PIXELS * 4];
@@ -131,7 +131,8 @@ static void test_penumbra(void **state) {
   double full = 300 * pow(sin(RADIUS * DEGREE), 2);
   for (int x = 0; x < SIDE; x++) {
     double at = x + 0.5 - SIDE / 2, part = (double)pixels[4 * (SIDE / 2 * SIDE + x)] / full;
-    double t = fmin(fmax(at / wide, -1), 1); /* derived: of a disk's area, cut by a chord at -t */
+    /* derived: the fraction of a disk's area on one side of a chord at -t */
+    double t = fmin(fmax(at / wide, -1), 1);
     assert_near(part, 0.5 + (asin(t) + t * sqrt(1 - t * t)) / HL_PI, 0.04);
   }
   for (int m = 0; m < 2; m++) hl_mesh_release(meshes[m].mesh);
@@ -142,7 +143,7 @@ static void test_penumbra(void **state) {
 
 static const hl_opacity_point OPACITY[2] = {{0.3, 0}, {0.7, 0.9}};
 
-/* A ball above a plate, shaded as surfaces or as a medium, below a sun from the left. */
+/* A ball above a plate, as surfaces or as media, below a sun from the left. */
 static void open_scene(stage *set, hl_shading shading) {
   open_sky(set);
   paint((vec3){-0.8, -0.3, 0.7}, 300, 0.3);
@@ -168,8 +169,8 @@ static void render(stage *set, bool reference, picture *made) {
   stage_render_layers(set, reference ? &options : NULL, made->pixels, &wanted);
 }
 
-/* The root of the mean square of differences, where the reference shows something; layers that are not
- * divided by alpha are. */
+/* The root mean square difference over the pixels in which the reference shows anything. The layers compared
+ * are not divided by alpha. */
 static double deviation(const picture *of, const picture *exact, bool shadow) {
   double sum = 0, count = 0;
   for (int i = 0; i < PIXELS * 3; i++) {
@@ -184,12 +185,13 @@ static double deviation(const picture *of, const picture *exact, bool shadow) {
   return sqrt(sum / count);
 }
 
-/* Nearer to the reference, which takes the image as it is, than the image's light is without suns; the layers
- * of the sky, whose part the suns are. */
+/* With suns, the picture is nearer than without to the reference's, which uses the image as it is. So are the
+ * sky's layers, which contain the suns. */
 static void test_against_the_reference(void **state) {
   (void)state;
   static picture exact, with, without;
-  /* of light, and of the shadow; the outside of a surface is a place for the sky and a way for a light */
+  /* bars of the light and of its shadow: the sky is looked up at the outside of surfaces, and so is the light
+   */
   static const double bounds[2][2] = {{0.03, 0.045}, {0.006, 0.021}};
   for (int i = 0; i < 2; i++) {
     stage set;
@@ -207,8 +209,8 @@ static void test_against_the_reference(void **state) {
   }
 }
 
-/* The layer of the sky is the whole picture where there is no other light; with another light, whose sheets
- * are others, the sum of both is. */
+/* If there is no other light, the layer of the sky is the whole picture. If another light has other sheets,
+ * the sum of the layer and that light's is the picture. */
 static void test_layers(void **state) {
   (void)state;
   static picture made;
@@ -243,7 +245,7 @@ static void expect_same(stage *set, hl_sky *sky, bool same) {
   assert_int_equal(memcmp(with, without, sizeof with) == 0, same);
 }
 
-/* Pictures are what they were where the image has no sun, or lights cast no shadows. */
+/* If the image has no sun, or lights cast no shadows, pictures are the same as with suns off. */
 static void test_without(void **state) {
   (void)state;
   stage set;
@@ -289,9 +291,9 @@ static void test_same_bytes(void **state) {
   }
 }
 
-/* A renderer that keeps the sky's light shows what a new one shows when the image is turned, brightened, cut
- * at the horizon, and when the sun becomes none: because the sky says so, or because sheets are aligned with
- * the picture. */
+/* A renderer that keeps the sky's light makes the picture of a new renderer when the image is turned,
+ * brightened, or cut at the horizon; and when there is no sun any more, because the sky's setting says so or
+ * because sheets are aligned with the picture. */
 static void test_kept_light(void **state) {
   (void)state;
   static float kept[PIXELS * 4], fresh[PIXELS * 4];
@@ -316,7 +318,8 @@ static void test_kept_light(void **state) {
 
 /* ---- the scene ---- */
 
-/* The scene's own lights stay what they are: 256 of them, the most there may be, and a sun beside them. */
+/* The scene's own lights are not changed: 256 of them, which is the greatest number, and a sun beside them.
+ */
 static void test_description(void **state) {
   (void)state;
   enum { MOST = 256 };

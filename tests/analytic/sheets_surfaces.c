@@ -1,5 +1,5 @@
-/* analytic/sheets_surfaces.c - meshes among volumes: coverage, opacity, light and shadows with known answers.
- */
+/* analytic/sheets_surfaces.c - meshes among volumes: coverage, opacity, light and shadows, against closed
+ * forms. */
 #include <stdlib.h>
 #include <string.h>
 
@@ -18,15 +18,16 @@ static hl_scene_mesh *add_mesh(mesh_stage *all, const float (*positions)[3], siz
   return mesh_stage_describe(all, &d);
 }
 
-/* A rectangle about a centre with two half edges. */
+/* A rectangle around a centre. Two vectors lead from the centre to its edges. */
 static hl_scene_mesh *add_quad(mesh_stage *all, vec3 centre, vec3 u, vec3 v) {
   return mesh_stage_add(all, stage_make_quad(&all->set, centre, u, v));
 }
 
 /* ---- coverage ---- */
 
-/* Edges at odd fractions of pixels: a pixel's alpha is the fraction that the rectangle covers of it, to a
- * sixteenth a side, and no seam shows where the triangles meet. A pixel is half a unit wide. */
+/* A rectangle's edges lie at odd fractions of pixels. A pixel's alpha is the fraction of it that the
+ * rectangle covers, to a sixteenth for each side. No seam shows where its triangles meet. A pixel is half a
+ * unit wide. */
 static void test_coverage(void **state) {
   (void)state;
   static float pixels[PIXELS * 4];
@@ -50,7 +51,7 @@ static void test_coverage(void **state) {
   }
 }
 
-/* A board of many small triangles, oblique to the eye: every pixel within it has the board's own opacity. */
+/* A board of many small triangles, oblique to the eye. All pixels within it have the board's opacity. */
 static void test_no_seams(void **state) {
   (void)state;
   enum { N = 24 };
@@ -82,8 +83,8 @@ static void test_no_seams(void **state) {
 
 /* ---- matter before and behind ---- */
 
-/* A haze of flat colour with a black pane in its middle: the half before the pane is seen, and the other half
- * where the pane is clear. */
+/* A haze of one colour with a black pane in its middle. The half before the pane is seen, and the other half
+ * only through a transparent pane. */
 static void test_pane_in_haze(void **state) {
   (void)state;
   static float pixels[PIXELS * 4];
@@ -97,8 +98,8 @@ static void test_pane_in_haze(void **state) {
     haze->shading = HL_SHADING_FLAT;
     add_quad(&all, (vec3){0, 0, 0}, (vec3){6, 0, 0}, (vec3){0, 6, 0})->opacity = opacity;
     all.meshes[0].material.diffuse = 0;
-    if (k >= 4)
-      stage_add_directional(&all.set, (vec3){0.2, 0.3, 1}); /* from behind: sheets go back to front */
+    /* light from behind: sheets go from back to front */
+    if (k >= 4) stage_add_directional(&all.set, (vec3){0.2, 0.3, 1});
     stage_render_sheets(&all.set, pixels);
     double seen = 1 - half + half * (1 - opacity) * (1 - half), alpha = 1 - half * half * (1 - opacity);
     for (int y = SIDE / 2 - 8; y < SIDE / 2 + 8; y++)
@@ -114,7 +115,7 @@ static void test_pane_in_haze(void **state) {
 
 /* ---- light ---- */
 
-/* A board alone, tilted from facing the light to nearly along it, is evenly lit by N.L: it does not shade
+/* A board alone, at angles to the light up to nearly 90 degrees, is evenly lit by N.L. It does not shade
  * itself. */
 static void test_no_acne(void **state) {
   (void)state;
@@ -153,8 +154,8 @@ static void open_floor(mesh_stage *all) {
   all->set.scene.render.sheet_spacing = 1;
 }
 
-/* Asserts that a floor alone looks as it does without shadows: but for one pixel in a thousand to a
- * tolerance, everywhere to twice as much. kind: of the shadows. */
+/* Asserts that a floor alone looks as without shadows: to a tolerance in all pixels but one of a thousand,
+ * and to twice the tolerance in all. kind: of the shadows. */
 static void assert_no_acne(mesh_stage *floor, hl_light *light, int kind, double tolerance) {
   static float open[PIXELS * 4], pixels[PIXELS * 4];
   floor->set.scene.render.shadows = HL_SHADOWS_OFF;
@@ -173,8 +174,8 @@ static void assert_no_acne(mesh_stage *floor, hl_light *light, int kind, double 
   assert_true(off * 1000 <= seen);
 }
 
-/* Where a lamp's rays come from other sides than in its middle, look-ups move to where the floor is not met
- * yet. */
+/* At the sides, a lamp's rays come from other directions than in its middle. Look-ups move to places where
+ * the floor has not yet entered the buffer. */
 static void test_no_acne_under_lamps(void **state) {
   (void)state;
   for (int k = 0; k < 4; k++) {
@@ -187,8 +188,8 @@ static void test_no_acne_under_lamps(void **state) {
   }
 }
 
-/* Hard light from all sides and heights, to which the sheets stand aslant: a floor is as late as its look-ups
- * reach. */
+/* Hard light from all sides and heights, to which the sheets are slanted. The floor enters the buffer as late
+ * as its look-ups reach. */
 static void test_no_acne_at_slopes(void **state) {
   (void)state;
   for (int k = 0; k < 16; k++) {
@@ -202,7 +203,8 @@ static void test_no_acne_at_slopes(void **state) {
   }
 }
 
-/* A pane of opacity o between light and floor takes o of the light, in every method and colour. */
+/* A pane of the opacity o between a light and a floor absorbs the fraction o of the light, by every method
+ * and in every colour. */
 static void test_translucent_pane(void **state) {
   (void)state;
   static float pixels[PIXELS * 4];
@@ -225,16 +227,16 @@ static void test_translucent_pane(void **state) {
   }
 }
 
-/* The fraction of a disk of radius 1 on one side of a line at distance x from its middle. */
+/* The fraction of a disk of the radius 1 on one side of a line at the distance x from its middle. */
 static double disk_beyond(double x) {
   if (x <= -1) return 1;
   if (x >= 1) return 0;
   return (acos(x) - x * sqrt(1 - x * x)) / HL_PI;
 }
 
-/* An edge at height 12 above a floor, under a light of 20 degrees: the penumbra is the fraction of the
- * light's disk that is seen past the edge. The paper's method is not asked: its penumbrae have another width.
- */
+/* An edge at the height 12 above a floor, under a light of 20 degrees. In the penumbra the floor gets the
+ * fraction of the light's disk that is seen past the edge. The paper's method is not tested, since its
+ * penumbrae have another width. */
 static void test_penumbra(void **state) {
   (void)state;
   static float pixels[PIXELS * 4];
@@ -246,7 +248,8 @@ static void test_penumbra(void **state) {
     mesh_stage all;
     open_meshes(&all);
     add_quad(&all, (vec3){0, 0, -6}, (vec3){15.5, 0, 0}, (vec3){0, 15.5, 0});
-    add_quad(&all, (vec3){-15, 0, 6}, (vec3){15, 0, 0}, (vec3){0, 40, 0})->visible = 0; /* its edge: x = 0 */
+    /* the edge lies at x = 0 */
+    add_quad(&all, (vec3){-15, 0, 6}, (vec3){15, 0, 0}, (vec3){0, 40, 0})->visible = 0;
     mesh_stage_choose_shadows(&all, stage_add_directional(&all.set, (vec3){0, 0, -1}), cases[k].kind,
                               cases[k].angle);
     stage_render_sheets(&all.set, pixels);
@@ -264,8 +267,8 @@ static void test_penumbra(void **state) {
   }
 }
 
-/* A volume's shadow on a mesh: behind a box of haze a floor has the light that the haze lets through. And a
- * mesh's shadow in a volume: below an opaque pane haze is dark. */
+/* A volume's shadow on a mesh: behind a box of haze, a floor has the light that the haze lets through. A
+ * mesh's shadow in a volume: below an opaque pane, haze is dark. */
 static void test_volume_and_mesh(void **state) {
   (void)state;
   static float pixels[PIXELS * 4];
@@ -292,7 +295,7 @@ static void test_volume_and_mesh(void **state) {
 
 /* ---- invariance ---- */
 
-/* Two boards, one of them translucent, and a sphere in a haze that reaches so far from the middle. */
+/* Two boards, one of them translucent, and a sphere in a haze. reach: the haze's size from the middle. */
 static void add_scenery(mesh_stage *all, double reach) {
   add_quad(all, (vec3){0, 0, -6}, (vec3){14, 2, 1}, (vec3){-2, 14, 3});
   add_quad(all, (vec3){2, 1, 3}, (vec3){5, 1, 3}, (vec3){-1, 6, -2})->opacity = 0.6;
@@ -321,7 +324,7 @@ static void test_threads_and_instruction_sets(void **state) {
     }
 }
 
-/* Changes between the frames of one renderer, which keeps what it can. */
+/* A change of the scene between the frames of one renderer, which keeps what it can. */
 static void change(mesh_stage *all, int step) {
   hl_scene_mesh *board = &all->meshes[0], *pane = &all->meshes[1];
   if (step == 1) stage_look(&all->set, (vec3){-35, -40, 40}, (vec3){0, 0, 0}, (vec3){0, 0, 1});
@@ -337,7 +340,7 @@ static void change(mesh_stage *all, int step) {
   board->mesh = stage_make_quad(&all->set, (vec3){1, 0, -6}, (vec3){12, 2, 1}, (vec3){-2, 9, 3});
 }
 
-/* After each change a renderer that has drawn other frames gives the bytes of a fresh one. */
+/* After each change, a renderer that has drawn other frames makes the bytes of a new one. */
 static void test_kept_between_frames(void **state) {
   (void)state;
   static float fresh[PIXELS * 4], kept[PIXELS * 4], before[PIXELS * 4];
@@ -360,7 +363,7 @@ static void test_kept_between_frames(void **state) {
   mesh_stage_close(&all);
 }
 
-/* Hard shadows against the reference, which has sixteen rays a pixel. */
+/* Hard shadows beside the reference, which has sixteen rays for each pixel. */
 static void test_against_the_reference(void **state) {
   (void)state;
   static float sheets[PIXELS * 4], exact[PIXELS * 4];
@@ -370,7 +373,7 @@ static void test_against_the_reference(void **state) {
   options.step = 2; /* the haze is even */
   mesh_stage all;
   open_meshes(&all);
-  add_scenery(&all, 60); /* the edges of volumes are not antialiased */
+  add_scenery(&all, 60); /* edges of volumes are not antialiased, and are left out */
   mesh_stage_choose_shadows(&all, &all.set.lights[0], 0, 0);
   all.set.scene.width = all.set.scene.height = SIDE / 2;
   stage_render_sheets(&all.set, sheets);
@@ -397,8 +400,8 @@ static hl_scene_mesh *add_round(mesh_stage *all, const float (*spheres)[4], size
   return mesh_stage_describe(all, &d);
 }
 
-/* Spheres at odd fractions of pixels cover the disks that they are, whether the sheets are level or slanted,
- * and translucent ones take light at the front and at the back. */
+/* Spheres at odd fractions of pixels cover the area of their disks, with level and slanted sheets.
+ * Translucent spheres absorb light at the front and at the back. */
 static void test_sphere_coverage(void **state) {
   (void)state;
   static float pixels[PIXELS * 4];
@@ -423,8 +426,8 @@ static void test_sphere_coverage(void **state) {
   }
 }
 
-/* A sphere under a distant light is lit by N.L on one side of the terminator and dark on the other, in every
- * method: its own shadow neither reaches over the terminator nor leaves light behind it. */
+/* Under a distant light, a sphere is lit by N.L on one side of the terminator and dark on the other, by every
+ * method. Its own shadow does not cross the terminator, and no light is left behind it. */
 static void test_terminator(void **state) {
   (void)state;
   static float pixels[PIXELS * 4];
@@ -440,7 +443,7 @@ static void test_terminator(void **state) {
     for (int i = 0; i < PIXELS; i++) {
       double x = (i % SIDE + 0.5 - SIDE / 2) * 0.5, y = -(i / SIDE + 0.5 - SIDE / 2) * 0.5,
              z = sqrt(fmax(144 - x * x - y * y, 0));
-      if (x * x + y * y > 11.4 * 11.4) continue; /* the silhouette is antialiased */
+      if (x * x + y * y > 11.4 * 11.4) continue; /* the silhouette is antialiased, and is left out */
       double cosine = vec3_dot((vec3){x / 12, y / 12, z / 12}, towards);
       assert_near((double)pixels[4 * i], fmax(cosine, 0), cosine > 0.25 ? 0.012 : 0.05);
       lit += cosine > 0;
@@ -451,8 +454,8 @@ static void test_terminator(void **state) {
   }
 }
 
-/* A bent tube seen from above covers its length times its width, without a gap or a doubled part at the bend:
- * all of it has the opacity of its two sides. */
+/* A bent tube, seen from above, covers its length times its width. At the bend there is no gap, and no part
+ * counts twice: all of it has the opacity of the tube's two sides. */
 static void test_tube(void **state) {
   (void)state;
   static float pixels[PIXELS * 4];
@@ -467,13 +470,13 @@ static void test_tube(void **state) {
       assert_true((double)pixels[4 * i + 3] < taken + 1e-5);
       sum += (double)pixels[4 * i + 3] * 0.25;
     }
-    double length = 10 + sqrt(36 + 100); /* both ends are half of a polygon in a disk of radius 2 */
+    double length = 10 + sqrt(36 + 100); /* each end is half of a polygon in a disk of the radius 2 */
     assert_near(sum / taken, length * 4 + HL_PI * 4, 2);
     mesh_stage_close(&all);
   }
 }
 
-/* A red pane colours the light that passes it, in every method; the floor behind it is red. */
+/* A red pane colours the light that passes it, by every method, so that the floor behind it is red. */
 static void test_colored_pane(void **state) {
   (void)state;
   static float pixels[PIXELS * 4];
@@ -484,7 +487,7 @@ static void test_colored_pane(void **state) {
     for (int pane = 0; pane < 2; pane++) {
       hl_scene_mesh *mesh = add_quad(&all, (vec3){0, 0, 4 + 0.1 * pane}, (vec3){12, 0, 0}, (vec3){0, 12, 0});
       mesh->visible = 0;
-      mesh->opacity = pane == 0 ? 0.5 : 1; /* opaque, but for red */
+      mesh->opacity = pane == 0 ? 0.5 : 1; /* the second pane is opaque in all colours but red */
       memcpy(mesh->attenuation_color, (double[3]){0, 0.2 + 0.3 * pane, 1}, sizeof mesh->attenuation_color);
     }
     mesh_stage_choose_shadows(&all, stage_add_directional(&all.set, (vec3){0, 0, -1}), k, 5);
@@ -497,7 +500,7 @@ static void test_colored_pane(void **state) {
   }
 }
 
-/* A cube of triangles about the middle, with this half edge. */
+/* A cube of triangles around the middle. half: of its edge. */
 static hl_scene_mesh *add_cube(mesh_stage *all, double half) {
   static const uint32_t faces[12][3] = {{0, 2, 1}, {1, 2, 3}, {4, 5, 6}, {5, 7, 6}, {0, 1, 4}, {1, 5, 4},
                                         {2, 6, 3}, {3, 6, 7}, {0, 4, 2}, {2, 4, 6}, {1, 3, 5}, {3, 7, 5}};
@@ -507,9 +510,9 @@ static hl_scene_mesh *add_cube(mesh_stage *all, double half) {
   return add_mesh(all, (const float(*)[3])corners, 8, faces, 12);
 }
 
-/* A cube of triangles and an opaque box of a volume: the same silhouettes, and the same shadow on a floor, in
- * every method. Under the cascade the box keeps some light in its umbra: the cube's shadow is held against
- * that by sub-lights. */
+/* A cube of triangles and an opaque box of a volume have the same silhouettes and the same shadow on a floor,
+ * by every method. In the cascade's umbra of the box some light is left, so that the cascade's shadow of the
+ * cube is compared with the shadow of the box by sub-lights. */
 static void test_cube_and_box(void **state) {
   (void)state;
   static float cube[PIXELS * 4], box[PIXELS * 4];
@@ -551,7 +554,7 @@ static void test_cube_and_box(void **state) {
     }
 }
 
-/* A scene of meshes alone is the scene that it is beside a clear volume. */
+/* A scene of meshes alone gives the same picture as the meshes beside a transparent volume. */
 static void test_no_volume(void **state) {
   (void)state;
   static float alone[PIXELS * 4];

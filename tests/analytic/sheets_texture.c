@@ -1,5 +1,5 @@
-/* analytic/sheets_texture.c - where projected images and cones of light fall, how bright and how far, against
- * closed forms. */
+/* analytic/sheets_texture.c - projected images and cones of light: where they fall, how bright they are and
+ * how far they reach, against closed forms. */
 #include <stdlib.h>
 
 #include "../asserts.h"
@@ -7,7 +7,8 @@
 
 enum { SIDE = 96, FINE = 1024 };
 
-/* count x count pixels of squares pixels a side, black and white; white in the top left corner. */
+/* A checkerboard of count x count pixels, in squares of `squares` pixels, with white in the upper left
+ * corner. */
 static float *checker(int count, int squares) {
   float *pixels = malloc((size_t)count * (size_t)count * 3 * sizeof *pixels);
   assert_non_null(pixels);
@@ -16,7 +17,7 @@ static float *checker(int count, int squares) {
   return pixels;
 }
 
-/* An opaque floor with its surface at z = 0, seen from straight above in pixels of a quarter. */
+/* An opaque floor with its surface at z = 0, seen from straight above. A pixel is a quarter of a unit. */
 static void stage_floor(stage *set) {
   hl_scene_volume *floor = stage_add_grid(set, (size_t[3]){40, 40, 2}, (double[3]){1, 1, 1},
                                           (vec3){-20, -20, -2}, NULL);
@@ -27,8 +28,8 @@ static void stage_floor(stage *set) {
   set->scene.render.shadows = HL_SHADOWS_OFF;
 }
 
-/* Where brightness first passes one half after a place; world coordinate along a row or column of the floor's
- * picture. */
+/* The place at which brightness first passes one half after another place; in world units, along a row or
+ * column of the floor's picture. */
 static double edge_after(const float *first, int step, double from) {
   for (int i = 0; i + 1 < SIDE; i++) {
     double at = -12 + (i + 0.5) * 0.25, a = first[4 * i * step], b = first[4 * (i + 1) * step];
@@ -37,8 +38,8 @@ static double edge_after(const float *first, int step, double from) {
   return INFINITY;
 }
 
-/* Parallel light at 30 degrees to the floor's normal, the screen across it: squares keep their width along y
- * and are longer by 1 / cos 30 along x. */
+/* Parallel light meets the floor at 30 degrees to the normal, the screen lies across the light. Squares keep
+ * their width along y, and are longer by 1 / cos 30 along x. */
 static void test_checker_at_30_degrees(void **state) {
   (void)state;
   static float pixels[SIDE * SIDE * 4];
@@ -58,20 +59,20 @@ static void test_checker_at_30_degrees(void **state) {
       assert_near(edge_after(&pixels[4 * SIDE * 44], 1, x - 0.9), x, 0.125);
       assert_near(edge_after(&pixels[4 * 44], SIDE, y - 0.9), y, 0.125);
     }
-    /* beside the screen it is dark, two pixels from its edge */
+    /* the floor is dark beside the screen, from two pixels beyond its edge */
     int outside = (int)floor((-8 / c + 12) / 0.25) - 2, sum = 0;
     for (int y = 0; y < SIDE; y++) {
       assert_true(pixels[4 * (SIDE * y + outside)] == 0);
       sum += pixels[4 * (SIDE * y + outside + 4)] > 0.99f;
     }
-    assert_in_range(sum, 30, 32); /* of the screen's 64 rows half are white there */
+    assert_in_range(sum, 30, 32); /* half of the screen's 64 rows are white there */
   }
   stage_close(&set);
   free(image);
 }
 
-/* A point light above the floor: an edge at height h of the screen falls H / (H - h) as far out. Above itself
- * the same light gives nothing through its screen. */
+/* Under a point light above the floor, an edge at the height h of the screen falls H / (H - h) as far out.
+ * The light shines through its screen alone, so that nothing above it is lit. */
 static void test_point_light_through_a_screen(void **state) {
   (void)state;
   static float pixels[SIDE * SIDE * 4];
@@ -100,9 +101,9 @@ static void test_point_light_through_a_screen(void **state) {
   free(image);
 }
 
-/* An image finer than the picture is its mean there, at any angle. Over the 3.2 pixels a side that are
- * averaged here, single pixels of -1 and 1 leave at most 1 / 3.2 along a row, and 1 / 3.2^2 of the half
- * between black and white: 0.05. */
+/* If an image is finer than the picture, a pixel shows the image's mean, at any angle. A pixel averages
+ * over 3.2 pixels a side. Image pixels of -1 and 1 leave at most 1 / 3.2 along a row, so that the mean
+ * deviates by 1 / 3.2^2 of half of the contrast, 0.05. */
 static void test_fine_images_are_averaged(void **state) {
   (void)state;
   static float pixels[SIDE * SIDE * 4];
@@ -122,8 +123,8 @@ static void test_fine_images_are_averaged(void **state) {
   free(image);
 }
 
-/* Three beams of one colour each cross a translucent cube seen from the side: without attenuation what comes
- * out is what went in, with it exp(-sigma way) of that. */
+/* Three beams of one colour each cross a translucent cube, seen from the side. Without attenuation all light
+ * comes out. With attenuation exp(-sigma way) of it does. */
 static void test_beams_through_a_cube(void **state) {
   (void)state;
   static float pixels[SIDE * SIDE * 4];
@@ -145,9 +146,9 @@ static void test_beams_through_a_cube(void **state) {
   for (int shadows = HL_SHADOWS_OFF; shadows <= HL_SHADOWS_HARD; shadows++) {
     set.scene.render.shadows = (hl_shadows)shadows;
     stage_render_sheets(&set, pixels);
-    int first = 12, last = 83; /* pixels more than a slab inside the cube's faces */
+    int first = 12, last = 83; /* pixels that are more than a slab within the cube's faces */
     for (int beam = 0; beam < 3; beam++) {
-      /* the beam's middle: rows 15, 35 and 55 of the image, a quarter of a unit each, as the picture's */
+      /* the beam's middle: row 15, 35 or 55 of the image; a row is a quarter of a unit high, as a pixel is */
       int y = (int)((12 - (8.75 - (15 + 20 * beam) * 0.25)) / 0.25);
       const float *entry = &pixels[4 * (SIDE * y + first)], *exit = &pixels[4 * (SIDE * y + last)];
       double passed = shadows == HL_SHADOWS_OFF ? 1 : exp(-sigma * (last - first) * 0.25);
@@ -165,8 +166,8 @@ static void test_beams_through_a_cube(void **state) {
   stage_close(&set);
 }
 
-/* A tilted cone on the floor: brightness is the smooth step of the cosine to the axis at every pixel, with
- * shadows or without, and nothing outside. */
+/* A tilted cone on the floor. Each pixel's brightness is the smooth step of the cosine to the axis, with
+ * shadows and without. Outside of the cone there is no light. */
 static void test_spot_light(void **state) {
   (void)state;
   static float pixels[SIDE * SIDE * 4];
@@ -193,15 +194,15 @@ static void test_spot_light(void **state) {
 
 /* ---- extended lights ---- */
 
-/* Part of a disk of radius 1 on the side u < s. */
+/* The fraction of a disk of radius 1 that has u < s. */
 static double disk_below(double s) {
   if (s <= -1) return 0;
   if (s >= 1) return 1;
   return 0.5 + (s * sqrt(1 - s * s) + asin(s)) / HL_PI;
 }
 
-/* Brightness along the floor's middle row is the part of the light's disk that is seen past the screen's edge
- * at `edge`, where the disk is 2 radius wide on the floor. */
+/* The brightness along the floor's middle row is the fraction of the light's disk that is seen past the
+ * screen's edge, which falls at `edge`. The disk is 2 radius wide on the floor. */
 static void check_screen_edge(stage *set, double edge, double radius) {
   static float pixels[SIDE * SIDE * 4];
   double worst = 0;
@@ -212,13 +213,13 @@ static void check_screen_edge(stage *set, double edge, double radius) {
       worst = fmax(worst, fabs((double)pixels[4 * (SIDE * 48 + x)] - disk_below((at - edge) / radius)));
   }
   print_message("# screen's edge, penumbra %.2f: at most %.4f off the disk's\n", 2 * radius, worst);
-  /* narrow edges are a box's of the disk's variance: 0.5 + (0.866 / 2 + asin 0.866) / pi - 1 = 0.029 off at
-   * most; no edge is sharper than a pixel, 0.25 wide */
+  /* A narrow edge has the profile of a box of the disk's variance, which deviates by at most 0.5 + (0.866 / 2
+   * + asin 0.866) / pi - 1 = 0.029. No edge is sharper than a pixel, which is 0.25 wide. */
   if (2 * radius > 0.3) assert_near(worst, 0, 0.029);
 }
 
-/* The screen as an occluder: its penumbra is the light's disk, scaled by eq. (5), for parallel and near
- * lights. */
+/* The screen's edge has a penumbra: the light's disk, scaled by equation (5), for parallel and near lights.
+ */
 static void test_screen_edge_of_extended_lights(void **state) {
   (void)state;
   const float white[3] = {1, 1, 1};
@@ -251,7 +252,7 @@ static uint64_t tiles_filled_for_light(stage *set) {
   return stage_render_counted(set, pixels).tiles_filled_light;
 }
 
-/* No pixels of the shadow buffer where the screen or the cone leaves the volume dark. */
+/* If the screen or the cone leaves the volume dark, no pixels of the shadow buffer are computed. */
 static void test_the_shadow_buffer_follows_what_is_lit(void **state) {
   (void)state;
   const float white[3] = {1, 1, 1};

@@ -1,7 +1,6 @@
-/* analytic/sheets_transport.c - the sheets against closed forms of absorption, emission and shadow.
- *
- * The same questions as reference_transport.c asks of the reference, here of the renderer: pictures of
- * homogeneous boxes, whose every ray has a known value. */
+/* analytic/sheets_transport.c - the sheets, against closed forms of absorption, emission and shadow.
+ * reference_transport.c tests the reference in the same way. The scenes are homogeneous boxes, for which the
+ * value of each ray is known. */
 #include <string.h>
 
 #include "../asserts.h"
@@ -9,7 +8,8 @@
 
 enum { SIDE = 48, PIXELS = SIDE * SIDE };
 
-/* Of full scale: what a renderer in float with tables of 4096 entries must reach on homogeneous boxes. */
+/* The bar for homogeneous boxes, as a fraction of full brightness: a renderer with floats and tables of 4096
+ * entries must reach it. */
 static const double TIGHT = 1e-3;
 
 static double transmittance(double opacity, double unit, double distance) {
@@ -29,8 +29,8 @@ static hl_scene_volume *stage_homogeneous(stage *set) {
   return box;
 }
 
-/* The ray of pixel (x, y) in the box's own place, before the volume's transform; the parameter stays world
- * length. */
+/* The ray of the pixel (x, y) in the box's own space, before the volume's transform. Its parameter is still a
+ * length in the world. */
 static void local_ray(const stage *set, int x, int y, vec3 *origin, vec3 *direction) {
   const hl_scene_volume *volume = &set->volumes[0];
   stage_eye_ray(set, x, y, origin, direction);
@@ -47,7 +47,7 @@ static double chord_of_pixel(const stage *set, int x, int y) {
   return stage_chord(BOX_LOW, BOX_HIGH, origin, direction);
 }
 
-/* Alpha of every pixel, silhouettes included: rays know where they enter and leave the box. */
+/* Alpha is tested in all pixels, silhouettes included, since rays know where they enter and leave the box. */
 static void check_alpha(stage *set) {
   static float pixels[PIXELS * 4];
   int hits = 0;
@@ -61,8 +61,8 @@ static void check_alpha(stage *set) {
   assert_true(hits > 300);
 }
 
-/* No light, and light from behind, before, the side and askew: the eye must see the same opacity through any
- * sheets. */
+/* There is no light, or the light comes from behind, from the front, from the side or obliquely. The eye must
+ * see the same opacity, whatever sheets follow from the light. */
 static void check_alpha_through_all_sheets(stage *set) {
   static const vec3 lights[] = {{0, 0, -1}, {0, 0, 1}, {1, 0, 0}, {0.5, -1, 0.3}};
   static const double spacings[] = {0.5, 1, 2};
@@ -140,8 +140,8 @@ static void test_alpha_of_oblique_grid(void **state) {
 
 /* ---- emission: integral of sigma exp(-tau_eye) exp(-tau_light) ds along the ray ---- */
 
-/* Simpson's rule over the ray's way through the box, the light's way in at each point by stage_chord(). Far
- * finer than what it judges. deepest: the longest way in. */
+/* The integral along the ray's way through the box by Simpson's rule, with stage_chord() for the light's way
+ * to each point. The steps are far finer than the sheets. deepest: the longest way of the light. */
 static double lit_brightness(vec3 origin, vec3 direction, vec3 light, double *deepest) {
   enum { STEPS = 400 };
   *deepest = 0;
@@ -149,7 +149,7 @@ static double lit_brightness(vec3 origin, vec3 direction, vec3 light, double *de
   if (chord == 0) return 0;
   double enter = stage_chord((vec3){-1e3, -1e3, -1e3}, (vec3){1e3, 1e3, 1e3}, origin, direction), low = 0,
          high = enter;
-  for (int i = 0; i < 80; i++) { /* the last parameter from which the whole chord still lies ahead */
+  for (int i = 0; i < 80; i++) { /* the last parameter at which the whole chord lies ahead */
     double middle = (low + high) / 2;
     vec3 start = vec3_add(origin, vec3_scale(direction, middle));
     if (stage_chord(BOX_LOW, BOX_HIGH, start, direction) >= chord * (1 - 1e-12)) low = middle;
@@ -165,7 +165,7 @@ static double lit_brightness(vec3 origin, vec3 direction, vec3 light, double *de
   return SIGMA * sum * chord / STEPS / 3;
 }
 
-/* Away from silhouettes: all eight neighbours hit the box too. */
+/* Pixels are away from silhouettes if the rays of all eight neighbours meet the box, too. */
 static bool well_inside(const stage *set, int x, int y) {
   for (int j = y - 1; j <= y + 1; j++)
     for (int i = x - 1; i <= x + 1; i++)
@@ -185,7 +185,7 @@ static void check_lit(stage *set, vec3 light) {
       stage_eye_ray(set, x, y, &origin, &direction);
       double deepest, expected = lit_brightness(origin, direction, light, &deepest);
       double error = fabs(pixels[4 * (y * SIDE + x)] - expected);
-      if (deepest < slab) /* the ray runs along a lit face, within the slabs that light enters in */
+      if (deepest < slab) /* the ray runs along a lit face, within the slabs in which the light enters */
         worst_below_face = fmax(worst_below_face, error);
       else worst = fmax(worst, error);
       hits++;
@@ -195,10 +195,10 @@ static void check_lit(stage *set, vec3 light) {
   assert_near(worst_below_face, 0, 0.015);
 }
 
-/* The three ways that have a formula of their own, in the middle of the box: d the depth, z from the eye's
- * side. light with the view:     int sigma exp(-2 sigma z) dz = (1 - exp(-2 sigma d)) / 2 light against the
- * view:  int sigma exp(-sigma z) exp(-sigma (d - z)) dz = sigma d exp(-sigma d) light across the view:
- * exp(-sigma x) (1 - exp(-sigma d)), x the depth below the lit face */
+/* In the middle of the box, three directions of light have a formula. d: the depth of the box; z: the
+ * distance from the eye's side. Light with the view: int sigma exp(-2 sigma z) dz = (1 - exp(-2 sigma d))
+ * / 2. Light against the view: int sigma exp(-sigma z) exp(-sigma (d - z)) dz = sigma d exp(-sigma d). Light
+ * across the view, at the depth x below the lit face: exp(-sigma x) (1 - exp(-sigma d)). */
 static void test_lit_along_axes(void **state) {
   (void)state;
   static const double spacings[] = {0.5, 1, 2}, across[] = {0.005, 0.01, 0.035};
@@ -225,14 +225,15 @@ static void test_lit_along_axes(void **state) {
     for (int x = 0; x < SIDE; x++) {
       double below = (x + 0.5) * 14 / SIDE - 7 - BOX_LOW.x;
       if (below < spacings[s] * sqrt(2) || below > BOX_HIGH.x - BOX_LOW.x)
-        continue; /* the slabs that light enters in */
+        continue; /* the slabs in which the light enters */
       assert_near(row[4 * x], exp(-SIGMA * below) * (1 - exp(-SIGMA * depth)), across[s]);
     }
   }
   stage_close(&set);
 }
 
-/* Within half a per cent of full scale. The boxes' faces cut slabs and shadow pixels: both are fine here. */
+/* The picture is right to half a per cent of full brightness. The box's faces cut slabs and pixels of the
+ * shadow buffer, so that both are fine here. */
 static void check_lit_from_everywhere(stage *set, int resolution) {
   static const vec3 lights[] = {{0, 0, -1},     {0, 0, 1},          {1, 0, 0},     {0, -1, 0},
                                 {0.6, 0, -0.8}, {0.48, -0.64, 0.6}, {-0.6, 0.8, 0}};
@@ -288,8 +289,9 @@ static void test_empty_function_gives_zero(void **state) {
   stage_close(&set);
 }
 
-/* A half-transparent block between the light and an opaque wall, both seen from +z; light along +x, the
- * wall's face at x = 2. The block rises above the wall, whose surface so lies well within its shadow. */
+/* A half-transparent block stands between the light and an opaque wall, and the eye sees both from +z. Light
+ * travels along +x, and the wall's face lies at x = 2. The block is higher than the wall, so that the wall's
+ * surface lies well within its shadow. */
 static void stage_block_and_wall(stage *set, hl_scene_volume **block, hl_scene_volume **wall) {
   *wall = stage_add_grid(set, (size_t[3]){4, 8, 8}, (double[3]){1, 1, 1}, (vec3){2, -4, -4}, NULL);
   *block = stage_add_grid(set, (size_t[3]){2, 8, 9}, (double[3]){1, 1, 1}, (vec3){-3, -4, -4}, NULL);
@@ -303,7 +305,8 @@ static void stage_block_and_wall(stage *set, hl_scene_volume **block, hl_scene_v
   stage_add_directional(set, (vec3){1, 0, 0});
 }
 
-/* Brightness of the wall, which is opaque and so shows its own light alone, and of the block. */
+/* The brightness of the wall, which is opaque and so shows its own light alone, and the brightness of the
+ * block. */
 static void look_at_both(stage *set, float block[4], float wall[4]) {
   static float pixels[PIXELS * 4];
   stage_render_sheets(set, pixels);
@@ -344,7 +347,8 @@ static void test_flags(void **state) {
   stage_close(&set);
 }
 
-/* A block that attenuates green and blue alone, blue twice as much: three transmittances. */
+/* A block absorbs green and blue, and blue twice as much, so that the three channels have other
+ * transmittances. */
 static void test_attenuation_color(void **state) {
   (void)state;
   stage set;
@@ -373,7 +377,8 @@ static double greatest_difference(const float *a, const float *b) {
   return worst;
 }
 
-/* Lights add: two of half the strength are one, and ambient counts once, however many sweeps there are. */
+/* Lights add up: two lights of half the strength give the light of one. Ambient light counts once, however
+ * many sweeps there are. */
 static void test_half_lights_add(void **state) {
   (void)state;
   static float one[PIXELS * 4], two[PIXELS * 4], left[PIXELS * 4], right[PIXELS * 4];
@@ -402,7 +407,7 @@ static void test_half_lights_add(void **state) {
   stage_close(&set);
 }
 
-/* Extinctions add: twice the opacity o over a unit is once 1 - (1 - o)^2. */
+/* Extinctions add up: the opacity o over a unit, twice, is the opacity 1 - (1 - o)^2, once. */
 static void test_overlapping_twins(void **state) {
   (void)state;
   static float one[PIXELS * 4], two[PIXELS * 4];

@@ -1,5 +1,5 @@
-/* analytic/sheets_umbrae.c - floors below things of triangles or spheres: dark where these hide all of a soft
- * light, without streaks and rings, and as bright as the part of a wide light that they leave. */
+/* analytic/sheets_umbrae.c - floors below triangles or spheres. They are dark where these hide all of a soft
+ * light, without streaks and rings, and else as bright as the part of the light that is not hidden. */
 #include <string.h>
 
 #include "../asserts.h"
@@ -7,10 +7,11 @@
 
 enum { SIDE = 128, PIXELS = SIDE * SIDE, RIM = 32, LARGE_SIDE = 384, DISK = 600 };
 
-static const double FLOOR = -6, FLOOR_EDGE = 60, WIDE = 48; /* WIDE: the height that the picture shows */
+/* WIDE: the height of the picture in world units */
+static const double FLOOR = -6, FLOOR_EDGE = 60, WIDE = 48;
 static const vec3 EYE = {60, -90, 50};
 
-/* Directions to points of the light's rim, seen from anywhere. */
+/* Finds the directions to points of the light's rim. */
 static void find_rim(vec3 travels, double angle_deg, vec3 rim[RIM]) {
   vec3 towards = vec3_normalise(vec3_scale(travels, -1)),
        u = vec3_normalise(vec3_cross(towards, (vec3){0, 1, 0})), v = vec3_cross(towards, u);
@@ -22,12 +23,13 @@ static void find_rim(vec3 travels, double angle_deg, vec3 rim[RIM]) {
   }
 }
 
-/* What hides the light: a rectangle about a centre, or a sphere. */
+/* An occluder: a rectangle around a centre, or a sphere. */
 typedef struct hider {
   vec3 centre, u, v;
   double radius; /* 0: the rectangle */
-  double dome;   /* above 0: what hides is a dome of triangles of this radius, over the rectangle */
-  const struct hider *before; /* borrowed; hides a part of the light from this one; null: nothing does */
+  double dome;   /* if above 0, the occluder is a dome of triangles of this radius over the rectangle */
+  /* another occluder that hides a part of the light from this one; borrowed; may be null */
+  const struct hider *before;
 } hider;
 
 static bool is_hit(const hider *by, vec3 from, vec3 way) {
@@ -42,7 +44,7 @@ static bool is_hit(const hider *by, vec3 from, vec3 way) {
          fabs(vec3_dot(at, by->v)) < vec3_dot(by->v, by->v);
 }
 
-/* The point of the floor that the eye sees at (column, row), counted from the middle, of a picture of side x
+/* The point of the floor that the eye sees at (column, row), counted from the middle of a picture of side x
  * side pixels. */
 static vec3 on_floor(double column, double row, int side) {
   vec3 way = vec3_normalise(vec3_scale(EYE, -1)), right = vec3_normalise(vec3_cross(way, (vec3){0, 0, 1})),
@@ -51,8 +53,8 @@ static vec3 on_floor(double column, double row, int side) {
   return vec3_add(at, vec3_scale(way, (FLOOR - at.z) / way.z));
 }
 
-/* The light that is left in the umbra, a pixel within: the greatest, and the mean. What hides the light is
- * convex and so hides it all where it hides its rim. */
+/* The light that is left in the umbra, at least a pixel within: the greatest, and the mean. The occluder is
+ * convex, so that it hides all of the light where it hides the light's rim. */
 static void find_leaks(const float *pixels, const hider *by, const vec3 rim[RIM], double *greatest,
                        double *mean) {
   double sum = 0;
@@ -83,7 +85,7 @@ static hl_scene_mesh *add_sphere(mesh_stage *all, vec3 centre, double radius) {
   return mesh_stage_describe(all, &d);
 }
 
-/* The upper half of a ball of triangles, some pixels large each. */
+/* The upper half of a ball of triangles that are some pixels large. */
 static hl_scene_mesh *add_dome(mesh_stage *all, vec3 centre, double radius) {
   enum { RINGS = 16, ROUND = 64 };
   static float positions[(RINGS + 1) * ROUND][3];
@@ -107,15 +109,15 @@ static hl_scene_mesh *add_dome(mesh_stage *all, vec3 centre, double radius) {
   return mesh_stage_describe(all, &d);
 }
 
-/* Adds what hides the light. */
+/* Adds an occluder to the scene. */
 static hl_scene_mesh *add_hider(mesh_stage *all, const hider *by) {
   if (by->dome > 0) return add_dome(all, by->centre, by->dome);
   if (by->radius > 0) return add_sphere(all, by->centre, by->radius);
   return mesh_stage_add(all, stage_make_quad(&all->set, by->centre, by->u, by->v));
 }
 
-/* A floor of light 1 where nothing hides it, and the sheets slanted against what hides it. pixels:
- * [side][side][4]. */
+/* Renders a floor that has the light 1 where nothing hides it. The sheets are slanted against the occluder.
+ * pixels: [side][side][4]. */
 static void render_floor(const hider *by, vec3 travels, double angle, hl_soft_method method, int side,
                          float *pixels) {
   mesh_stage all;
@@ -141,8 +143,8 @@ static void measure(const hider *by, double angle, hl_soft_method method, double
   find_leaks(pixels, by, rim, greatest, mean);
 }
 
-/* A rectangle close above the floor, level or tilted against it: the pieces of its shadow that fall into
- * different chunks of the cascade leave no line between them. */
+/* A rectangle close above the floor, parallel to it or tilted. Pieces of its shadow fall into different
+ * chunks of the cascade. No line of light shows between them. */
 static void test_rectangle(void **state) {
   (void)state;
   for (int k = 0; k < 6; k++) {
@@ -154,8 +156,8 @@ static void test_rectangle(void **state) {
   }
 }
 
-/* A board above the floor, of which another, above it, hides a half: the second one's penumbra lies across
- * the first, and leaves no line of light in its umbra. */
+/* A board above the floor, half of which another board above it hides from the light. The second board's
+ * penumbra crosses the first board. It leaves no line of light in the first board's umbra. */
 static void test_board_before_board(void **state) {
   (void)state;
   for (int k = 0; k < 4; k++) {
@@ -169,8 +171,8 @@ static void test_board_before_board(void **state) {
   }
 }
 
-/* A ball above the floor: its upper half, of which other rings fall into other chunks, and its lower half,
- * which stands in the dark, leave no rings of light. */
+/* A ball above the floor. Its upper half, whose rings fall into different chunks, and its lower half, which
+ * is dark, leave no rings of light. */
 static void test_ball(void **state) {
   (void)state;
   for (int k = 0; k < 3; k++) {
@@ -182,8 +184,8 @@ static void test_ball(void **state) {
   }
 }
 
-/* Below a dome of small triangles hardly any light comes through their seams, on whose two sides the surface
- * lies in other slabs. */
+/* Hardly any light enters through the seams of a dome of small triangles. On the two sides of a seam, the
+ * surface lies in different slabs. */
 static void test_dome(void **state) {
   (void)state;
   for (int k = 0; k < 4; k++) {
@@ -197,8 +199,8 @@ static void test_dome(void **state) {
   }
 }
 
-/* The part of the light's disk that is seen from a point (derived: a mean over points that fill the disk
- * evenly). */
+/* The fraction of the light's disk that a point sees (derived: a mean over points that fill the disk evenly).
+ */
 static double part_seen(const hider *by, vec3 from, vec3 travels, double angle) {
   vec3 towards = vec3_normalise(vec3_scale(travels, -1)),
        u = vec3_normalise(vec3_cross(towards, (vec3){0, 1, 0})), v = vec3_cross(towards, u);
@@ -212,9 +214,10 @@ static double part_seen(const hider *by, vec3 from, vec3 travels, double angle) 
   return (double)seen / DISK;
 }
 
-/* A ball half a unit above the floor, below a wide sun: chunks of the cascade draw no jagged edges next to
- * it, and no sharp shadow lies where the sheets begin. The bars are the root mean square and the greatest
- * deviation from the part seen; a sun of 90 degrees almost grazes the floor, which shades itself. */
+/* A ball hangs half a unit above the floor, below a wide sun. The chunks of the cascade draw no jagged edges
+ * beside it, and there is no sharp shadow where the sheets begin. The bars are the root mean square and the
+ * greatest deviation from the visible fraction of the sun. A sun of 90 degrees nearly grazes the floor, which
+ * shades itself. */
 static void test_ball_under_wide_sun(void **state) {
   (void)state;
   static float pixels[LARGE_SIDE * LARGE_SIDE * 4];

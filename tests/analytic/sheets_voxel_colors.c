@@ -1,5 +1,5 @@
-/* analytic/sheets_voxel_colors.c - volumes whose voxels have colours: closed forms of what stands between
- * voxels, and shadows. */
+/* analytic/sheets_voxel_colors.c - volumes whose voxels have colours: the colour between voxels, in closed
+ * form, and shadows. */
 #include <setjmp.h>
 #include <stdarg.h>
 #include <stdlib.h>
@@ -15,7 +15,7 @@ enum { SIDE = 24, PIXELS = SIDE * SIDE, N = 12 };
 
 static unsigned next(unsigned *seed) { return (*seed = *seed * 1664525u + 1013904223u) >> 8; }
 
-/* Gives a volume colours, alike along z; the volume owns them. */
+/* Gives a volume colours that are the same along z. The volume owns them. */
 static void paint(stage *set, const hl_scene_volume *volume, const unsigned char colors[N][N][4]) {
   size_t slice = sizeof(unsigned char[N][N][4]), slices = volume->volume->dimension[2];
   unsigned char *all = hl_allocate(set->context, slices, slice);
@@ -34,7 +34,8 @@ static double linear_of(unsigned char code) {
   return c <= 0.04045 ? c / 12.92 : pow((c + 0.055) / 1.055, 2.4);
 }
 
-/* The bilinear mean of weighted linear colours over that of the weights, at a point of index space. */
+/* The bilinear mean of the weighted linear colours, divided by the mean of the weights, at a point of index
+ * space. */
 static double expected_at(const unsigned char colors[N][N][4], double x, double y, int channel) {
   double sum = 0, weights = 0, px = fmin(fmax(x, 0), N - 1), py = fmin(fmax(y, 0), N - 1);
   for (int j = 0; j < N; j++)
@@ -65,8 +66,8 @@ static void render(stage *set, bool reference, float *pixels) {
   else stage_render_sheets(set, pixels);
 }
 
-/* A flat plate of random colours, seen along z: each pixel shows the mean of linear colours there, tinted by
- * the transfer function's colour. */
+/* A flat plate of random colours, seen along z. Each pixel shows the mean of linear colours at its place,
+ * times the transfer function's colour. */
 static void test_colors_between_voxels(void **state) {
   (void)state;
   static float pixels[PIXELS * 4];
@@ -96,8 +97,8 @@ static void test_colors_between_voxels(void **state) {
   }
 }
 
-/* Transparent voxels of another colour leave no fringe: half way to a voxel of weight 1, blue has 1 part of
- * 256. */
+/* Transparent voxels of another colour leave no fringe. Half way to a voxel of the weight 1, blue has 1 part
+ * of 256. */
 static void test_no_fringe(void **state) {
   (void)state;
   static float pixels[PIXELS * 4];
@@ -123,7 +124,7 @@ static void test_no_fringe(void **state) {
   int edge = 0;
   for (int i = 0; i < PIXELS; i++) {
     double alpha = (double)pixels[4 * i + 3], x = (i % SIDE + 0.5) / SIDE * N - 0.5;
-    if (x > N / 2 - 0.5 + 0.01 || alpha < 1e-3) continue; /* the half next to the voxels that are there */
+    if (x > N / 2 - 0.5 + 0.01 || alpha < 1e-3) continue; /* the half beside the voxels that are visible */
     edge += alpha < 0.5;
     assert_true((double)pixels[4 * i] >= 255.0 / 256 * alpha - 1e-4);
     assert_true((double)pixels[4 * i + 2] <= alpha / 256 + 1e-4);
@@ -132,7 +133,7 @@ static void test_no_fringe(void **state) {
   stage_close(&set);
 }
 
-/* A ball in a room of light, whose voxels are coloured. */
+/* A ball whose voxels have colours, in a lit room. */
 static hl_scene_volume *open_ball(stage *set, int method, bool soft) {
   static float voxels[N * N * N];
   static const hl_opacity_point ramp[] = {{0, 0}, {0.4, 0}, {0.6, 0.7}};
@@ -158,8 +159,8 @@ static hl_scene_volume *open_ball(stage *set, int method, bool soft) {
   return ball;
 }
 
-/* Red voxels under a white function, and white ones under a red function, give the same bytes, by hard and
- * soft shadows. */
+/* Red voxels with a white transfer function and white voxels with a red one give the same bytes, with hard
+ * and soft shadows. */
 static void test_one_color_is_the_functions(void **state) {
   (void)state;
   static float pixels[2][PIXELS * 4];
@@ -178,7 +179,7 @@ static void test_one_color_is_the_functions(void **state) {
   }
 }
 
-/* The reference judges coloured voxels in hard and soft shadow. */
+/* Coloured voxels look as in the reference, in hard and soft shadow. */
 static void test_against_the_reference(void **state) {
   (void)state;
   static float pixels[2][PIXELS * 4];

@@ -1,5 +1,5 @@
-/* analytic/sheets_work.c - work is done for what is seen: what is empty, out of sight or hidden costs next to
- * nothing, counted in pixels reconstructed, which do not depend on the machine. */
+/* analytic/sheets_work.c - no work is done for empty, hidden or unseen matter, except for a small rest. Work
+ * is counted as pixels that are reconstructed, which does not depend on the machine. */
 #include <setjmp.h>
 #include <stdarg.h>
 #include <stdio.h>
@@ -49,7 +49,8 @@ static void assert_at_most(uint64_t more, uint64_t base, double factor, const ch
 
 static const hl_shadows SHADOWS[] = {HL_SHADOWS_OFF, HL_SHADOWS_HARD, HL_SHADOWS_SOFT};
 
-/* Eight times the voxels, all of them air. Soft buffers' pixels lie elsewhere then, hence the per cent. */
+/* With eight times the voxels, all of them air, the work is the same. Pixels of soft buffers lie elsewhere
+ * then, so that the work may differ by some per cent. */
 static void test_empty_space(void **state) {
   (void)state;
   static float near[FLOATS], far[FLOATS];
@@ -68,13 +69,13 @@ static void test_empty_space(void **state) {
   }
 }
 
-/* A second ball beside the picture, whose shadow passes it by: the same picture, and no more pixels than
- * sheets at other heights make. */
+/* The shadow of a second ball beside the picture does not reach the picture. The picture is the same, and no
+ * more pixels are reconstructed than sheets in other places need. */
 static void test_out_of_sight(void **state) {
   (void)state;
   static float alone[FLOATS], beside[FLOATS];
-  static const double limit[] = {0,
-                                 0.006}; /* what hard shadows may err: their buffer's pixels lie elsewhere */
+  /* the tolerance for hard shadows, whose buffer's pixels lie elsewhere */
+  static const double limit[] = {0, 0.006};
   for (int s = 0; s < 2; s++) {
     hl_render_statistics of[2];
     for (int other = 0; other < 2; other++) {
@@ -93,7 +94,7 @@ static void test_out_of_sight(void **state) {
   }
 }
 
-/* A ball right behind another one, seen from in front: its rays are closed before they reach it. */
+/* A ball stands close behind another one, seen from the front. Its rays are opaque before they reach it. */
 static void test_hidden(void **state) {
   (void)state;
   static float pixels[FLOATS];
@@ -111,8 +112,7 @@ static void test_hidden(void **state) {
   assert_at_most(of[1].pixels_filled_image, of[0].pixels_filled_image, 1.05, "image, behind");
 }
 
-/* A volume that neither shows nor casts a shadow, though it is full of matter: the same bytes, no more work.
- */
+/* A volume full of matter that neither shows nor casts a shadow changes no byte and needs no work. */
 static void test_not_taking_part(void **state) {
   (void)state;
   static float alone[FLOATS], beside[FLOATS];
@@ -138,15 +138,15 @@ static void test_not_taking_part(void **state) {
   }
 }
 
-enum { LARGE = 256 }; /* tiles enough for some to be tried */
+enum { LARGE = 256 }; /* the picture has enough tiles for some to be tried */
 
-/* Light from behind: sheets go back to front for the eye, and what is hidden is found before. The ball that
- * is hidden casts its shadow on the one in front. */
+/* Light from behind: sheets go from back to front for the eye, and hidden matter is found before. The hidden
+ * ball casts its shadow on the ball in front. */
 static void test_hidden_from_light_behind(void **state) {
   (void)state;
   float *pixels = malloc((size_t)LARGE * LARGE * 4 * sizeof *pixels);
   assert_non_null(pixels);
-  hl_render_statistics of[3]; /* without shadows, with; with one more ball */
+  hl_render_statistics of[3]; /* without shadows; with shadows; with one more ball */
   for (int i = 0; i < 3; i++) {
     stage set;
     open_scene(&set, i == 0 ? HL_SHADOWS_OFF : HL_SHADOWS_HARD);

@@ -1,5 +1,5 @@
 /* tests/analytic/ways_in_bricks.h - scenes of one volume, and the ways to draw them by which a field in
- * bricks is held against other forms of the same field. */
+ * bricks is compared with other forms of the same field. */
 #ifndef WAYS_IN_BRICKS_H
 #define WAYS_IN_BRICKS_H
 
@@ -12,7 +12,7 @@
 enum { SIDE = 24, FLOATS = SIDE * SIDE * 4 };
 
 static inline void draw_hard(stage *set) { set_method(set, HL_SHADOWS_HARD, HL_SOFT_CASCADE); }
-/* A lattice of voxels leaves out cells in which nothing shows, and samples of the sky's light there. */
+/* A lattice of voxels leaves out cells in which nothing shows, and the sky's light is not sampled there. */
 static inline void draw_sky(stage *set) {
   set->scene.sky.type = HL_SKY_UNIFORM;
   for (int c = 0; c < 3; c++) set->scene.sky.color[c] = 0.7;
@@ -73,7 +73,7 @@ static inline void draw_function_of_gradients(stage *set) {
       {.low = {0.4, 0.2}, .high = {1, 2}, .color = {0.1, 0.3, 0.8}, .opacity = 0.8, .edge = {0.2, 0.4}}};
   set_function(set, HL_SECOND_GRADIENT, boxes);
 }
-/* The second volume is the first one's data moved to the side; it is not drawn itself. */
+/* The second volume is a copy of the first one that is moved to the side. It does not show itself. */
 static inline void draw_function_of_volume(stage *set) {
   static const hl_function_box boxes[] = {
       {.low = {0.2, 0.1}, .high = {1, 0.5}, .color = {0.9, 0.2, 0.1}, .opacity = 0.5, .edge = {0.2, 0.1}},
@@ -97,7 +97,7 @@ static inline void draw_voxel_colors(stage *set) {
   for (size_t n = 0; n < bytes; n++) volume->colors[n] = (unsigned char)(n * 2654435761u >> 13 | 1);
 }
 
-/* Closes a scene that was drawn by one of the ways. */
+/* Closes a scene of one of the ways. */
 static inline void close_way(stage *set) {
   hl_volume_release(set->volumes[0].mask.volume);
   stage_close(set);
@@ -129,7 +129,7 @@ static inline void light_scene(stage *set, hl_scene_volume *volume) {
   stage_add_point(set, (vec3){14, 25, 30})->radius = 3;
 }
 
-/* The root of the mean square of the differences. */
+/* The root mean square difference. */
 static inline double difference(const float *a, const float *b) {
   double sum = 0;
   for (int i = 0; i < FLOATS; i++) sum += pow((double)a[i] - (double)b[i], 2);
@@ -138,7 +138,7 @@ static inline double difference(const float *a, const float *b) {
 
 /* ---- layers ---- */
 
-/* What a picture of one volume under the lights of light_scene() and its layers consist of. */
+/* The buffers of a picture of one volume under the lights of light_scene(), and of its layers. */
 typedef struct layer_buffers {
   struct {
     float pixels[FLOATS], ambient[SIDE * SIDE * 3], emission[SIDE * SIDE * 3], normal[SIDE * SIDE * 3];

@@ -1,5 +1,5 @@
-/* tests/analytic/ways_to_draw.h - ways to draw a scene of one volume, by which a volume that is stored
- * otherwise must give the same picture. */
+/* tests/analytic/ways_to_draw.h - the ways to draw a scene of one volume. A volume that is stored in another
+ * form must give the same picture by each. */
 #ifndef WAYS_TO_DRAW_H
 #define WAYS_TO_DRAW_H
 
@@ -34,7 +34,7 @@ static inline void draw_isosurface(stage *set) {
   set->volumes[0].iso_count = 1;
 }
 
-/* Gives a volume an opacity that begins softly. */
+/* Gives a volume an opacity that begins gradually. */
 static inline void set_soft_edge(hl_scene_volume *volume) {
   static const hl_opacity_point soft_edge[] = {{0, 0}, {0.35, 0}, {0.6, 0.7}, {1, 0.9}};
   volume->transfer_function.opacity = soft_edge;
