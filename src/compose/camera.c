@@ -96,6 +96,29 @@ static hl_status tell_of_side(const hl_composer *composer, const hl_scene_descri
   return HL_OK;
 }
 
+/* Logs which side the top and the bottom of a volume and slices across z are seen from. Other programs show
+ * some of them as their mirror images. */
+static void tell_of_mirror(const hl_composer *composer, const hl_scene_description *description,
+                           const hl_view *view) {
+  const hl_asked *asked = composer->asked, *side = &asked[HL_ASK_VIEW];
+  const bool slice = asked[HL_ASK_SLICE].given, of_body = hl_scene_space(description) != HL_SPACE_UNKNOWN;
+  const int from = nearest_axis(towards_eye(view)); /* 4 and 5: from the greatest and the least z */
+  if (!composer->bare || from < 4 || (!slice && (!side->given || !of_body)) || asked[HL_ASK_UP].given ||
+      asked[HL_ASK_AZIMUTH].given || asked[HL_ASK_ELEVATION].given || asked[HL_ASK_ROLL].given)
+    return;
+  const bool above = from == 4;
+  if (of_body)
+    hl_log(composer->context, HL_LOG_INFO,
+           "seen from the %s: the body's right is at the picture's %s, its front at the top; --axes "
+           "letters writes the directions, and --view %s is the other side",
+           above ? "head" : "feet, as in radiology", above ? "right" : "left", above ? "bottom" : "top");
+  else
+    hl_log(composer->context, HL_LOG_INFO,
+           "seen from the %s, as by --view %s: x goes to the right and y %s; --view %s is the other side",
+           above ? "top" : "bottom", above ? "top" : "bottom", above ? "up" : "down, as a picture's rows do",
+           above ? "bottom" : "top");
+}
+
 /* Returns whether the view turns to the faces of cuts: of a bare volume whose view no option chooses. */
 static bool turns_to_cuts(const hl_composer *composer, const hl_scene_description *description) {
   const hl_asked *asked = composer->asked;
@@ -150,6 +173,7 @@ static hl_status place(const hl_composer *composer, bool framed, size_t added,
   without.mesh_count -= added;
   hl_status status = choose_view(composer, &without, &view);
   if (status != HL_OK) return status;
+  tell_of_mirror(composer, &without, &view);
   if (composer->bare && (composer->flags & HL_COMPOSE_SKY) == 0)
     memcpy(description->sky.up, view.up, sizeof view.up);
   double zoom = asked[HL_ASK_ZOOM].given ? asked[HL_ASK_ZOOM].number[0] : 1;

@@ -50,21 +50,26 @@ static typed_slice read_slice(const char *text) {
 }
 
 /* Finds the sight of a slice across an axis. Where the world is a body's, the axes' letters say which of
- * their ends the eye stands at, and which direction is up. */
+ * their ends the eye stands at, and which direction is up: as radiologists look at slices. In other worlds
+ * the eye stands at the top, the front or the right, as by "view". */
 static slice_sight find_sight(const hl_scene_description *description, int axis) {
   const char *letters = hl_space_name(hl_scene_space(description));
   const double front = letters != NULL && letters[1] == 'A' ? 1 : -1;
+  if (axis == 2 && letters == NULL) return (slice_sight){2, 1, {0, 1, 0}, HL_SIDE_TOP, HL_SIDE_BOTTOM};
   if (axis == 2) return (slice_sight){2, -1, {0, front, 0}, HL_SIDE_BOTTOM, HL_SIDE_TOP};
   if (axis == 1) return (slice_sight){1, front, {0, 0, 1}, HL_SIDE_FRONT, HL_SIDE_BACK};
   if (letters == NULL) return (slice_sight){0, 1, {0, 0, 1}, HL_SIDE_RIGHT, HL_SIDE_LEFT};
   return (slice_sight){0, letters[0] == 'L' ? 1 : -1, {0, 0, 1}, HL_SIDE_LEFT, HL_SIDE_RIGHT};
 }
 
-/* The sight of the slice that is asked for; "view" may ask for the opposite side. */
+/* The sight of the slice that is asked for; "view" may ask for the opposite side. Across z of a world that is
+ * no body's, the opposite side turns the picture over about its x. */
 static slice_sight asked_sight(const hl_asked *asked, const hl_scene_description *description) {
   const hl_asked *view = &asked[HL_ASK_VIEW];
   slice_sight sight = find_sight(description, read_slice(asked[HL_ASK_SLICE].text).axis);
-  if (view->given && view->choice == (int)sight.other_side) sight.towards_eye = -sight.towards_eye;
+  if (!view->given || view->choice != (int)sight.other_side) return sight;
+  sight.towards_eye = -sight.towards_eye;
+  if (sight.axis == 2 && sight.other_side == HL_SIDE_BOTTOM) sight.up[1] = -1;
   return sight;
 }
 

@@ -356,11 +356,21 @@ static hl_status find_front(const hl_scene_description *description, const hl_vi
   return status;
 }
 
-/* Turns a view to a side. front: the azimuth of the front, 0 or 180 degrees. */
+/* Whether the view's up is the direction of a body's head, as its file tells. */
+static bool stands_on_feet(const hl_scene_description *description, const hl_view *view) {
+  return hl_scene_space(description) != HL_SPACE_UNKNOWN && view->up[2] > 0.999;
+}
+
+/* Turns a view to a side. front: the azimuth of the front, 0 or 180 degrees. The front of a body is at the
+ * picture's upper edge, from its head as from its feet, as atlases show it; other tops are seen as somebody
+ * sees them who stands before the volume and bends over it. */
 static void look_from(const hl_scene_description *description, hl_side side, double front, hl_view *view) {
   const double left = azimuth_of_left(description, view), isometric = hl_atan(sqrt(0.5)) * 180 / HL_PI;
-  const double azimuth[] = {
-      [HL_SIDE_BACK] = 180, [HL_SIDE_LEFT] = left, [HL_SIDE_RIGHT] = -left, [HL_SIDE_ISO] = 45};
+  const double azimuth[] = {[HL_SIDE_BACK] = 180,
+                            [HL_SIDE_LEFT] = left,
+                            [HL_SIDE_RIGHT] = -left,
+                            [HL_SIDE_ISO] = 45,
+                            [HL_SIDE_TOP] = stands_on_feet(description, view) ? 180 : 0};
   const double elevation[] = {[HL_SIDE_TOP] = 90, [HL_SIDE_BOTTOM] = -90, [HL_SIDE_ISO] = isometric};
   if (side == HL_SIDE_AUTOMATIC) return;
   view->azimuth_deg = azimuth[side] - (azimuth[side] > 0 ? front : -front);

@@ -12,7 +12,7 @@ cmp millimetres.npy own.npy
 # The world of several volumes has a unit, too.
 halflight render ball_16x16x16_uint8.raw ball_16x16x16_uint8.raw --spacing 0.0625 --unit m --slice z=200mm --print-scene >scene.json
 tool json scene.json "d['cuts'][0]['point'][2]"
-for wrong in "--slice z=200mm" "--slice z=200mm --unit cm" "--slice z=1" "--clip z=200mm:800mm" "--clip z=200mm:" "--clip z=:-2m --unit m"; do
+for wrong in "--slice z=200mm" "--slice z=200mm --unit cm" "--slice z=0" "--clip z=200mm:800mm" "--clip z=200mm:" "--clip z=:-2m --unit m"; do
   code=0
   metres $wrong -o no.png 2>message || code=$?
   echo $code "$(cat message)"
@@ -24,4 +24,4 @@ done
 # A face of the box is in the volume.
 halflight render ball_16x16x16_uint8.raw --size 24 --cut-plane z=1 --cut-plane z=:0 --cut-box x=1: --clip y=0:1 -o no.png 2>message
 grep -c warning message || true
-metres --slice z=0 -o face.png
+metres --slice z=1 -o face.png

@@ -11,7 +11,7 @@ write("anatomy.nrrd", lambda i, j: 10.3 * j + 0.37 * i)
 write("zmap.nrrd", lambda i, j: i / 2 - 4)
 write("top.nrrd", lambda i, j: j)
 END
-slice() { halflight render "$@" --slice z=0.5 --size 96 --quiet; }
+slice() { halflight render "$@" --slice z=0.5 --view bottom --size 96 --quiet; }
 slice anatomy.nrrd zmap.nrrd --range zmap=2.5,7 --colormap zmap=hot -o both.npy
 slice anatomy.nrrd -o under.npy
 slice zmap.nrrd --range 2.5,7 --colormap hot -o over.npy

@@ -20,17 +20,33 @@ END
 slice() { halflight render "$@" --range 0,255 --size 160 --quiet -o slice.npy; }
 for at in x=3 y=7.5 z=7.5 z=12; do
   for side in "" --view; do
-    case $side$at in --viewx*) side="--view left" ;; --viewy*) side="--view back" ;; --viewz*) side="--view top" ;; esac
+    case $side$at in --viewx*) side="--view left" ;; --viewy*) side="--view back" ;; --viewz*) side="--view bottom" ;; esac
     slice ramp-${at%=*}.nrrd --slice ${at}u $side
     "$PYTHON" -c "exec(open('pixel.py').read()); print(abs(value(80, 80) / 16 - ${at#*=}) <= 0.125)"
   done
 done
-# Columns of the picture go along x and rows along y, from the least to the greatest, as in a file of slices. The slope
+# From the top x goes to the right and y up; from the bottom y goes down, as the rows of a file of slices do. The slope
 # along y is twice the slope along x.
-slice ramp-w.nrrd --slice z=0.5
-"$PYTHON" -c "exec(open('pixel.py').read())
-right, down = value(100, 80) - value(60, 80), value(80, 100) - value(80, 60)
-print(right > 0, round(down / right, 1))"
+for side in top bottom; do
+  slice ramp-w.nrrd --slice z=0.5 --view $side
+  "$PYTHON" -c "exec(open('pixel.py').read())
+right, up = value(100, 80) - value(60, 80), value(80, 60) - value(80, 100)
+print(right > 0, round(up / right, 1))"
+done
+# A slice and the whole volume are seen from the same side, with the same side up, unless the file knows a body: its
+# slices across z are seen from the feet, and a line says so.
+camera() { halflight render "$@" --print-scene >scene.json; tool json scene.json '[[round((p - t) / max(abs(q - u) for q, u in zip(d["camera"]["position"], d["camera"]["target"])), 6) + 0 for p, t in zip(d["camera"]["position"], d["camera"]["target"])], [round(u, 6) + 0.0 for u in d["camera"]["up"]]]'; }
+{ printf 'NRRD0004\ntype: uint8\ndimension: 3\nsizes: 16 16 16\nspace: RAS\nspace directions: (1,0,0) (0,1,0) (0,0,1)\nencoding: raw\n\n'; tail -c 4096 ramp-w.nrrd; } >body.nrrd
+for file in ramp-w body; do
+  for axis in z,top z,bottom y,front y,back x,left x,right; do
+    slice=$(camera $file.nrrd --slice ${axis%,*} --view ${axis#*,} 2>slice-said)
+    whole=$(camera $file.nrrd --up +z --view ${axis#*,} 2>/dev/null)
+    echo $file $axis $(test "$slice" = "$whole" && echo agrees || echo "$slice, but $whole") $(cut -d: -f1 slice-said)
+  done
+done
+halflight render body.nrrd --view top --size 16 -o top.png 2>&1 | grep -o '^seen from the head: [^;]*'
+halflight render body.nrrd --slice axial --size 16 -o axial.png 2>&1 | grep -o '^seen from the feet[^;]*'
+halflight render ramp-w.nrrd --slice z --size 16 -o z.png 2>&1 | grep -o '^seen from the top, [^;]*'
 # Labels lie over the values, and do not replace them; several volumes have a colour each, and one volume is grey.
 tool atlas 16 map.nrrd
 halflight render ramp-w.nrrd --slice z=0.5 --labels map.nrrd --size 64 --quiet -o labels.png
