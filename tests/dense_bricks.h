@@ -1,7 +1,6 @@
-/* dense_bricks.h - a field at levels as one dense grid of coefficients: what tests compare bricks with.
- *
- * In: bricks. Out: voxels of one level. Blocks of the dense grid are made by themselves, each in pieces that
- * one brick covers. */
+/* dense_bricks.h - converts a field at levels into one dense grid of coefficients, with which tests compare
+ * bricks. In: bricks. Out: voxels of one level. The dense grid's blocks are independent of each other. Each
+ * is made in pieces, each of which one brick covers. */
 #ifndef HL_TESTS_DENSE_BRICKS_H
 #define HL_TESTS_DENSE_BRICKS_H
 
@@ -32,14 +31,14 @@ static const hl_brick_entry *entry_at(const hl_bricks *bricks, const size_t bloc
   return &bricks->directory[(at[2] * n[1] + at[1]) * n[0] + at[0]];
 }
 
-/* The coefficients that a brick stores, and the point of its level that comes first. */
+/* The coefficients that a brick stores, and the first point of its level. */
 typedef struct stored_brick {
   const float *coefficients;
   size_t side; /* coefficients along an axis */
   ptrdiff_t first[3];
 } stored_brick;
 
-/* block: of level 0, within the brick. */
+/* block: the block of level 0 within the brick. */
 static stored_brick brick_at(const hl_bricks *bricks, const hl_brick_entry *entry, const size_t block[3]) {
   size_t side = ((size_t)1 << bricks->shift) + BRICK_MARGIN;
   stored_brick brick = {bricks->pool + (size_t)entry->slot * side * side * side, side, {0}};
@@ -59,7 +58,7 @@ static void copy_box(const stored_brick *brick, const hl_lattice_box *box, float
     }
 }
 
-/* Fills a box of coefficients of a level from a brick that is `coarser` levels coarser and covers the box. */
+/* Fills a box of coefficients of a level from a brick that covers the box and is `coarser` levels coarser. */
 static void subdivide(const stored_brick *brick, int coarser, const hl_lattice_box *box, float *scratch,
                       float *out) {
   if (coarser == 0) {
@@ -80,7 +79,7 @@ static float value_at(const stored_brick *brick, const ptrdiff_t point[3]) {
   return (float)hl_field_at_point(brick->coefficients + at[2] * slice + at[1] * row + at[0], row, slice);
 }
 
-/* Fills a box from bricks that are finer than its level: point by point. */
+/* Fills a box from bricks that are finer than the box's level, point by point. */
 static void sample_points(const dense_job *job, const hl_lattice_box *box, float *out) {
   const hl_bricks *bricks = job->bricks;
   size_t n = 0;
@@ -93,7 +92,8 @@ static void sample_points(const dense_job *job, const hl_lattice_box *box, float
         for (int axis = 0; axis < 3; axis++) {
           size_t place = ((size_t)box->first[axis] + at[axis]) << job->level;
           size_t last = bricks->dimension[axis] - 1;
-          point[axis] = (ptrdiff_t)(place < last ? place : last); /* points beyond the last repeat it */
+          /* a point beyond the last one has the last one's value */
+          point[axis] = (ptrdiff_t)(place < last ? place : last);
           block[axis] = (size_t)point[axis] >> bricks->shift;
         }
         const hl_brick_entry *entry = entry_at(bricks, block);
@@ -124,7 +124,7 @@ static void fill_box(const dense_job *job, const hl_lattice_box *box, float *scr
   }
 }
 
-/* The side of the boxes, each of which lies in one brick or in bricks that are finer than the level. */
+/* The side of the boxes. Each box lies in one brick, or in bricks that are finer than the level. */
 static int box_shift(const dense_job *job) {
   return job->bricks->shift < DENSE_TILE_SHIFT ? job->bricks->shift : DENSE_TILE_SHIFT;
 }
@@ -151,10 +151,10 @@ static void make_tile(void *data, size_t index, int worker) {
              values + (k * box.count[1] + j) * box.count[0], box.count[0] * sizeof *values);
 }
 
-/* The field as one dense grid of coefficients of a level. Where bricks are coarser, their coefficients are
- * subdivided, and the dense grid's field is the bricks' field exactly. Where bricks are finer, a coefficient
- * is the field's value at its point. size: hl_bricks_points() of each axis. voxels:
- * [size[2]][size[1]][size[0]], of the caller. Stops early if the pool is cancelled. */
+/* Makes a dense grid of the field's coefficients of a level. Coarser bricks' coefficients are subdivided, and
+ * the dense grid's field is the bricks' field exactly. Where bricks are finer, a coefficient is the field's
+ * value at its point. size: hl_bricks_points() of each axis. voxels: [size[2]][size[1]][size[0]], memory of
+ * the caller. Stops early if the pool is cancelled. */
 static inline void hl_bricks_to_dense(hl_pool *pool, const hl_bricks *bricks, int level, const size_t size[3],
                                       float *voxels) {
   dense_job job = {.bricks = bricks, .level = level, .voxels = voxels};

@@ -1,5 +1,5 @@
-/* octree.h - random fields at levels (bricks/build.h) for tests: bricks are split at random, and coefficients
- * are given by a formula. */
+/* octree.h - random fields at levels (bricks/build.h) for tests. Bricks are split at random, and a formula
+ * gives the coefficients. */
 #ifndef HL_TESTS_OCTREE_H
 #define HL_TESTS_OCTREE_H
 
@@ -14,7 +14,7 @@ typedef struct octree {
   octree_value *value;
 } octree;
 
-/* A number from 0 to 1 that belongs to two others. */
+/* A number from 0 to 1 that follows from two numbers. */
 static inline double octree_random(uint64_t seed, uint64_t number) {
   uint64_t key = (seed + 1) * 0x9e3779b97f4a7c15u + number;
   key = (key ^ (key >> 31)) * 0x7fb5d329728ea185u;
@@ -61,7 +61,7 @@ static inline hl_bricks_choice octree_choose(void *data, int level, const size_t
   return octree_random_value(source->seed + 17, level, at) < 0.6 ? HL_BRICKS_SPLIT : HL_BRICKS_LEAF;
 }
 
-/* Makes a field that covers the points. threads: that build it. */
+/* Makes a field that covers the points. threads: of the pool that builds it. */
 static inline void octree_build(hl_context *context, int threads, octree *data, const size_t dimension[3],
                                 int shift, int levels, hl_bricks *bricks) {
   hl_bricks_source source = {.shift = shift, .levels = levels, .fill = octree_fill, .data = data};

@@ -14,7 +14,7 @@ enum { MOST_BYTES = 1 << 20 };
 
 static int is_input(const struct dirent *entry) { return entry->d_name[0] != '.'; }
 
-/* In a block of its exact size, so that a sanitizer sees every read beyond it. */
+/* The file is read into a block of its exact size, so that a sanitizer sees every read beyond it. */
 static bool run(const char *folder, const char *name) {
   static uint8_t bytes[MOST_BYTES];
   char path[1024];

@@ -20,8 +20,8 @@
 const uint64_t fuzz_memory_limit = 48 << 20;
 enum { MOST_BYTES = 1 << 16, MOST_ANSWER = 1 << 22, TOKEN_BYTES = 32 };
 
-/* Ten times as long as the server lets a connection be silent, since other work may hold the server up;
- * milliseconds. */
+/* The longest wait for an answer, in milliseconds: ten times as long as the server lets a connection be
+ * silent, since other work may hold the server up. */
 enum { DEADLINE = 200000 };
 
 static int port;
@@ -33,7 +33,8 @@ static const char volume_text[] =
     "NRRD0004\ntype: uint8\ndimension: 3\nsizes: 3 3 3\nencoding: ascii\n\n"
     "0 9 0 9 40 9 0 9 0 9 40 9 40 255 40 9 40 9 0 9 0 9 40 9 0 9 0\n";
 
-/* The server's threads hold memory whenever the leak sanitizer looks. viewer_crowd counts what is held. */
+/* The server's threads hold memory whenever the leak sanitizer looks, so that it is off. The test
+ * viewer_crowd counts the memory that is held. */
 __attribute__((visibility("default"))) int __lsan_is_turned_off(void);
 int __lsan_is_turned_off(void) { return 1; }
 
@@ -117,12 +118,12 @@ static int dial(void) {
 static void send_all(int client, const char *bytes, size_t size) {
   for (size_t sent = 0; sent < size;) {
     ssize_t count = send(client, bytes + sent, size - sent, MSG_NOSIGNAL);
-    if (count <= 0) return; /* the server has had enough */
+    if (count <= 0) return; /* the server has closed the connection */
     sent += (size_t)count;
   }
 }
 
-/* Whether a whole answer with a known length is there. */
+/* Returns whether a whole answer with a known length has arrived. */
 static bool is_whole(const char *answer, size_t length) {
   const char *body = memmem(answer, length, "\r\n\r\n", 4),
              *field = strcasestr(answer, "\r\nContent-Length: ");
@@ -131,7 +132,8 @@ static bool is_whole(const char *answer, size_t length) {
   return length - (size_t)(body + 4 - answer) >= wanted;
 }
 
-/* What the server answers, until it closes the connection or, where the client waits, the answer is there. */
+/* Reads the server's answer until the server closes the connection or, if the client waits, until the answer
+ * is whole. */
 static size_t receive(int client, bool waits, char *answer) {
   size_t length = 0;
   struct pollfd ready = {.fd = client, .events = POLLIN};
@@ -142,7 +144,7 @@ static size_t receive(int client, bool waits, char *answer) {
     answer[length] = 0;
     if (waits && is_whole(answer, length)) return length;
   }
-  REQUIRE(waits || length == MOST_ANSWER); /* else the connection outlives its deadline */
+  REQUIRE(waits || length == MOST_ANSWER); /* a failure: the connection has outlived its deadline */
   return length;
 }
 
@@ -159,7 +161,7 @@ int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size) {
   if (size > MOST_BYTES) return 0;
   begin();
   if (memmem(data, size, token, TOKEN_BYTES) != NULL)
-    return 0; /* the fuzzer has seen it, and would be told it */
+    return 0; /* the fuzzer has read the token in memory; such inputs are left out */
   const uint8_t *place = memmem(data, size, "TOKEN", 5);
   size_t before = place != NULL ? (size_t)(place - data) : size,
          after = place != NULL ? size - before - 5 : 0;

@@ -7,7 +7,7 @@
 
 const uint64_t fuzz_memory_limit = 4 << 20;
 
-/* Where the table begins; null: there is none. */
+/* The place in the input where the table begins; null: there is no table. */
 static const uint8_t *find_table(const uint8_t *data, size_t size) {
   static const char mark[] = "%%%%\n";
   for (size_t at = 0; at + sizeof mark - 1 <= size; at++)

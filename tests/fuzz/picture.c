@@ -12,7 +12,7 @@ static uint32_t load(const uint8_t *bytes) {
   return (uint32_t)bytes[0] << 24 | (uint32_t)bytes[1] << 16 | (uint32_t)bytes[2] << 8 | bytes[3];
 }
 
-/* Makes every chunk's checksum right: changed inputs then reach what lies behind the check. */
+/* Makes the checksum of every chunk right, so that changed inputs are read beyond the check of checksums. */
 static void mend_checksums(uint8_t *png, size_t size) {
   for (size_t at = SIGNATURE; size - at >= FRAME && load(png + at) <= size - at - FRAME;) {
     size_t length = load(png + at);

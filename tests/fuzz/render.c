@@ -28,7 +28,7 @@ enum {
   MOST_LABELS = 3
 };
 
-/* Everything that a description points at. */
+/* The memory of everything to which a description points. */
 typedef struct scene_parts {
   hl_scene_description description;
   hl_light lights[MOST_LIGHTS];
@@ -64,7 +64,7 @@ static void draw_voxels(fuzz_source *source, hl_voxel_type type, void *voxels, s
   }
 }
 
-/* A factor from 1/4 to 4: sheets stay few, and an input fast. */
+/* A factor from 1/4 to 4, so that sheets stay few and an input takes little time. */
 static double draw_factor(fuzz_source *source) { return exp2(4 * fuzz_unit(source) - 2); }
 
 static void draw_grid(fuzz_source *source, hl_volume_description *grid) {
@@ -77,7 +77,7 @@ static void draw_grid(fuzz_source *source, hl_volume_description *grid) {
   for (int a = 0; a < 3 && kind & 4; a++) grid->axis[a][(a + 1) % 3] = fuzz_unit(source) / 4; /* oblique */
 }
 
-/* Null if the grid is refused. */
+/* Makes a volume; null if the grid is refused. */
 static hl_volume *draw_volume(fuzz_source *source) {
   static const hl_voxel_type types[] = {HL_VOXEL_U8, HL_VOXEL_I16, HL_VOXEL_F32};
   float voxels[MOST_VOXELS];
@@ -180,7 +180,8 @@ static void draw_light(fuzz_source *source, scene_parts *parts, int index) {
     light->opening_angle_deg = 0.01 + 178.9 * fuzz_unit(source);
     light->falloff_angle_deg = light->opening_angle_deg / 2 * fuzz_unit(source);
   }
-  if (light->type == HL_LIGHT_POLYGON) { /* around a point at one height: in a plane, if in order */
+  if (light->type == HL_LIGHT_POLYGON) {
+    /* points around a middle at one height lie in a plane, if they are in order */
     light->vertex_count = 3 + (size_t)fuzz_choice(source, 3);
     double radius = fabs(fuzz_number(source));
     for (size_t v = 0; v < light->vertex_count; v++) {
@@ -200,8 +201,8 @@ static void draw_light(fuzz_source *source, scene_parts *parts, int index) {
 
 static void draw_settings(fuzz_source *source, hl_render_settings *render) {
   static const double spacings[] = {0.5, 1, 0.25, 2, 0.7, 10};
-  static const int resolutions[] = {16, 32, 7,  40,
-                                    1,  24, 12, 3}; /* auto is up to a million pixels: too slow here */
+  /* "auto" would be up to a million pixels, which takes too long here */
+  static const int resolutions[] = {16, 32, 7, 40, 1, 24, 12, 3};
   render->shadows = (hl_shadows)(1 + fuzz_choice(source, 3));
   render->soft_method = (hl_soft_method)fuzz_choice(source, 3);
   render->light_samples = 1 + fuzz_choice(source, 3);
@@ -249,7 +250,7 @@ static void draw_sky(fuzz_source *source, scene_parts *parts, hl_sky *sky) {
   }
 }
 
-/* A strip of triangles, or spheres. */
+/* Makes a strip of triangles, or spheres. */
 static void draw_mesh(fuzz_source *source, scene_parts *parts, hl_scene_description *description) {
   float positions[MOST_VERTICES][3], spheres[MOST_VERTICES][4];
   uint32_t triangles[MOST_VERTICES - 2][3];
@@ -306,8 +307,8 @@ static void draw_labels(fuzz_source *source, scene_parts *parts) {
   }
 }
 
-/* What the first volume has besides: surfaces, cuts, labels or a mask; then meshes and a sky. It stands at
- * the end of an input, so that older inputs keep their meaning. */
+/* Draws surfaces, cuts, labels or a mask of the first volume, then meshes and a sky. This stands at the end
+ * of an input, so that older inputs keep their meaning. */
 static void draw_more(fuzz_source *source, scene_parts *parts) {
   hl_scene_description *description = &parts->description;
   hl_scene_volume *volume = &parts->volumes[0];

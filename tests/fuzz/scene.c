@@ -30,7 +30,7 @@ static void write_companions(void) {
   hl_image_destroy(image);
 }
 
-/* Pools of hundreds of threads are slow to make, and none of this target's business. */
+/* a pool of hundreds of threads takes long to make, and scenes do not need it */
 static bool asks_for_many_threads(const char *text) {
   for (const char *at = strstr(text, "threads"); at != NULL; at = strstr(at + 1, "threads")) {
     const char *digits = at + strcspn(at, "0123456789");
@@ -39,7 +39,7 @@ static bool asks_for_many_threads(const char *text) {
   return false;
 }
 
-/* What was read and written is read back as the same scene. */
+/* The scene that was read and written is read back, and must be the same. */
 static void check_round_trip(const hl_scene *scene) {
   char *first = NULL, *second = NULL;
   hl_error error = {0};

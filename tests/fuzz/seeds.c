@@ -10,7 +10,7 @@
 
 #include "volume_files.h"
 
-/* A target, the name that it loads, and the one that it gives to a second file. */
+/* A target, the name under which it loads its input, and the name that it gives to a second file. */
 typedef struct seed_kind {
   const char *target, *ending, *second;
 } seed_kind;
@@ -22,7 +22,7 @@ static const seed_kind kinds[] = {
     {"raw", ".raw", NULL},          {"raw", ".raw.gz", NULL},     {"raw", ".dat", "v.raw"},
     {"npy", ".npy", NULL},          {"mrc", ".mrc", NULL},        {"tiff", ".tif", NULL}};
 
-enum { EVERY = 7 }; /* prime to the samples' periods: one in so many is written */
+enum { EVERY = 7 }; /* prime to the samples' periods: one sample of this number is written */
 
 static const seed_kind *kind_of(const char *name) {
   size_t length = strlen(name);
@@ -33,7 +33,7 @@ static const seed_kind *kind_of(const char *name) {
   return NULL;
 }
 
-/* The first file, with the second's name in it replaced. */
+/* Writes the first file, in which the target's name replaces the name of the second file. */
 static void write_header(FILE *out, const volume_sample *sample, const char *second) {
   const unsigned char *data = sample->file.data;
   size_t length = sample->file.length, old = strlen(sample->other_name), at = 0;

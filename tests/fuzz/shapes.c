@@ -4,8 +4,8 @@
 
 #include "target.h"
 
-/* Where the text says its voxel size, this many bytes bound the grid; else it has SIZE voxels along its
- * longest side. */
+/* If the text gives a voxel size, this number of bytes bounds the grid. Else the grid has SIZE voxels along
+ * its longest side. */
 const uint64_t fuzz_memory_limit = 128 << 10;
 enum { SIZE = 16 };
 

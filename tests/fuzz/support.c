@@ -75,12 +75,12 @@ const char *fuzz_write_file(int slot, const char *name, const uint8_t *data, siz
   snprintf(paths[slot], PATH_BYTES, "%s/%s", fuzz_folder(), name);
   FILE *file = fopen(paths[slot], "wb");
   REQUIRE(file != NULL);
-  REQUIRE(size == 0 || fwrite(data, 1, size, file) == size); /* no data may come as a null pointer */
+  REQUIRE(size == 0 || fwrite(data, 1, size, file) == size); /* without data, the pointer may be null */
   REQUIRE(fclose(file) == 0);
   return paths[slot];
 }
 
-/* What every volume that was accepted must be. */
+/* Checks the properties that every accepted volume must have. */
 static void check_volume(hl_volume *volume) {
   hl_volume_info info = {.struct_size = sizeof info};
   REQUIRE(hl_volume_get_info(volume, &info) == HL_OK);
@@ -95,7 +95,7 @@ static void check_volume(hl_volume *volume) {
   REQUIRE(info.range[0] <= info.mean && info.mean <= info.range[1]);
   double last = hl_volume_value(volume, info.dimensions[0] - 1, info.dimensions[1] - 1,
                                 info.dimensions[2] - 1);
-  /* The range of bricks is the range of their coefficients, near which the field lies. */
+  /* The range of a field in bricks is the range of the bricks' coefficients, near which the field lies. */
   REQUIRE(isnan(last) || volume->bricks != NULL || (last >= info.range[0] && last <= info.range[1]));
   hl_transfer_function function = {0};
   hl_error error = {0};
@@ -104,7 +104,7 @@ static void check_volume(hl_volume *volume) {
     hl_transfer_function_release(fuzz_context(), &function);
 }
 
-/* Reads the same content from memory, with another component and spacing. */
+/* Reads the same content from memory, with another component and another spacing. */
 static void load_otherwise(const char *name, const uint8_t *data, size_t size) {
   static const int components[] = {HL_COMPONENT_MAGNITUDE, 1};
   for (size_t n = 0; n < 2; n++) {
@@ -124,7 +124,8 @@ static void load_otherwise(const char *name, const uint8_t *data, size_t size) {
   }
 }
 
-/* Writes the input as one file, or, cut at the first line "%%%%", as two; gives the size of the first. */
+/* Writes the input as one file or, if it has a line "%%%%", as two files cut at that line. *first: the size
+ * of the first file. */
 static size_t write_input(const char *name, const char *second_name, const uint8_t *data, size_t size) {
   static const char cut[] = "\n%%%%\n";
   const uint8_t *second = second_name == NULL ? NULL : memmem(data, size, cut, sizeof cut - 1);

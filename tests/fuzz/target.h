@@ -15,25 +15,27 @@
 
 int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size);
 
-/* A promise that must hold for every input; the line goes to stderr and the program stops. */
+/* A promise that must hold for every input. If it is broken, the line goes to stderr and the program stops.
+ */
 #define REQUIRE(condition) ((condition) ? (void)0 : fuzz_broken(__FILE__, __LINE__, #condition))
 _Noreturn void fuzz_broken(const char *file, int line, const char *promise);
 
-/* Bytes that one input may hold at once: each target's own, small, so that no input costs much time. */
+/* The number of bytes that one input may hold at once. Each target sets its own, and it is small, so that no
+ * input takes much time. */
 extern const uint64_t fuzz_memory_limit;
 
-/* The process's one context, with that limit. */
+/* The process's only context, with the limit `most_bytes`. */
 hl_context *fuzz_context(void);
 
-/* The same context, confined to the process's own folder: whatever an input names, no other file of the
- * machine takes part. Names are relative to the folder. */
+/* The same context, confined to the process's own folder, so that an input cannot name other files of the
+ * machine. Names are relative to the folder. */
 hl_context *fuzz_confined(void);
 
-/* After each input: everything was given back. */
+/* Checks after each input that all memory was given back. */
 void fuzz_check_nothing_held(void);
 
-/* The answer of a fallible call: a failure has its code and one printable line. made: what the call was to
- * make is there. True if it succeeded. */
+/* Checks the result of a call. A failure must have a code and one printable line. made: whether the call has
+ * made its result. Returns whether the call succeeded. */
 bool fuzz_check_answer(hl_status status, const hl_error *error, bool made);
 
 /* Writes a file into the process's own folder (in memory where there is one) and gives its path, valid until
@@ -42,14 +44,14 @@ const char *fuzz_write_file(int slot, const char *name, const uint8_t *data, siz
 void fuzz_remove_file(int slot);
 const char *fuzz_folder(void);
 
-/* The input as one file, or, cut at the first line "%%%%", as two; loads the first as a volume and checks
- * it. */
+/* Loads the input as a volume and checks it. If it has a line "%%%%", it is cut there into two files, and the
+ * first is loaded. */
 void fuzz_load_volume(const char *name, const char *second_name, const uint8_t *data, size_t size);
 
-/* The same for a mesh. second_name: null where the format names no other file. */
+/* The same for a mesh. second_name: null if the format names no other file. */
 void fuzz_load_mesh(const char *name, const char *second_name, const uint8_t *data, size_t size);
 
-/* Numbers drawn from an input; zeros when it is used up. */
+/* Draws numbers from an input; zeros when the input is used up. */
 typedef struct fuzz_source {
   const uint8_t *data;
   size_t left;

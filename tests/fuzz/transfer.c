@@ -23,7 +23,8 @@ static void check_function(const hl_transfer_function *function) {
     for (int c = 0; c < 3; c++) REQUIRE(function->color[n].color[c] >= 0 && function->color[n].color[c] <= 1);
 }
 
-/* The name that tells an input's format, and in `path` what is asked for: of several presets, "B". */
+/* Finds the name that shows an input's format. `path` also tells what is asked for: "B", if there are several
+ * presets. */
 static void write_input(const uint8_t *data, size_t size, char path[512]) {
   static const struct {
     const char *mark, *name, *preset;

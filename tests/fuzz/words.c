@@ -17,7 +17,7 @@ static const cli_command *const commands[] = {&render_command,  &info_command,  
                                               &convert_command, &diff_command,    &bench_command,
                                               &view_command,    &animate_command, &looks_command};
 
-/* What the program says goes nowhere. The descriptor stays: sanitizers tell their findings by it. */
+/* The program's messages are discarded. The descriptor of stderr stays, since sanitizers report by it. */
 static void be_silent(void) {
   static bool silent;
   if (silent) return;

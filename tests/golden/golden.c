@@ -23,7 +23,8 @@
 
 #include "volumes.h"
 
-/* Linear premultiplied; 1/255 is 0.0039. The mean tells what the eye cannot: everything a little brighter. */
+/* The limits of differences between linear premultiplied pixels; 1/255 is 0.0039. The limit of the mean finds
+ * what no eye sees: that all pixels are a little brighter. */
 static const double maximum_limit = 4e-3, rmse_limit = 1e-3, mean_limit = 1e-4;
 
 typedef struct golden {
@@ -31,7 +32,7 @@ typedef struct golden {
   bool update;
   char volume_folder[64];
   hl_context *context;
-  hl_renderer *renderer; /* one for all scenes: what it keeps between frames must not matter */
+  hl_renderer *renderer; /* one renderer for all scenes, since what it keeps between frames must not matter */
   hl_error error;
 } golden;
 
@@ -67,7 +68,7 @@ static void shift_half_a_pixel(const float *from, float *to, int width, int heig
   }
 }
 
-/* Whether the limits refuse the stored picture's damaged twins. */
+/* Returns whether the limits refuse the damaged copies of the stored picture. */
 static bool refuses_damage(golden *run, const hl_image *stored, const char *name) {
   static const struct {
     const char *what;
@@ -119,7 +120,8 @@ static bool render(golden *run, const char *name, hl_image **image) {
   return done;
 }
 
-/* NAME.png and NAME-difference.npy, for a person. Failures to write them change nothing. */
+/* Writes NAME.png and NAME-difference.npy for a person to look at. A failure to write them does not fail the
+ * test. */
 static void keep(golden *run, const char *name, const hl_image *stored, hl_image *image) {
   if (run->keep_folder == NULL) return;
   char path[1000];
@@ -153,7 +155,7 @@ static bool compare(golden *run, const char *name, const char *stored_path, hl_i
   return good;
 }
 
-/* Prints the scene's TAP line; false on failure. */
+/* Tests a scene and prints its line of TAP. Returns false on failure. */
 static bool run_scene(golden *run, int number, const char *name) {
   char stored_path[1000];
   hl_image *image = NULL;

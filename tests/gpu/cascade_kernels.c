@@ -31,12 +31,12 @@ enum {
   FINE_STRIDE = FINE_TILES * TILE + PASS_MARGIN,
   STRIDE = TILES * TILE + PASS_MARGIN,
   COARSE_STRIDE = TILE + PASS_MARGIN,
-  ROOM = (FINE_TILES * TILE + 3 * PASS_MARGIN) * FINE_STRIDE, /* enough for a field of any of the levels */
+  ROOM = (FINE_TILES * TILE + 3 * PASS_MARGIN) * FINE_STRIDE, /* enough memory for a field of any level */
   FIELDS = 8,
   ROUNDS = 200
 };
 
-/* Fields of the processors and of the kernels, with the same content. Field f has its memory at f ROOM. */
+/* The processors' and the kernels' fields, with the same content. The memory of field f begins at f ROOM. */
 static word16 own[FIELDS * ROOM], other[FIELDS * ROOM];
 
 static unsigned place(int field, int stride) {
@@ -50,7 +50,7 @@ static uint32_t next_bits(uint64_t *state) {
 
 static float next_fraction(uint64_t *state) { return (float)(next_bits(state) >> 8) * 0x1p-24f; }
 
-/* Fills a field at random, in its tiles; margins are zeros. Some pixels are nothing or everything. */
+/* Fills the tiles of a field at random. The margins are zeros. Some pixels are 0 or 1. */
 static void fill_field(int field, int tiles, int stride, uint64_t *seed) {
   memset(own + field * ROOM, 0, ROOM * sizeof *own);
   for (int y = 0; y < tiles * TILE; y++)
@@ -76,7 +76,8 @@ static plan_pass a_pass(int kind) {
                      .to = place(0, STRIDE)};
 }
 
-/* Sums with and without a and thin: of one level, of a finer one and with a coarser b. */
+/* The sums of fields, with and without `a` and `thin`: of one level, of a field and a finer one, and with a
+ * coarser `b`. */
 static void test_sums(void **state) {
   (void)state;
   uint64_t seed = 11;
@@ -144,7 +145,7 @@ static void test_blurs(void **state) {
   }
 }
 
-/* A group's two fields, of which the thin one is not more than the other. */
+/* The two fields of a group. The thin field is at most the other one. */
 static void fill_matter(int absorbed, int thin, uint64_t *seed) {
   fill_field(absorbed, TILES, STRIDE, seed);
   fill_field(thin, TILES, STRIDE, seed);
@@ -159,7 +160,8 @@ static void test_split(void **state) {
     fill_matter(1, 2, &seed);
     copy_fields();
     plan_pass pass = a_pass(PASS_SPLIT);
-    pass.a = pass.to = place(1, STRIDE); /* the first part replaces the whole */
+    /* the first of the parts replaces the field, and the others are added */
+    pass.a = pass.to = place(1, STRIDE);
     pass.thin = pass.to_thin = place(2, STRIDE);
     pass.second = place(3, STRIDE);
     pass.second_thin = place(4, STRIDE);
@@ -176,10 +178,10 @@ static void test_split(void **state) {
   }
 }
 
-/* A light's buffer as the processors and as a device keep it. */
+/* A light's buffer, as the processors keep it and as a device keeps it. */
 static struct {
   float at_start[STRIDE * SIDE], moment[STRIDE * SIDE],
-      plane[3][STRIDE * SIDE]; /* T, Y, older; rows STRIDE apart */
+      plane[3][STRIDE * SIDE]; /* the planes T, Y and older; their rows are STRIDE apart */
   float soft[TILES * TILES * 512], light[TILES * TILES * 3 * 256], planes[3][STRIDE * SIDE];
   int touched[TILES * TILES], changed[TILES * TILES * 256];
   byte marks[TILES * TILES];
@@ -206,7 +208,8 @@ static void fill_buffer(const plan_pass *pass, uint64_t *seed) {
   }
 }
 
-/* What a chunk's slabs absorbed goes to two groups. In every other round most rows absorbed nothing. */
+/* The light that a chunk's slabs absorbed goes to two groups. In every second round most rows absorbed
+ * nothing. */
 static void test_absorbed(void **state) {
   (void)state;
   uint64_t seed = 19;

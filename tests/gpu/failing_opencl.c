@@ -8,7 +8,8 @@
 #include <stdlib.h>
 #include <string.h>
 
-#pragma GCC visibility push(default) /* the functions are looked up by name */
+#pragma GCC visibility push(default) /* functions are looked up by name, so that they need no declarations \
+                                      */
 
 typedef void *object;
 

@@ -42,7 +42,7 @@ static uint32_t next_bits(uint64_t *state) {
   return (uint32_t)(*state >> 32);
 }
 
-/* From low to high. */
+/* A random number from low to high. */
 static float number_between(uint64_t *state, float low, float high) {
   return low + (high - low) * ((float)(next_bits(state) >> 8) * 0x1p-24f);
 }
@@ -65,7 +65,7 @@ static void test_functions(void **state) {
   assert_same(greater(NAN, 1), lanes_max(lanes_set(NAN), lanes_set(1))[0]);
 }
 
-/* Weights of 16-bit voxels, split into bytes, and their sums: those of whole numbers, also with slopes. */
+/* Weights of 16-bit voxels are split into bytes. Their sums are those of whole numbers, also with slopes. */
 static void test_rows(void **state) {
   (void)state;
   uint64_t seed = 5;

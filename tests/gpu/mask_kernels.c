@@ -33,7 +33,7 @@ static lanes3 mask_slope_of_lanes(const mask_lattice *lattice, lanes3 points) {
 
 enum { X = 9, Y = 6, Z = 7, POINTS = X * Y * Z, BRICKS = 3 * 2 * 2, ROUNDS = 4000 };
 
-/* A mask of random numbers, with two even bricks. The parts have the order of the device. */
+/* A mask of random numbers with two even bricks. Its parts are in the order that devices use. */
 typedef struct made_mask {
   _Alignas(16) uint32_t bricks[BRICKS][2];
   _Alignas(16) uint16_t factors[POINTS + 1];

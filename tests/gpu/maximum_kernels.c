@@ -12,7 +12,7 @@
 
 enum { ROUNDS = 4000, ROWS = CLASSIFIER_ENTRIES + 2 };
 
-/* One block of a slab, as maximum_block() takes it. */
+/* One block of a slab: the arguments of maximum_block(). */
 typedef struct made_slab {
   float shown[ROWS][4], values[MAXIMUM_ROWS * TILE_PIXELS];
   _Alignas(64) float before[TILE_PIXELS], current[TILE_PIXELS];
@@ -79,8 +79,8 @@ static void make_slab(made_slab *made, uint64_t *seed) {
   }
 }
 
-/* The value at a fraction of the way from a to b, as a coordinate: the ends of the covered part are moved as
- * cut_way() does. */
+/* The value at a fraction of the way from a to b, as a coordinate of the table. cut_way() moves the ends of
+ * the covered part in the same way. */
 static void ends_of_part(device_covered_span part, float from, float to, float ends[2]) {
   const float way = to - from;
   ends[0] = fused(way, part.begin, from);
@@ -107,7 +107,7 @@ static void test_slabs(void **state) {
                          values[MAXIMUM_SHEET * TILE_PIXELS]};
       const heights_in_box box = {own.enter[i], own.leave[i]};
       const device_covered_span part = device_covered(box, 1, 0.5f);
-      if (visible[i] == 0) { /* a device does not see the slab in this pixel; no sheet follows */
+      if (visible[i] == 0) { /* a device does not see the slab in this pixel, and no sheet follows */
         assert_true(made.values[i] == ray.greatest && made.values[MAXIMUM_SHEET * TILE_PIXELS + i] != 7 &&
                     (bits >> i & 1) == 0);
         continue;
@@ -126,7 +126,7 @@ static void test_slabs(void **state) {
   assert_true(peaks > 100 && shown > ROUNDS / 4);
 }
 
-/* Ways that enter the walls of a mesh of cells, leave them, or lie on one side. */
+/* Ways that enter the walls of a mesh of cells, that leave them, or that lie on one side of them. */
 static void test_walls(void **state) {
   (void)state;
   const device_covered_span whole = {0, 1}, late = {0.5f, 0.5f};

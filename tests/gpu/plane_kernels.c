@@ -11,7 +11,7 @@
 #include "fill/plane_lanes.h"
 
 static lanes row_of_lanes(const plane_table *table, lanes3 slope) {
-  (void)slopes_at; /* it comes with the header, and is not called here */
+  (void)slopes_at; /* the header declares it; it is not called here */
   return row_of_matter(table, NULL, slope, slope, 0xffff, 1);
 }
 static lanes extinction_of_lanes(const plane_table *table, lanes row, lanes from, lanes to) {
@@ -46,7 +46,7 @@ static float number_between(uint64_t *state, float low, float high) {
   return low + (high - low) * ((float)(next_bits(state) >> 8) * 0x1p-24f);
 }
 
-/* Tables whose integrals rise. Nothing shows in the first hundred columns. */
+/* Tables of rising integrals. The first hundred columns show nothing. */
 static void make_tables(float (*sums)[4], float (*color)[4], uint64_t *seed) {
   for (int at = 0; at < POINTS; at++) {
     const int column = at % PLAN_PLANE_STRIDE, some = column > 100;

@@ -1,4 +1,5 @@
-/* gpu/program_cache.c - the folder of compiled kernels: what is found again, and what is removed. */
+/* gpu/program_cache.c - the folder in which compiled kernels are kept: which programs are found again, and
+ * which are removed. */
 #define _GNU_SOURCE /* mkdtemp */
 #include <setjmp.h>
 #include <stdarg.h>
@@ -27,7 +28,7 @@ static bool is_stored(const char *key, const void *bytes, size_t size) {
   return same;
 }
 
-/* A program is found by the driver, the device's name and the versions in its key alone. */
+/* A program is found only by the same driver, device name and versions, which are in its key. */
 static void test_keys(void **state) {
   (void)state;
   char bytes[] = "kernels";
@@ -40,8 +41,8 @@ static void test_keys(void **state) {
   assert_true(is_stored("opencl A, 1.1", bytes, sizeof bytes - 1));
 }
 
-/* The oldest programs are removed where all together exceed the limit. A program that is larger than a
- * quarter of the limit is not stored. */
+/* If all programs together exceed the limit, the oldest are removed. A program that is larger than a quarter
+ * of the limit is not stored. */
 static void test_limit(void **state) {
   (void)state;
   enum { SIZE = PROGRAM_CACHE_BYTES / 5, PROGRAMS = 8 };
@@ -51,7 +52,7 @@ static void test_limit(void **state) {
     snprintf(key, sizeof key, "program %d", i);
     store(key, bytes, SIZE);
     assert_true(is_stored(key, bytes, SIZE));
-    if (i < PROGRAMS - 1) sleep(1); /* the age of files is compared by the second */
+    if (i < PROGRAMS - 1) sleep(1); /* the ages of files are compared by the second */
   }
   for (int i = 0; i < PROGRAMS; i++) {
     snprintf(key, sizeof key, "program %d", i);

@@ -10,7 +10,8 @@
 
 enum { WIDTH = 45, HEIGHT = 37 };
 
-/* Dyadic fractions, so that Python computes the same floats. Premultiplied; the first row is empty. */
+/* The values are fractions of powers of two, so that Python computes the same floats. They are premultiplied,
+ * and the first row is empty. */
 static void fill(float *pixels) {
   for (int y = 1; y < HEIGHT; y++)
     for (int x = 0; x < WIDTH; x++) {

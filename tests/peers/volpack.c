@@ -22,7 +22,7 @@
 enum { SIDE = 256, VALUES = 256 };
 
 struct voxel {
-  unsigned short shade; /* the value, as the index into tables of colours: VolPack wants two bytes */
+  unsigned short shade; /* the value is the index into tables of colours; VolPack needs two bytes for it */
   unsigned char value;
 };
 
@@ -91,7 +91,7 @@ static struct voxel *read_volume(const char *path) {
   return voxels;
 }
 
-/* The grid fills the cube from -0.5 to 0.5. VolPack's eye looks along z of a left-handed frame. */
+/* The grid fills the cube from -0.5 to 0.5. VolPack's eye looks along the z of a left-handed frame. */
 static void look(vpContext *context, const struct job *job, double turn) {
   double c = cos(turn), s = sin(turn), half = job->height / 2 / SIDE;
   vpMatrix4 view = {{0}};

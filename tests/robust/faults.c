@@ -1,6 +1,6 @@
 /* tests/robust/faults.c - every allocation fails in turn, and every question whether to stop is answered with
- * yes, in all that the library does beside rendering (faults_rendering.c): a clean status, a line, nothing
- * held. */
+ * yes, in all calls of the library except rendering (faults_rendering.c). Each time there is a clean status
+ * and a message of one line, and no memory is held. */
 #include "faulty.h"
 #include "small_scenes.h"
 
@@ -79,7 +79,7 @@ static hl_status save_path(faulty *f, void *path, hl_error *error) {
   if (status == HL_OK) status = hl_volume_save(f->context, volume, path, error);
   hl_volume_release(volume);
   if (status == HL_OK) assert_int_equal(unlink(path), 0);
-  assert_int_not_equal(access(path, F_OK), 0); /* whole or not at all */
+  assert_int_not_equal(access(path, F_OK), 0); /* the file is whole, or it is not there */
   return status;
 }
 
@@ -124,10 +124,10 @@ static void test_making_volumes(void **state) {
 
 typedef struct scene_work {
   size_t index;
-  char *text; /* what the scene is written as */
+  char *text; /* the text of the scene that was written */
 } scene_work;
 
-/* A text of shapes that does not find its like costs time alone: the scene must still be the same. */
+/* If a text of shapes finds no equal text, that costs only time: the scene must be the same. */
 static hl_status read_scene(faulty *f, void *data, hl_error *error) {
   const scene_work *work = data;
   hl_scene *scene = NULL;
@@ -179,7 +179,8 @@ static void test_scenes(void **state) {
   faulty_close(&f);
 }
 
-/* A ball that fades out, with noise or without: things with surfaces, and a field. */
+/* A ball that fades out, with noise or without: a volume of things with surfaces, and a volume that is a
+ * field. */
 static hl_status make_ball(hl_context *context, bool noise, hl_volume **volume, hl_error *error) {
   enum { SIDE = 20 };
   static unsigned char voxels[SIDE * SIDE * SIDE];
@@ -198,7 +199,8 @@ static hl_status make_ball(hl_context *context, bool noise, hl_volume **volume, 
   return hl_volume_create(context, &description, volume, error);
 }
 
-/* What is found out about a volume stays with it: each run makes its own. data: bool, with noise. */
+/* Results about a volume are kept with the volume, so that each run makes a volume of its own. data: a bool,
+ * whether there is noise. */
 static hl_status show_volume(faulty *f, void *data, hl_error *error) {
   hl_volume *volume = NULL;
   hl_scene *scene = NULL;
@@ -331,8 +333,8 @@ static void test_the_context_itself(void **state) {
   faulty_close(&f);
 }
 
-/* The system's allocator takes part where volumes are read and written: zlib stands it, the JSON parser does
- * not. */
+/* The system's allocator fails, too, while volumes are read and written. zlib survives that, and the JSON
+ * parser does not. */
 #ifdef FAULTY_SYSTEM
 enum { TESTS = 2 };
 #else

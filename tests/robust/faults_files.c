@@ -1,9 +1,6 @@
 /* tests/robust/faults_files.c - every allocation fails in turn, and every question whether to stop is
- * answered with yes, while files of the formats are loaded that faults.c does not write: the committed inputs
- * of the fuzz targets.
- *
- * usage: faults_files CORPUS_FOLDER
- */
+ * answered with yes, while files are loaded of the formats that faults.c does not write: the committed inputs
+ * of the fuzz targets. usage: faults_files CORPUS_FOLDER */
 #define _GNU_SOURCE
 #include <dirent.h>
 #include <setjmp.h>
@@ -20,7 +17,7 @@
 #include "faulty.h"
 #include "volume_files.h"
 
-/* Loads a file and gives its size and its range, or for a mesh its box. */
+/* Loads a file and computes its size and its range or, for a mesh, its box. */
 typedef hl_status file_loader(hl_context *context, const char *path, double bounds[6], hl_error *error);
 
 static hl_status load_volume(hl_context *context, const char *path, double bounds[6], hl_error *error) {
@@ -44,12 +41,12 @@ static hl_status load_mesh(hl_context *context, const char *path, double bounds[
   return status;
 }
 
-/* A fuzz target's inputs. An input is one file, or, cut at the first line "%%%%", two. */
+/* The inputs of a fuzz target. An input is one file or, cut at the first line "%%%%", two files. */
 typedef struct file_kind {
-  const char *target, *ending; /* ending: of the inputs' names; "": all inputs */
-  const char *name, *second;   /* the names that the files get */
+  const char *target, *ending; /* the ending of the inputs' names; "": all inputs */
+  const char *name, *second;   /* the names under which the two files are written */
   file_loader *load;
-  bool folder; /* the folder is loaded, in which the input stands under both names */
+  bool folder; /* whether the folder is loaded, in which the input stands under both names */
 } file_kind;
 
 static const file_kind kinds[] = {{"dicom", "", "v.dcm", "w.dcm", load_volume, false},
@@ -86,11 +83,11 @@ static const char *corpus;
 typedef struct file_work {
   const file_kind *kind;
   char path[PATH_BYTES];
-  double bounds[6]; /* of the file, loaded without faults */
+  double bounds[6]; /* the bounds of the file's values when it is loaded without faults */
 } file_work;
 
-/* Where the work does without an allocation, a smooth wall of cells is missing, or a list of bricks keeps
- * room that it does not need: the voxels are the same. */
+/* If an allocation fails that the work can do without, a smooth wall of cells is missing, or a list of bricks
+ * keeps memory that it does not need. The voxels are the same. */
 static hl_status load(faulty *f, void *data, hl_error *error) {
   const file_work *work = data;
   double bounds[6];

@@ -1,9 +1,7 @@
 /* tests/robust/faults_made.c - every allocation fails in turn, and every question whether to stop is answered
- * with yes, in the calls that faults.c does not have: volumes of particles, cells and adaptive grids, and
- * what is made of volumes: meshes, previews, planes, files, scenes, figures, plans and frames.
- *
- * usage: faults_made [NAME]
- */
+ * with yes, in the calls that faults.c does not test: volumes of particles, cells and adaptive grids, and
+ * things that are made of volumes: meshes, previews, planes, files, scenes, figures, plans and frames. usage:
+ * faults_made [NAME] */
 #include <math.h>
 #include <setjmp.h>
 #include <stdarg.h>
@@ -46,7 +44,8 @@ static void scatter_particles(double positions[PARTICLES][3], float values[PARTI
     }
 }
 
-/* Volumes of particles: sparse and periodic, so that some are arrays and some are bricks. */
+/* Volumes of particles that are far apart or periodic, so that some volumes are arrays and some are bricks.
+ */
 static hl_status particles(hl_context *context, int kind, hl_volume **volume, hl_error *error) {
   double positions[PARTICLES][3];
   float values[PARTICLES];
@@ -60,7 +59,7 @@ static hl_status particles(hl_context *context, int kind, hl_volume **volume, hl
   d.quantity = (hl_particles_quantity)kind;
   if (kind == 1)
     for (int a = 0; a < 3; a++) d.period[a] = 1;
-  if (kind == 2) positions[0][0] = 9; /* far away: most of the box is empty */
+  if (kind == 2) positions[0][0] = 9; /* this particle is far away, so that most of the box is empty */
   return hl_volume_from_particles(context, &d, volume, error);
 }
 
@@ -87,7 +86,7 @@ static hl_status find_smoothing(faulty *f, void *data, hl_error *error) {
   return hl_particles_find_smoothing(f->context, &d, lengths, error);
 }
 
-/* A cube of hexahedra, half of which are long. */
+/* A cube of hexahedra. Half of them are long. */
 static hl_status cells(hl_context *context, bool of_cells, hl_volume **volume, hl_error *error) {
   enum { POINTS = 5, CELLS = POINTS - 1 };
   double points[POINTS * POINTS * POINTS][3], values[POINTS * POINTS * POINTS];
@@ -163,7 +162,7 @@ static hl_status make_adaptive(faulty *f, void *data, hl_error *error) {
 
 /* ---- what is made of volumes ---- */
 
-/* A cube of voxels. labels: of three values; else a ball that fades out. */
+/* A cube of voxels. labels: whether they are labels of three numbers; else they are a ball that fades out. */
 static hl_status cube(hl_context *context, size_t side, bool labels, hl_volume **volume, hl_error *error) {
   hl_volume_description d;
   unsigned char *voxels = malloc(side * side * side);
@@ -184,7 +183,7 @@ static hl_status cube(hl_context *context, size_t side, bool labels, hl_volume *
   return status;
 }
 
-static double expected_area; /* of the meshes that are being made; 0 before the first one */
+static double expected_area; /* the area of the meshes that are made; 0 before the first one */
 
 static hl_status keep_mesh(faulty *f, hl_mesh *mesh, hl_error *error) {
   static const char *const endings[] = {"ply", "stl", "obj"};
@@ -199,7 +198,7 @@ static hl_status keep_mesh(faulty *f, hl_mesh *mesh, hl_error *error) {
   for (int n = 0; status == HL_OK && n < 3; n++) {
     snprintf(path, sizeof path, "%s/mesh.%s", folder, endings[n]);
     status = hl_mesh_save(f->context, mesh, path, error);
-    assert_int_equal(access(path, F_OK) == 0, status == HL_OK); /* whole or not at all */
+    assert_int_equal(access(path, F_OK) == 0, status == HL_OK); /* the file is whole, or it is not there */
     unlink(path);
   }
   return status;
@@ -346,7 +345,7 @@ static hl_status compose_meshes(faulty *f, void *data, hl_error *error) {
   return status;
 }
 
-/* A preview's copies of 64^3 voxels, of values and of labels. Where memory is short for the copies that the
+/* A preview's copies of 64^3 voxels, of values and of labels. If memory is short for the copies that the
  * second scene needs, the volume itself is rendered. */
 static hl_status preview(faulty *f, void *data, hl_error *error) {
   const bool labels = *(const bool *)data;
@@ -399,7 +398,7 @@ static hl_status cells_by_points(hl_context *context, hl_volume **volume, hl_err
   return cells(context, false, volume, error);
 }
 
-/* Makes a scene with hard shadows and without a sky of a volume, which is released. */
+/* Makes a scene of a volume, with hard shadows and without a sky. The volume is released. */
 static hl_status show_plainly(hl_context *context, hl_volume *volume, hl_scene **scene, hl_error *error) {
   hl_scene *rich = NULL;
   hl_status status = show(context, volume, NULL, 0, &rich, error);
@@ -413,8 +412,8 @@ static hl_status show_plainly(hl_context *context, hl_volume *volume, hl_scene *
   return status;
 }
 
-/* A frame of a volume of bricks. The volume is made anew each time, as things that are found out about it
- * stay with it; other works have the failures of that. */
+/* A frame of a volume of bricks. The volume is made anew each time, because results about it are kept with
+ * it. Other tests have the failures of making it. */
 static hl_status render_bricks(faulty *f, maker *make, hl_error *error) {
   hl_volume *volume = NULL;
   hl_scene *scene = NULL;
@@ -503,8 +502,8 @@ typedef struct work {
   const char *name;
   faulty_work *run;
   void *data;
-  long allocations, questions; /* the least numbers of them */
-  bool recovers;               /* a failing allocation may cost no more than time or exactness */
+  long allocations, questions; /* the least numbers of allocations and questions that each work must have */
+  bool recovers;               /* whether a failing allocation may cost only time or exactness */
 } work;
 
 static const work works[] = {{"particles", make_particles, NULL, 10, 10, true},

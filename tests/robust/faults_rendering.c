@@ -1,5 +1,6 @@
 /* tests/robust/faults_rendering.c - every allocation of a frame fails in turn, and every question whether to
- * stop is answered with yes: a clean status, a line, nothing held, and the same bytes once memory is back. */
+ * stop is answered with yes. Each time there is a clean status and a message of one line, and no memory is
+ * held. Once there is memory again, the frame has the same bytes. */
 #include "faulty.h"
 #include "small_scenes.h"
 
@@ -31,7 +32,7 @@ static int close_folder(void **state) {
 }
 
 typedef struct render_work {
-  hl_renderer *renderer; /* null: a fresh one each time */
+  hl_renderer *renderer; /* null: each frame has a new renderer */
   hl_scene *scene, *other;
   hl_image *expected;
   float *pixels;
@@ -69,7 +70,7 @@ static hl_status render(faulty *f, void *data, hl_error *error) {
   return status;
 }
 
-/* The renderer that failed gives the picture that it should once it can. */
+/* Renders again by the renderer that failed. The picture must be right. */
 static hl_status render_again(faulty *f, void *data, hl_error *error) {
   render_work *work = data;
   memset(work->pixels, 0, small_scene_floats(work->scene) * sizeof(float));
@@ -113,8 +114,7 @@ static void test_rendering(void **state) {
   faulty_close(&f);
 }
 
-/* A renderer that has been shown another scene before every frame, so that it must make all its things
- * anew. */
+/* The renderer draws another scene before every frame, so that it must make everything anew. */
 static hl_status render_after_another(faulty *f, void *data, hl_error *error) {
   render_work *work = data;
   long allocations = atomic_exchange(&f->allocations_left, -1),

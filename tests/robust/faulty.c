@@ -10,12 +10,12 @@
 
 #include "core/pool.h"
 
-/* The byte that fills new memory. Whoever reads it as an index reads far beyond every array. */
+/* New memory is filled with this byte. Code that reads it as an index reads far beyond every array. */
 enum { UNWRITTEN = 0x76 };
 
-/* The linker calls these functions in place of the pool's. The renderer asks every few milliseconds whether
- * to stop, which is seldom in a frame of a few pixels. So here it asks before each run of the pool and in the
- * middle of it, after which a part of the results is written and a part is not. */
+/* The linker calls these functions in place of the pool's. The renderer asks whether to stop every few
+ * milliseconds, which is seldom in a frame of a few pixels. So these functions ask before each run of the
+ * pool and in the middle of it, when a part of the results is written and a part is not. */
 typedef void pool_function(void *data, size_t index, int worker);
 
 void __wrap_hl_pool_run(hl_pool *pool, size_t count, pool_function *function, void *data);
@@ -33,7 +33,7 @@ typedef struct asking_run {
   hl_pool *pool;
   pool_function *function;
   void *data;
-  size_t middle; /* the index before which the caller of the run asks */
+  size_t middle; /* the caller of the run asks before this index */
   bool asked;
 } asking_run;
 
@@ -137,7 +137,7 @@ static void disarm(faulty *f) {
   atomic_store(&f->for_good, false);
 }
 
-/* One run with a fault ahead; false if the work came to its end before it. */
+/* Runs the work with a fault ahead. Returns false if the work came to its end before the fault. */
 static bool run(faulty *f, faulty_work *work, faulty_work *after, void *data, hl_status expected,
                 bool may_recover) {
   hl_error error = {0};
@@ -168,9 +168,11 @@ static bool run(faulty *f, faulty_work *work, faulty_work *after, void *data, hl
   return true;
 }
 
-/* Beyond EACH allocations every STEPth: they come from loops over the like. A sanitizer takes fifteen times
- * as long and looks for other faults, in the same code: sooner, fewer are enough for it. */
-#if defined(__has_feature) && !defined(__SANITIZE_ADDRESS__) /* clang's way to tell */
+/* The first EACH allocations fail one by one, and then every STEPth, since later ones come from loops over
+ * things of the same kind. A sanitizer makes the work fifteen times slower. It looks for other faults in the
+ * same code, for which fewer failures are enough. */
+/* the way in which clang tells that there is a sanitizer */
+#if defined(__has_feature) && !defined(__SANITIZE_ADDRESS__)
 #if __has_feature(address_sanitizer)
 #define __SANITIZE_ADDRESS__
 #endif

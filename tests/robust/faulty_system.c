@@ -1,6 +1,7 @@
-/* tests/robust/faulty_system.c - the system's allocator, which other libraries and the C library use, fails
- * as the context's does. Linked into a program, it takes the place of malloc and its like. libtiff is spared:
- * its TIFFReadDirectory() follows a null pointer when malloc fails within it (4.5.0). */
+/* tests/robust/faulty_system.c - the system's allocator, which the C library and other libraries use, fails
+ * as the context's allocator does. A program that is linked with this file calls it in place of malloc() and
+ * its like. Calls of libtiff do not fail, since TIFFReadDirectory() follows a null pointer if malloc() fails
+ * in it (4.5.0). */
 #define _GNU_SOURCE
 #include <dlfcn.h>
 #include <errno.h>
@@ -9,7 +10,7 @@
 
 #include "faulty.h"
 
-/* True where an allocation that `caller` (an address in its code) asks for is to fail. */
+/* Whether an allocation is to fail. caller: an address in the code that asks for memory. */
 static bool fails_for(const void *caller) {
   Dl_info library;
   if (!faulty_system_at_work()) return false;

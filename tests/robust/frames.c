@@ -9,9 +9,10 @@
 #define _GNU_SOURCE
 #include "small_scenes.h"
 
-/* The address sanitizer keeps what is released for a while: there, only what the context holds can tell, and
- * that is the same from the second round on. */
-#if defined(__has_feature) && !defined(__SANITIZE_ADDRESS__) /* clang's way to tell */
+/* The address sanitizer keeps released memory for a while. With it, only the memory that the context holds
+ * can be compared, which is the same from the second round on. */
+/* the way in which clang tells that there is a sanitizer */
+#if defined(__has_feature) && !defined(__SANITIZE_ADDRESS__)
 #if __has_feature(address_sanitizer)
 #define __SANITIZE_ADDRESS__
 #endif
@@ -34,15 +35,15 @@ enum { KEEPS_RELEASED = 0, FRAMES = 200 };
 enum { SCENES = SMALL_SCENES_WITHOUT_FILES };
 
 typedef struct soak {
-  long frames;    /* asked for; 0: no end */
-  double seconds; /* asked for; 0: no end */
+  long frames;    /* the number of frames that is asked for; 0: no end */
+  double seconds; /* the number of seconds that is asked for; 0: no end */
   hl_context *context;
   hl_renderer *renderer;
   hl_scene *scenes[SCENES];
   float *first[SCENES]; /* the pictures of the first round */
   float *pixels;
-  uint64_t held_first; /* by the context after the second round */
-  long resident_first; /* bytes of the process, likewise */
+  uint64_t held_first; /* the bytes that the context holds after the second round */
+  long resident_first; /* the bytes of the process after the second round */
   long done;
 } soak;
 
@@ -61,8 +62,9 @@ static long resident_bytes(void) {
   return pages * sysconf(_SC_PAGESIZE);
 }
 
-/* The system may join the small pages of a block to large ones at any time, which makes what was never
- * written resident, too: here only what frames themselves hold is to be seen. */
+/* The system may join the small pages of a block to a large page at any time, and memory that was never
+ * written then counts as resident. It must not do so here, so that only the frames' own memory is compared.
+ */
 static void keep_pages_small(void) { (void)prctl(PR_SET_THP_DISABLE, 1, 0, 0, 0); }
 
 static void give_up(const char *why, const hl_error *error) {
@@ -96,7 +98,8 @@ static void close_soak(soak *s) {
   hl_context_destroy(s->context);
 }
 
-/* One frame of the round; the first round's pictures are those that all later ones must give. */
+/* Renders one frame of the round. The pictures of the first round are those that all later rounds must have.
+ */
 static void draw(soak *s, size_t n, bool first_round) {
   hl_error error = {0};
   size_t bytes = small_scene_floats(s->scenes[n]) * sizeof(float);
@@ -107,7 +110,7 @@ static void draw(soak *s, size_t n, bool first_round) {
   s->done++;
 }
 
-/* A frame that no other is like: a scene turned, and of another size. */
+/* Renders a frame that is like no other: a scene that is turned and has another size. */
 static void draw_another(soak *s, long round) {
   hl_error error = {0};
   hl_scene *scene = NULL;
@@ -133,7 +136,7 @@ static void report(const soak *s) {
           (double)resident_bytes() / 1e6, (double)s->resident_first / 1e6);
 }
 
-/* Without a renderer only the scenes hold memory, always the same. */
+/* Without a renderer only the scenes hold memory, which is always the same. */
 static void renew(soak *s, uint64_t *held) {
   hl_error error = {0};
   hl_renderer_destroy(s->renderer);
@@ -142,8 +145,8 @@ static void renew(soak *s, uint64_t *held) {
   must(hl_renderer_create(s->context, &s->renderer, &error), "renderer", &error);
 }
 
-/* Buffers are as large as the largest frame needed: where all rounds are alike, what is held is always the
- * same. odd: with a frame in between that is like no other. */
+/* Buffers are as large as the largest frame needed. If all rounds are alike, the memory that is held is
+ * always the same. odd: whether there is a frame that is like no other between them. */
 static void run(soak *s, bool odd) {
   enum { ROUNDS_OF_A_RENDERER = 200 };
   uint64_t held_by_scenes = 0;

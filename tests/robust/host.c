@@ -1,6 +1,6 @@
-/* tests/robust/host.c - the library as a guest: in a host that has another locale, rounds and flushes and
- * traps as it likes, has a umask, calls the library from its callbacks, and changes voxels that it has lent.
- */
+/* tests/robust/host.c - the library as a guest in a host program that has another locale, other rounding,
+ * flushing and traps of floats, and a umask, that calls the library from its callbacks, and that changes
+ * voxels which the library has borrowed. */
 #define _GNU_SOURCE
 #include "small_scenes.h"
 
@@ -82,7 +82,7 @@ enum { SIDE = 12, VOXELS = SIDE * SIDE * SIDE };
 static float voxels[VOXELS];
 static double percents[3], axis_lengths[3];
 
-/* The numbers that the host hands over are made before its environment changes. DAZ takes 1e-41 for 0. */
+/* The host's numbers are made before its environment changes, because with DAZ set 1e-41 would be 0. */
 static void make_numbers(void) {
   static const double given_percents[] = {1, 33.3, 99.5};
   for (int n = 0; n < VOXELS; n++) {
@@ -92,7 +92,7 @@ static void make_numbers(void) {
   for (int a = 0; a < 3; a++) percents[a] = given_percents[a], axis_lengths[a] = 0.1 * (a + 7);
 }
 
-/* What a bare volume is taken for, its statistics and its files. */
+/* The kind that a bare volume is taken for, its statistics, and its files. */
 static void look_at_volume(hl_context *context, results *all) {
   static const char *const endings[] = {".nrrd", ".mha", ".vti", ".nii", ".mrc"};
   hl_volume_description description;
@@ -188,7 +188,7 @@ static void assert_same(const char *host) {
 
 /* ---- locales ---- */
 
-/* Makes a locale of Debian's sources; false where they are not installed. */
+/* Makes a locale from Debian's sources. Returns false if they are not installed. */
 static bool make_locale(const char *source) {
   char command[400];
   snprintf(command, sizeof command, "localedef -i %s -f UTF-8 %s/%s.UTF-8 >/dev/null 2>&1", source, folder,
@@ -199,7 +199,9 @@ static bool make_locale(const char *source) {
 }
 
 static void test_locale(void **state) {
-  static const char *const sources[] = {"de_DE", "ps_AF", "tr_TR"}; /* 1,5; 1٫5; no i is an I */
+  /* one and a half is 1,5 in the first and 1٫5 in the second; in the third, a small i is no I when it is made
+   * large */
+  static const char *const sources[] = {"de_DE", "ps_AF", "tr_TR"};
   (void)state;
   setenv("LOCPATH", folder, 1);
   for (size_t n = 0; n < sizeof sources / sizeof *sources; n++) {
@@ -254,7 +256,7 @@ static void test_traps(void **state) {
   assert_same_environment("traps");
 }
 
-/* A sticky flag is the host's, too. */
+/* A flag of floats that the host has set stays set, too. */
 static void test_flags(void **state) {
   (void)state;
   feclearexcept(FE_ALL_EXCEPT);
@@ -351,8 +353,8 @@ typedef union lent_voxels {
 
 static lent_voxels lent;
 
-/* Fills the voxels with a pattern: 0 is a ball, 1 all bits, 2 zeros, others any bits: as floats also NaN,
- * infinite and huge numbers. */
+/* Fills the voxels with a pattern. 0: a ball; 1: all bits; 2: zeros; others: random bits, which as floats are
+ * also NaN, infinite and huge numbers. */
 static void scribble(hl_voxel_type type, unsigned pattern) {
   for (int n = 0; n < VOXELS; n++) {
     int i = n % SIDE - 6, j = n / SIDE % SIDE - 6, k = n / SIDE / SIDE - 6, away = i * i + j * j + k * k;
@@ -378,8 +380,8 @@ static hl_volume *lend(hl_context *context, hl_voxel_type type) {
   return volume;
 }
 
-/* Every use of the voxels that there is. What comes of it is not known; that it comes, with a line if it
- * fails, is asserted, and that memory is left alone the sanitizers say. */
+/* Uses the voxels in every way. The results are not known. A call that fails must have a message, and the
+ * sanitizers see whether memory is misused. */
 static void use_voxels(hl_context *context, hl_volume *volume, hl_renderer *const renderers[4],
                        hl_scene *const scenes[4]) {
   static float pixels[24 * 20 * 4];
@@ -402,8 +404,8 @@ static void use_voxels(hl_context *context, hl_volume *volume, hl_renderer *cons
   if (hl_scene_for_volume(context, volume, "lent", &bare, &error) == HL_OK) hl_scene_release(bare);
 }
 
-/* Scenes of the volume: a look of its values; its isosurfaces and splatted; hard shadows; a label map, where
- * its values are whole and few. */
+/* Makes scenes of the volume: a look of its values; isosurfaces with splatting; hard shadows; a label map, if
+ * its values are few and whole. */
 static void make_scenes(hl_context *context, hl_volume *volume, hl_scene *scenes[4]) {
   hl_error error = {0};
   hl_volume_info info = {.struct_size = sizeof info};
@@ -463,7 +465,7 @@ static void change_voxels(hl_voxel_type type, bool meanwhile) {
   for (unsigned pattern = 1; pattern < PATTERNS; pattern++) {
     if (!meanwhile) scribble(type, pattern);
     use_voxels(context, volume, renderers, scenes);
-    hl_renderer_destroy(renderers[pattern % 4]); /* and with nothing kept */
+    hl_renderer_destroy(renderers[pattern % 4]); /* one renderer is made anew, so that it keeps nothing */
     assert_int_equal(hl_renderer_create(context, &renderers[pattern % 4], NULL), HL_OK);
   }
   atomic_store(&scribbling, false);
@@ -488,7 +490,7 @@ static void test_voxels_change_meanwhile(void **state) {
   change_voxels(HL_VOXEL_F32, true);
 }
 
-/* While a volume is made its statistics are found in several passes. */
+/* The statistics of a volume are computed in several passes. The voxels change while the volume is made. */
 static void test_voxels_change_while_a_volume_is_made(void **state) {
   (void)state;
   static hl_voxel_type types[] = {HL_VOXEL_U8, HL_VOXEL_U16, HL_VOXEL_F32};
@@ -535,7 +537,7 @@ static int close_folder(void **state) {
   return system(command);
 }
 
-/* usage: host [TESTS]: tests whose names match. */
+/* usage: host [TESTS]: runs the tests whose names match. */
 int main(int count, char **arguments) {
   const struct CMUnitTest tests[] = {
       cmocka_unit_test(test_locale),

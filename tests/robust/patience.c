@@ -40,8 +40,9 @@ static const case_of cases[] = {
     {"reference", SCENE("1500", ""), false, true},
     {"shape", NULL, false, false}};
 
-/* The clock that the library reads: each reading is half a millisecond after the last one. The library asks
- * after times of the clock; by this one it asks after the same work on every machine, idle or not. */
+/* The clock that the library reads. Each reading is half a millisecond after the one before. The library asks
+ * whether to stop after an interval of the clock. By this clock it asks after the same work on every machine,
+ * busy or not. */
 __attribute__((visibility("default"))) int clock_gettime(clockid_t clock, struct timespec *now) {
   static atomic_long readings;
   long reading = atomic_fetch_add(&readings, 1);
@@ -50,12 +51,12 @@ __attribute__((visibility("default"))) int clock_gettime(clockid_t clock, struct
   return 0;
 }
 
-/* Counted are those whose number is a power of two, and the last. */
+/* Questions are counted if their number is a power of two, and the last one is. */
 enum { LAST_QUESTION = 1024 };
 
-static bool at_work; /* the call that is looked at has begun */
+static bool at_work; /* whether the call that is tested has begun */
 static int questions;
-static char stage[32]; /* the last that the call told of */
+static char stage[32]; /* the last fraction that the call reported */
 
 static void on_progress(void *user_data, const char *name, double fraction) {
   (void)user_data, (void)fraction;
@@ -138,7 +139,8 @@ int main(int count, char **arguments) {
   hl_status status = one->json != NULL ? run_scene(context, one, &error) : run_shape(context, &error);
   hl_context_destroy(context);
   CALLGRIND_DUMP_STATS_AT("end");
-  bool far = strcmp(stage, one->json != NULL ? "render" : "load") == 0; /* beyond what is prepared */
+  /* whether the call has come beyond its preparation */
+  bool far = strcmp(stage, one->json != NULL ? "render" : "load") == 0;
   if (status == HL_ERROR_CANCELLED && questions == LAST_QUESTION && far) return 0;
   fprintf(stderr, "%s: status %d after %d questions, in stage \"%s\": %s\n", one->name, (int)status,
           questions, stage, error.message);

@@ -1,5 +1,5 @@
 /* tests/robust/threads.c - contexts, scenes and renderers in several threads at once, in forked processes,
- * cancelled from elsewhere, and with fewer threads than were asked for. */
+ * cancelled by another thread, and with fewer threads than were asked for. */
 #define _GNU_SOURCE
 #include "small_scenes.h"
 
@@ -39,7 +39,8 @@ static hl_scene *make_scene(hl_context *context, size_t index, int threads) {
   return made;
 }
 
-/* Whether the renderer gives the scene's picture. Asserts do not leave a thread: results are handed back. */
+/* Returns whether the renderer makes the scene's picture. A failing assert must not leave a thread, so that
+ * results are returned. */
 static bool renders(hl_renderer *renderer, const hl_scene *scene, size_t index) {
   float *pixels = malloc(FLOATS * sizeof *pixels);
   bool right = pixels != NULL && hl_renderer_render(renderer, scene, pixels, 4 * 24, NULL, NULL) == HL_OK &&
@@ -76,7 +77,7 @@ typedef struct visitor {
   pthread_t thread;
   int number;
   hl_context *context; /* null: its own */
-  hl_scene **scenes;   /* [SCENES]; null: its own */
+  hl_scene **scenes;   /* [SCENES]; null: the thread makes its own */
   bool right;
 } visitor;
 
@@ -138,7 +139,7 @@ static void test_shared_scenes(void **state) {
 
 typedef struct patience {
   pthread_t owner;
-  atomic_bool stop, strayed; /* strayed: asked from another thread than the owner */
+  atomic_bool stop, strayed; /* whether a thread other than the owner asked */
   atomic_int questions;
 } patience;
 
@@ -201,8 +202,8 @@ static void test_cancelled_from_another_thread(void **state) {
 #endif
 #endif
 
-#ifndef UNDER_THREAD_SANITIZER /* which allows no threads in a child */
-/* In a child: 0 if everything is right. */
+#ifndef UNDER_THREAD_SANITIZER /* the option that allows no threads in a child process */
+/* Called in a child process. Returns 0 if everything is right. */
 static int render_in_child(hl_context *context, hl_renderer *idle, hl_scene *scene) {
   if (!renders(idle, scene, 0)) return 1;
   if (!renders_afresh(context, scene, 0)) return 2;
@@ -225,7 +226,7 @@ static void test_after_fork(void **state) {
   hl_scene *scene = make_scene(context, 0, RENDER_THREADS);
   hl_renderer *renderer = NULL;
   assert_int_equal(hl_renderer_create(context, &renderer, NULL), HL_OK);
-  assert_true(renders(renderer, scene, 0)); /* its threads are there now */
+  assert_true(renders(renderer, scene, 0)); /* the renderer has made its threads by now */
   for (int i = 0; i < 3; i++) {
     pid_t child = fork();
     if (child == 0) _exit(render_in_child(context, renderer, scene));
@@ -238,13 +239,13 @@ static void test_after_fork(void **state) {
   hl_context_destroy(context);
 }
 
-/* A frame that stops at one of its questions whether to go on, until it may: its other threads are at work or
- * wait for it. */
+/* Stops a frame at one of its questions whether to go on, until it may go on. Its other threads are at work,
+ * or wait for it. */
 typedef struct held_frame {
   pthread_t thread;
-  int question;  /* the one at which it stops, from 0 */
-  int asked;     /* questions of the frame so far */
-  bool in_frame; /* false while the scene is made, which asks, too */
+  int question;  /* the number of the question at which it stops, from 0 */
+  int asked;     /* the number of questions of the frame so far */
+  bool in_frame; /* false while the scene is made, which asks questions, too */
   sem_t reached, go_on;
   bool right;
 } held_frame;
@@ -271,14 +272,15 @@ static void *render_held(void *data) {
   hl_scene *scene = make_scene(context, 0, RENDER_THREADS);
   held->in_frame = true;
   held->right = renders(renderer, scene, 0) && held->asked > held->question + 1;
-  if (held->asked <= held->question) sem_post(&held->reached); /* or the test would wait for ever */
+  if (held->asked <= held->question) sem_post(&held->reached); /* else the test would wait for ever */
   hl_renderer_destroy(renderer);
   hl_scene_release(scene);
   hl_context_destroy(context);
   return NULL;
 }
 
-/* A child made while another thread is within a frame: at its first question, and later ones. */
+/* A child process is made while another thread renders a frame: at the frame's first question, and at later
+ * ones. */
 static void test_fork_in_the_middle(void **state) {
   (void)state;
   for (int i = 0; i < 5; i++) {
@@ -305,7 +307,7 @@ static void test_fork_in_the_middle(void **state) {
 
 /* ---- threads that do not start, and signals ---- */
 
-static atomic_int threads_left = -1; /* that the system starts; negative: all */
+static atomic_int threads_left = -1; /* the number of threads that the system starts; negative: all */
 
 int __real_pthread_create(pthread_t *thread, const pthread_attr_t *attributes, void *(*start)(void *),
                           void *data);
@@ -347,7 +349,7 @@ static void test_fewer_threads(void **state) {
   }
 }
 
-/* A signal that all the program's threads hold back waits for them: the library's threads take none. */
+/* If all the program's threads block a signal, it stays pending: the library's own threads do not take it. */
 static void test_signals_go_to_the_program(void **state) {
   (void)state;
   sigset_t one, pending, before;
@@ -359,7 +361,7 @@ static void test_signals_go_to_the_program(void **state) {
   assert_int_equal(hl_renderer_create(context, &renderer, NULL), HL_OK);
   assert_true(renders(renderer, scene, 0));
   assert_int_equal(pthread_sigmask(SIG_BLOCK, &one, &before), 0);
-  kill(getpid(), SIGUSR2); /* ends the process if any thread takes it */
+  kill(getpid(), SIGUSR2); /* the handler ends the process if any thread takes the signal */
   assert_true(renders(renderer, scene, 0));
   sigpending(&pending);
   assert_true(sigismember(&pending, SIGUSR2));
