@@ -90,7 +90,7 @@ static const hl_brick_entry *entry_of(const hl_bricks *bricks, const size_t bloc
   return &bricks->directory[(block[2] * n[1] + block[1]) * n[0] + block[0]];
 }
 
-/* The B-spline of four coefficients at t from 0 to 1 after the second, or a derivative of it. */
+/* The B-spline of four coefficients, or a derivative of it, at t from 0 to 1 after the second coefficient. */
 static void spline_weights(double t, int order, double weight[4]) {
   double u = 1 - t;
   const double table[3][4] = {{u * u * u / 6, (4 - 6 * t * t + 3 * t * t * t) / 6,
@@ -100,8 +100,8 @@ static void spline_weights(double t, int order, double weight[4]) {
   memcpy(weight, table[order], sizeof table[order]);
 }
 
-/* The field at a point as the brick of a block of level 0 gives it. order: of the derivative along each axis,
- * by the world's coordinates. */
+/* The field at a point by the brick of a block of level 0. order: of the derivative along each axis, in the
+ * world's coordinates. */
 static double field(const hl_bricks *bricks, const size_t block[3], const double at[3], const int order[3]) {
   const hl_brick_entry *entry = entry_of(bricks, block);
   double scale = (double)(1 << entry->level), weight[3][4], sum = 0;
@@ -123,7 +123,7 @@ static double field(const hl_bricks *bricks, const size_t block[3], const double
   return sum;
 }
 
-/* The greatest difference across the faces between blocks, of the field and of its derivatives of one order.
+/* The greatest difference of the field, or of its derivatives of one order, across the faces between blocks.
  */
 static double greatest_jump(const hl_bricks *bricks, int order, size_t *borders) {
   double greatest = 0;
@@ -139,7 +139,7 @@ static double greatest_jump(const hl_bricks *bricks, int order, size_t *borders)
           for (int sample = 0; sample < 36; sample++) {
             double at[3] = {(double)(block[0] * SIDE), (double)(block[1] * SIDE), (double)(block[2] * SIDE)};
             at[axis] += SIDE;
-            at[(axis + 1) % 3] += sample % 6 * 1.6; /* from edge to edge */
+            at[(axis + 1) % 3] += sample % 6 * 1.6; /* the points go from one edge of the face to the other */
             at[(axis + 2) % 3] += sample / 6 * 1.6;
             for (int d = 0; d < 3; d++) {
               int orders[3] = {0, 0, 0};
@@ -178,7 +178,7 @@ static void borders_are_smooth(void **state) {
   }
 }
 
-/* The test above can fail: one wrong coefficient at a border is seen. */
+/* The test above can fail: if one coefficient at a border is wrong, it finds that. */
 static void a_wrong_border_is_seen(void **state) {
   hl_context *context = *state;
   test_source data = {1, random_value};
@@ -300,15 +300,15 @@ static void impossible_bricks_are_refused(void **state) {
   hl_pool_destroy(pool);
 }
 
-/* Counts the bricks that a descent asks about, all of which it splits. */
+/* Counts the bricks about which the descent asks. All of them are split. */
 static hl_bricks_choice count_and_split(void *data, int level, const size_t brick[3]) {
   (void)level, (void)brick;
   ++*(size_t *)data;
   return HL_BRICKS_SPLIT;
 }
 
-/* A list of bricks ends where the memory limit has no room for their coefficients. A field whose directory
- * alone has no room is refused before anything is asked about its bricks. */
+/* If the memory limit has no room for the coefficients of all bricks, the list of bricks ends before. If it
+ * has no room for the field's directory, the field is refused before anything is asked about its bricks. */
 static void lists_keep_within_the_limit(void **state) {
   hl_context *context = *state;
   enum { LIMIT = 1 << 20, BRICK_BYTES = 7 * 7 * 7 * 4 };

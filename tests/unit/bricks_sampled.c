@@ -1,5 +1,5 @@
-/* Fields at levels as they are sampled (bricks/evaluate.h, fill/): every instruction set gives the same
- * bytes, which are the field's values; constants and linear fields are exact. */
+/* Samples of fields at levels (bricks/evaluate.h, fill/). Every instruction set gives the same bytes, which
+ * are the field's values. Constants and linear fields are exact. */
 #include <math.h>
 #include <setjmp.h>
 #include <stdarg.h>
@@ -39,7 +39,8 @@ static void close_bench(field_bench *bench) {
 
 /* ---- one B-spline of level 0 ---- */
 
-/* The coefficients of level 0 are the dense grid's, and the sum of these is the field's value. */
+/* The coefficients of level 0 are those of the dense grid, and the sum of B-splines with them is the field's
+ * value. */
 static void test_coefficients(void **state) {
   (void)state;
   for (int shift = 2; shift <= 4; shift++) {
@@ -64,7 +65,7 @@ static void test_coefficients(void **state) {
   }
 }
 
-/* The numbers of a window are those of its points, also where it crosses borders of bricks and leaves the
+/* The numbers of a window are those of its points, also if the window crosses borders of bricks or leaves the
  * lattice. */
 static void test_windows(void **state) {
   (void)state;
@@ -138,7 +139,7 @@ static void test_gathered(void **state) {
         double expected = n % 3 == 1   ? octree_constant_value(0, 0, (const ptrdiff_t[3]){0, 0, 0})
                           : n % 3 == 2 ? octree_linear_at(at)
                                        : hl_bricks_value(&bench.bricks, at);
-        /* positions are floats, and the steepest slope is a few values a cell */
+        /* positions are floats, and the steepest slope is a few values per cell */
         if (within && !(fabs((double)scalar[i] - expected) < 1e-5 * size))
           fail_msg("field %d at %g %g %g: %.9g, not %.9g", n, at[0], at[1], at[2], (double)scalar[i],
                    expected);
@@ -153,7 +154,7 @@ static void test_gathered(void **state) {
   }
 }
 
-/* The range of any box of cells holds the values in it. */
+/* All values in a box of cells lie in the range that is found for the box. */
 static void test_ranges(void **state) {
   (void)state;
   field_bench bench;
@@ -176,8 +177,7 @@ static void test_ranges(void **state) {
   close_bench(&bench);
 }
 
-/* The ranges of rows of boxes, one after the other along y, are the ranges of their boxes, also where rows
- * leave the lattice. */
+/* The ranges of a row of boxes along y are those of the single boxes, also if the row leaves the lattice. */
 static void test_ranges_of_rows(void **state) {
   (void)state;
   enum { COUNT = SIDE / 2, ROWS = 12 };
@@ -209,7 +209,7 @@ static void test_ranges_of_rows(void **state) {
   }
 }
 
-/* The values of a row are those of its points, also beyond the lattice and where the row meets bricks of
+/* The values of a row are those of its points, also beyond the lattice and if the row crosses bricks of
  * several levels. */
 static void test_values_of_rows(void **state) {
   (void)state;
@@ -235,8 +235,8 @@ static void test_values_of_rows(void **state) {
 
 /* ---- without the finest level ---- */
 
-/* A linear field stays what it is, voxel by voxel, each in the middle of eight; a brick that is not of the
- * finest level keeps its coefficients, and there are no more bricks than before. */
+/* A linear field stays the same when it is made of voxels, each in the middle of eight points. A brick of a
+ * coarser level keeps its coefficients, and there are no more bricks than before. */
 static void test_coarser(void **state) {
   (void)state;
   for (int shift = 2; shift <= 4; shift++) {

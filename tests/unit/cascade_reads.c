@@ -1,5 +1,5 @@
-/* unit/cascade_reads.c - the rows that a cascade's passes find, against every pixel within reach looked
- * at. */
+/* unit/cascade_reads.c - the rows of tiles that a cascade's passes read, compared with a search of every
+ * pixel within reach. */
 #include <setjmp.h>
 #include <stdarg.h>
 #include <stddef.h>
@@ -20,7 +20,7 @@ static bool is_read(const uint64_t *by_sheet, int first, int last, int x, int y)
   return false;
 }
 
-/* Whether a tile that is read has a pixel in the rectangle of the buffer's pixels, ends included. */
+/* Returns whether a tile that is read has a pixel in the rectangle of the buffer's pixels, ends included. */
 static bool any_read(const uint64_t *by_sheet, int first, int last, int left, int top, int right,
                      int bottom) {
   for (int y = 0; y < TILES_Y; y++)
@@ -33,7 +33,7 @@ static bool any_read(const uint64_t *by_sheet, int first, int last, int left, in
 
 static void check_tile(const cascade_reads *reads, const uint64_t *by_sheet, int first, int last, int scale,
                        int reach, int x, int y) {
-  /* sideways whole tiles of the buffer count */
+  /* sideways, whole tiles of the buffer count */
   int left = (x * scale - (reach + TILE - 1) / TILE) * TILE,
       right = ((x + 1) * scale + (reach + TILE - 1) / TILE) * TILE - 1;
   tile_rows wanted = {TILE, 0};

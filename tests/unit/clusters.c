@@ -1,5 +1,5 @@
-/* unit/clusters.c - clusters hold every triangle once, their boxes and cones hold what is in them, and those
- * that are said to face away from a view do. */
+/* unit/clusters.c - clusters of triangles. Each triangle is in one cluster, the boxes and cones of clusters
+ * contain their triangles, and clusters that are said to face away from a view do. */
 #include <math.h>
 #include <setjmp.h>
 #include <stdarg.h>
@@ -18,7 +18,7 @@ enum { ACROSS = 96, ALONG = 40, VERTICES = ACROSS * ALONG, TRIANGLES = 2 * VERTI
 
 static const double PI = 3.14159265358979323846;
 
-/* A closed ring of radius 3 and thickness 1, its triangles in an order by chance, and spheres along it. */
+/* A closed ring of radius 3 and thickness 1, with its triangles in random order, and spheres along it. */
 typedef struct ring {
   hl_context *context;
   hl_pool *pool;
@@ -120,8 +120,8 @@ static void check_triangle(const surfaces *all, size_t c, uint32_t t) {
   }
 }
 
-/* Boxes hold what is in them, and are small: a square of 64 triangles of 0.0155 each would be a unit wide,
- * and some clusters hold two or three pieces; the ring's own box has a diagonal of 11.5. */
+/* Boxes contain their triangles and are small. A square of 64 triangles of the area 0.0155 would be a unit
+ * wide, and some clusters have two or three pieces. The box of the whole ring has a diagonal of 11.5. */
 static void test_boxes(void **state) {
   const ring *r = *state;
   const surfaces *all = &r->all;

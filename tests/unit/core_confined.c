@@ -117,7 +117,7 @@ static hl_context *confine(hl_context *context, const char *folder) {
   return confined;
 }
 
-/* Everything that is refused has the same words, whatever there is. */
+/* All refusals have the same words, whether there is a file or not. */
 static void test_words(void **state) {
   (void)state;
   hl_context *context = make_context(), *confined = confine(context, "inside");
@@ -135,7 +135,7 @@ static void test_words(void **state) {
   hl_context_destroy(context);
 }
 
-/* A header may name what lies below its folder. */
+/* A header may name files below its folder. */
 static void test_data_files(void **state) {
   (void)state;
   static const char *const names[] = {"../outside/secret.raw", "out.raw", "away/secret.raw", "absolute.raw"};
@@ -154,7 +154,7 @@ static void test_data_files(void **state) {
   assert_int_equal(hl_volume_load(confined, "inside/good.nhdr", &volume, NULL), HL_ERROR_IO);
   hl_error error = {0};
   assert_int_equal(hl_volume_load(confined, "pipe.raw", &volume, &error),
-                   HL_ERROR_IO); /* and does not wait */
+                   HL_ERROR_IO); /* the open must not wait for a writer */
   assert_string_equal(error.message, "pipe.raw: is not a regular file");
   hl_context_destroy(confined);
   hl_context_destroy(context);
@@ -193,7 +193,8 @@ static void test_nested(void **state) {
   hl_context_destroy(context);
 }
 
-/* Memory is that of the whole context, and what was made outlives the confined context's owner. */
+/* The memory counts for the whole context. Objects may be used after the owner of the confined context has
+ * released it. */
 static void test_memory(void **state) {
   (void)state;
   hl_context_options options;

@@ -60,8 +60,8 @@ static void test_runs(void **state) {
   }
 }
 
-/* Each run between an offer and its end makes its own calls before it returns, as the end does the offer's.
- */
+/* A run between an offer and the offer's end makes all its own calls before it returns. The end makes the
+ * offer's calls. */
 static void test_offers(void **state) {
   (void)state;
   static calls run, offered;
@@ -77,7 +77,7 @@ static void test_offers(void **state) {
       }
       hl_pool_finish_offer(team.pool);
       if (threads > 1) assert_each_made(&offered, count);
-      hl_pool_finish_offer(team.pool); /* nothing is offered: nothing happens */
+      hl_pool_finish_offer(team.pool); /* without an offer, the end does nothing */
       assert_each_made(&offered, 0);
     }
     dismiss(&team);
@@ -86,7 +86,7 @@ static void test_offers(void **state) {
 
 static int stop(void *user_data) { return *(const int *)user_data; }
 
-/* A cancelled pool makes none of the calls, and goes on after hl_pool_resume(). */
+/* A cancelled pool makes none of the calls. After hl_pool_resume() it works again. */
 static void test_cancelled_offer(void **state) {
   (void)state;
   static calls offered;

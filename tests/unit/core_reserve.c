@@ -1,5 +1,5 @@
-/* unit/core_reserve.c - blocks lent again and again: which are kept, for whom, and that all are given
- * back; and blocks of many arrays, which one function counts and hands out. */
+/* unit/core_reserve.c - blocks of memory that are lent repeatedly: which blocks are kept, and for whom, and
+ * that all are released. Blocks of many arrays, which one function counts and hands out. */
 #include <setjmp.h>
 #include <stdarg.h>
 #include <stddef.h>
@@ -27,7 +27,7 @@ static void release(hl_reserve *reserve) {
 
 static uint64_t held(const hl_reserve *reserve) { return hl_context_memory_held(reserve->context); }
 
-/* A frame that takes blocks of these sizes; the first of them. */
+/* A frame takes blocks of these sizes. Returns the first of them. */
 static void *frame(hl_reserve *reserve, size_t first, size_t second) {
   void *a = hl_reserve_take(reserve, first, 1), *b = second > 0 ? hl_reserve_take(reserve, second, 1) : NULL;
   assert_non_null(a);
@@ -45,7 +45,7 @@ static void test_lends_again(void **state) {
   assert_ptr_equal(frame(&reserve, LARGE - 5, 2 * LARGE), first); /* a little smaller */
   assert_ptr_equal(frame(&reserve, LARGE, 2 * LARGE), first);
   assert_int_equal(held(&reserve), 3 * LARGE);
-  assert_ptr_equal(frame(&reserve, LARGE, 0), first); /* what a frame does not take is released */
+  assert_ptr_equal(frame(&reserve, LARGE, 0), first); /* blocks that a frame does not take are released */
   assert_int_equal(held(&reserve), LARGE);
   release(&reserve);
 }
@@ -56,9 +56,9 @@ static void test_sizes(void **state) {
   frame(&reserve, LARGE, LARGE);
   frame(&reserve, 2 * LARGE, LARGE); /* outgrown */
   assert_int_equal(held(&reserve), 3 * LARGE);
-  frame(&reserve, LARGE - 1, LARGE); /* less than half of it */
+  frame(&reserve, LARGE - 1, LARGE); /* less than half of the block */
   assert_int_equal(held(&reserve), 2 * LARGE - 1);
-  frame(&reserve, SMALL, LARGE); /* small ones are not kept */
+  frame(&reserve, SMALL, LARGE); /* small blocks are not kept */
   assert_int_equal(held(&reserve), LARGE);
   assert_null(hl_reserve_take(&reserve, SIZE_MAX / 2, 16));
   release(&reserve);
@@ -97,7 +97,8 @@ static void lay_out(arrays *arrays, hl_layout *layout) {
   arrays->second = hl_layout_take(layout, 3, sizeof *arrays->second);
 }
 
-/* The block is as large as the arrays are, each a multiple of 64 bytes; they lie in it, apart. */
+/* The block is as large as its arrays together. Each array takes a multiple of 64 bytes, and arrays do not
+ * overlap. */
 static void test_lays_out(void **state) {
   (void)state;
   hl_reserve reserve = open_reserve(false);
@@ -117,7 +118,7 @@ static void test_lays_out(void **state) {
   release(&reserve);
 }
 
-/* What is given back counts only where nothing that is taken later is larger. */
+/* Memory that is given back counts only if nothing that is taken later is larger. */
 static void test_gives_back(void **state) {
   (void)state;
   hl_layout layout = {0};
@@ -130,7 +131,7 @@ static void test_gives_back(void **state) {
   assert_int_equal(layout.most, 704);
 }
 
-/* Arrays that are larger when they are handed out than when they were counted are not handed out. */
+/* If arrays are larger when they are handed out than when they were counted, they are not handed out. */
 static void test_refuses_another_size(void **state) {
   (void)state;
   hl_reserve reserve = open_reserve(false);

@@ -1,5 +1,5 @@
-/* tests/unit/fetch_copies.c - copies of servers' files: one is found by its URL alone, and the oldest make
- * room. Parts of files: what is asked for, and which answers are right. */
+/* tests/unit/fetch_copies.c - copies of servers' files. A copy is found by its URL alone, and the oldest
+ * copies make room for new ones. Parts of files: what is requested, and which answers are right. */
 #define _GNU_SOURCE
 #include <fcntl.h>
 #include <setjmp.h>
@@ -53,7 +53,7 @@ static bool has_copy(const char *url) {
   return true;
 }
 
-/* Dates every copy in the folder, so that copies made later are newer. */
+/* Gives every copy in the folder an old date, so that copies made later are newer. */
 static void date_copies(time_t when) {
   char command[200];
   snprintf(command, sizeof command, "touch -d @%lld %s/*", (long long)when, folder);
@@ -137,7 +137,7 @@ static void only_the_wanted_part_is_an_answer(void **state) {
   for (size_t n = 0; n < sizeof wrong / sizeof *wrong; n++) assert_false(answers(10, 20, wrong[n], &file));
   assert_true(answers(UINT64_MAX, 20, "bytes 80-99/100", &file));
   assert_int_equal(file.begin, 80);
-  assert_true(answers(UINT64_MAX, 20, "bytes 0-9/10", &file)); /* the file is shorter */
+  assert_true(answers(UINT64_MAX, 20, "bytes 0-9/10", &file)); /* the file is shorter than the part */
   assert_int_equal(file.size, 10);
   assert_false(answers(UINT64_MAX, 20, "bytes 79-98/100", &file));
   assert_false(answers(UINT64_MAX, 20, "bytes 81-99/100", &file));

@@ -1,5 +1,5 @@
-/* tests/unit/image_compare.c - the metrics on constructed pairs, and thresholds that tell a wrong picture
- * from a rounded one. */
+/* tests/unit/image_compare.c - the measures of difference between two pictures, on pairs that are made for
+ * them, and thresholds that tell a wrong picture from a rounded one. */
 #include "image_parts.h"
 
 static hl_image_difference compare(const hl_image *a, const hl_image *b) {
@@ -25,7 +25,7 @@ static void closed_forms(void **state) {
   assert_true(d.mean_signed[2] == -0.25 / 2000 && d.mean_signed[3] == 0.125 / 2000);
   assert_true(fabs(d.rmse_channel[1] - sqrt(0.25 / 2000)) < 1e-15);
   assert_true(fabs(d.rmse - sqrt((0.25 + 0.0625 + 0.015625) / 8000)) < 1e-15);
-  assert_true(d.percentile_99_9 == 0); /* 2 of 2000 pixels are the top 0.1 % exactly */
+  assert_true(d.percentile_99_9 == 0); /* 2 of 2000 pixels are exactly the greatest 0.1 % */
   pixel_at(b, 49, 39)[0] += 0.0625f;
   assert_true(compare(a, b).percentile_99_9 == 0.0625);
   hl_image_difference swapped = compare(b, a);
@@ -40,7 +40,7 @@ static int compare_doubles(const void *a, const void *b) {
   return (x > y) - (x < y);
 }
 
-/* Against sorting, for sizes around the multiples of 1000. */
+/* Compares with sorting, for sizes around the multiples of 1000. */
 static void percentile_is_the_nearest_rank(void **state) {
   (void)state;
   hl_context *context = make_context();
@@ -64,7 +64,7 @@ static void percentile_is_the_nearest_rank(void **state) {
   end_context(context);
 }
 
-/* NaN, also in both pictures, fails every threshold "value <= limit" and "fabs(mean) <= limit". */
+/* A NaN, also if it is in both pictures, fails every threshold "value <= limit" and "fabs(mean) <= limit". */
 static void nan_is_an_infinite_difference(void **state) {
   (void)state;
   hl_context *context = make_context();
@@ -100,7 +100,7 @@ static void refuses_what_cannot_be_compared(void **state) {
   end_context(context);
 }
 
-/* The thresholds that golden pictures use. */
+/* The thresholds of golden pictures. */
 static bool accepts(const hl_image *a, const hl_image *b) {
   hl_image_difference d = compare(a, b);
   bool means = true;
@@ -113,18 +113,18 @@ static void thresholds_reject_wrong_pictures(void **state) {
   enum { W = 64, H = 48 };
   hl_context *context = make_context();
   hl_image *truth = make_structured(context, W, H), *other = make_image(context, W, H);
-  for (int i = 0; i < W * H * 4; i++) /* rounded to 9 bits up and down */
+  for (int i = 0; i < W * H * 4; i++) /* values rounded up and down to 9 bits */
     other->pixels[i] = truth->pixels[i] + ((i / 4 + i) % 2 ? 1.0f : -1.0f) / 1024;
   assert_true(accepts(truth, other));
   for (int i = 0; i < W * H; i++) /* 2 % brighter */
     for (int c = 0; c < 4; c++) other->pixels[4 * i + c] = truth->pixels[4 * i + c] * (c < 3 ? 1.02f : 1);
   assert_false(accepts(truth, other));
-  for (int y = 0; y < H; y++) /* half a pixel to the right */
+  for (int y = 0; y < H; y++) /* a shift of half a pixel to the right */
     for (int x = 0; x < W; x++)
       for (int c = 0; c < 4; c++)
         pixel_at(other, x, y)[c] = (pixel_at(truth, x, y)[c] + pixel_at(truth, x > 0 ? x - 1 : 0, y)[c]) / 2;
   assert_false(accepts(truth, other));
-  for (int i = 0; i < W * H; i++) /* red and blue swapped */
+  for (int i = 0; i < W * H; i++) /* red and blue exchanged */
     for (int c = 0; c < 4; c++)
       other->pixels[4 * i + c] = truth->pixels[4 * i + (c == 0 ? 2 : c == 2 ? 0 : c)];
   assert_false(accepts(truth, other));

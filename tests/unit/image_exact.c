@@ -1,4 +1,4 @@
-/* tests/unit/image_exact.c - pictures' sizes, and the formats that keep every bit: OpenEXR and NPY. */
+/* tests/unit/image_exact.c - the sizes of pictures, and the formats that keep every bit: OpenEXR and NPY. */
 #include "image_parts.h"
 
 #include "image/exr.h"
@@ -37,7 +37,7 @@ static void memory_limit_is_kept(void **state) {
   end_context(context);
 }
 
-/* Values of all kinds, by bits: signs, denormals, above 1, infinite, NaN with a payload. */
+/* Numbers of all kinds keep their bits: both signs, denormal, above 1, infinite, and NaN with a payload. */
 static void fill_with_all_kinds(hl_image *image) {
   static const uint32_t kinds[] = {0,           0x80000000u, 1,           0x807fffffu,
                                    0x3f800001u, 0xbf000000u, 0x7f7fffffu, 0x7f800000u,
@@ -77,7 +77,7 @@ static void exr_and_npy_keep_every_bit(void **state) {
   end_context(context);
 }
 
-/* The bytes in memory are those of the file. */
+/* The bytes of a picture written to memory are those of the file. */
 static void encoding_gives_the_file(void **state) {
   (void)state;
   hl_context *context = make_context();
@@ -114,7 +114,8 @@ static void encoding_gives_the_file(void **state) {
   end_context(context);
 }
 
-/* More channels than the library's quick store, at other strides, beside the picture's own. */
+/* A picture with more channels than the library's fast store has, with other strides, and with channels
+ * beside the picture's own. */
 static void exr_takes_layers(void **state) {
   (void)state;
   enum { W = 19, H = 35 };
@@ -151,8 +152,8 @@ static bool holds_text(const unsigned char *bytes, size_t length, const char *te
   return false;
 }
 
-/* Layers become channels of an .exr and files beside an .npy; the picture itself is read back as without
- * them. */
+/* Layers become channels of an .exr, and files beside an .npy. The picture itself reads back as without them.
+ */
 static void pictures_hold_layers(void **state) {
   (void)state;
   enum { W = 19, H = 35 };
@@ -220,8 +221,8 @@ static void put_attribute(bytes *b, const char *name, const char *type, uint32_t
   put_int(b, size, 4);
 }
 
-/* A header for width x height pixels whose data window starts at (x, y). channels: names of one letter, all
- * of pixel_type (0 integer, 1 half, 2 float). */
+/* Makes a header for width x height pixels whose data window begins at (x, y). channels: names of one letter;
+ * all have the type pixel_type (0 integer, 1 half, 2 float). */
 static void put_exr_header(bytes *b, const char *channels, int pixel_type, int sampling, int compression,
                            int x, int y, int width, int height) {
   put_int(b, 20000630, 4);
@@ -257,7 +258,7 @@ static void put_exr_header(bytes *b, const char *channels, int pixel_type, int s
   put_int(b, 0, 1);
 }
 
-/* Uncompressed lines whose samples are those of value(line, channel, column). */
+/* Writes uncompressed lines with the samples value(line, channel, column). */
 static void put_exr_lines(bytes *b, int channel_count, int sample_bytes, int y, int width, int height,
                           uint32_t (*value)(int, int, int)) {
   size_t line_bytes = (size_t)(channel_count * width * sample_bytes), first = b->length + 8 * (size_t)height;
@@ -270,7 +271,7 @@ static void put_exr_lines(bytes *b, int channel_count, int sample_bytes, int y, 
   }
 }
 
-/* Halves: -2, -1, -0.5 ... by exponent, so that their floats are exact by inspection. */
+/* Half floats -2, -1, -0.5 ..., one for each exponent, whose floats are seen to be exact. */
 static uint32_t half_value(int line, int channel, int x) {
   return (uint32_t)(0x3c00 + 0x400 * (channel + line - 1)) | (x % 2 ? 0x8000u : 0u);
 }

@@ -1,5 +1,5 @@
-/* tests/unit/image_failure.c - what must go wrong does so cleanly: bad arguments, files that cannot be
- * written, cancellation, memory that runs out. The old file stands, and nothing else is left. */
+/* tests/unit/image_failure.c - failures of pictures' files: bad arguments, files that cannot be written,
+ * cancellation, memory that runs out. Each time the old file stays, and no other file is left. */
 #include "image_parts.h"
 
 #include <signal.h>
@@ -88,7 +88,7 @@ static void reading_goes_by_content(void **state) {
   end_context(context);
 }
 
-/* Every way in which writing a file can fail, for each format. */
+/* Each way in which writing a file can fail, for each format. */
 static void bad_places_are_named(void **state) {
   (void)state;
   hl_context *context = make_context();
@@ -113,7 +113,7 @@ static void bad_places_are_named(void **state) {
   end_context(context);
 }
 
-/* The encoders on a device that is always full, as a disk may be from the first byte. */
+/* Writes each format to a device that is always full, as a disk may be from the first byte on. */
 static void full_device_is_reported(void **state) {
   (void)state;
   hl_context *context = make_context();
@@ -135,8 +135,8 @@ static void full_device_is_reported(void **state) {
   end_context(context);
 }
 
-/* A disk that is full after so many bytes (by the limit on file sizes): no half file is left, and an older
- * file stays. */
+/* A disk that is full after a number of bytes (by the limit on file sizes). No part of a file is left, and an
+ * older file stays. */
 static void disk_that_fills_up_keeps_the_old_file(void **state) {
   (void)state;
   hl_context *context = make_context();
@@ -240,7 +240,7 @@ static void cancelling_leaves_nothing(void **state) {
   remove_folder(folder);
 }
 
-/* Every allocation in turn fails: the call says so, and nothing leaks. */
+/* Each allocation in turn fails. The call reports it, and no memory leaks. */
 static void every_allocation_may_fail(void **state) {
   (void)state;
   char folder[64], path[100];
@@ -287,7 +287,8 @@ static void comparing_may_run_out_of_memory(void **state) {
   end_context(context);
 }
 
-/* Each allocation of an encoded picture may fail: the error is told, nothing is left. */
+/* Each allocation of a picture that is encoded in memory fails in turn. The error is reported, and no memory
+ * is left. */
 static void encoding_may_run_out_of_memory(void **state) {
   (void)state;
   static const char *const formats[] = {"png", "exr", "npy"};

@@ -3,7 +3,7 @@
 
 static const char HEADER[] = "#?RADIANCE\n# by hand\nFORMAT=32-bit_rle_rgbe\n\n";
 
-/* A file that grows. */
+/* A file to which bytes are appended. */
 typedef struct hdr_file {
   unsigned char bytes[4096];
   size_t length;
@@ -22,7 +22,8 @@ static hdr_file begin(const char *size) {
 }
 
 static hl_status decode(hl_context *context, const hdr_file *file, hl_image **image, hl_error *error) {
-  unsigned char *exact = malloc(file->length + 1); /* in a block of its size: sanitizers see reads beyond */
+  /* the file lies in a block of its exact size, so that sanitizers see reads beyond it */
+  unsigned char *exact = malloc(file->length + 1);
   memcpy(exact, file->bytes, file->length);
   hl_status status = hl_hdr_format.decode(context, "x.hdr", exact, file->length, image, error);
   free(exact);
@@ -36,7 +37,7 @@ static void check_pixel(hl_image *image, int x, int y, float red, float green, f
              (double)pixel[3]);
 }
 
-/* m 2^(e - 136): 128 with the exponent 129 is 1. */
+/* A channel is m 2^(e - 136). The byte 128 with the exponent 129 is 1. */
 static void test_plain_pixels(void **state) {
   (void)state;
   static const unsigned char pixels[] = {128, 64, 0, 129, 255, 1, 2, 136, 1, 1, 1, 0, 3, 5, 7, 100};
@@ -73,7 +74,8 @@ static void test_orientations(void **state) {
   end_context(context);
 }
 
-/* (1, 1, 1, n) repeats a pixel; one right after it counts 256 times as much. */
+/* The pixel (1, 1, 1, n) repeats the pixel before it n times. A second one right after it counts 256 times as
+ * much. */
 static void test_runs_of_pixels(void **state) {
   (void)state;
   static const unsigned char pixels[] = {9, 8, 7, 136, 1, 1, 1, 3, 1, 1, 1, 1, 4, 4, 4, 136};
@@ -88,8 +90,8 @@ static void test_runs_of_pixels(void **state) {
   end_context(context);
 }
 
-/* Ten pixels in runs of each of the four: two equal reds and eight others; one green; blues that fall; one
- * exponent. */
+/* Ten pixels, of which each channel is packed by itself: two equal reds and eight others; one green; falling
+ * blues; one exponent. */
 static hdr_file in_runs(void) {
   static const unsigned char row[] = {2,   2, 0,  10, 130, 5, 8, 1, 2, 3, 4, 5, 6, 7,   8,
                                       138, 6, 10, 9,  8,   7, 6, 5, 4, 3, 2, 1, 0, 138, 136};
@@ -112,7 +114,8 @@ static void test_runs_of_bytes(void **state) {
   end_context(context);
 }
 
-/* Cut at every length it is refused; changed at every byte it is read or refused, and leaves nothing. */
+/* A file that is cut at any length is refused. A file with any byte changed is read or refused. No memory is
+ * left. */
 static void test_damaged(void **state) {
   (void)state;
   hl_context *context = make_context();
@@ -134,7 +137,7 @@ static void test_damaged(void **state) {
   end_context(context);
 }
 
-/* A few bytes that claim a large picture get no memory for it. */
+/* A file of a few bytes that claims a large picture gets no memory for it. */
 static void test_claims_too_much(void **state) {
   (void)state;
   static const char *const sizes[] = {"-Y 30000 +X 30000\n", "-Y 99999999999 +X 3\n", "-Y 0 +X 3\n",
@@ -151,7 +154,7 @@ static void test_claims_too_much(void **state) {
   end_context(context);
 }
 
-/* Found by its first bytes under any name; never written. */
+/* The format is found by the first bytes under any name, and is never written. */
 static void test_files(void **state) {
   (void)state;
   hl_context *context = make_context();

@@ -1,9 +1,6 @@
-/* tests/unit/image_hostile.c - damaged PNG, OpenEXR, NPY and TIFF files: cut at every length and changed at
- * every byte.
- *
- * Decoders get each file in a block of its exact size, so that a sanitizer sees any read beyond it. They must
- * say what is wrong or give a picture, hold to the memory limit, and release everything.
- */
+/* tests/unit/image_hostile.c - damaged PNG, OpenEXR, NPY and TIFF files: cut at every length, and changed at
+ * every byte. Decoders get each file in a block of its exact size, so that a sanitizer sees any read beyond
+ * it. They must return an error or a picture, keep the memory limit, and release everything. */
 #include "image_parts.h"
 
 typedef hl_status (*decoder)(hl_context *, const char *, const unsigned char *, size_t, hl_image **,
@@ -18,7 +15,8 @@ static hl_context *make_limited_context(void) {
   return context;
 }
 
-/* What a header announces is told of any bytes, and is right for a picture that can be read. */
+/* The header of any bytes is read without harm. If the picture can be read, the header's numbers are right.
+ */
 static void check_claim(decoder function, const unsigned char *exact, size_t length, const hl_image *image) {
   hl_image_claim claim = function == hl_png_format.decode   ? hl_png_format.claim(exact, length)
                          : function == hl_exr_format.decode ? hl_exr_format.claim(exact, length)
@@ -32,7 +30,7 @@ static void check_claim(decoder function, const unsigned char *exact, size_t len
   assert_true(claim.bytes <= claim.width * claim.height * 64 + claim.height);
 }
 
-/* Whether the picture is `expected`, bit by bit; true where there is no picture to ask for. */
+/* Returns whether the picture has the bits of `expected`; true if there is no picture. */
 static bool is_picture(const hl_image *image, const hl_image *expected) {
   return image == NULL ||
          (image->width == expected->width && image->height == expected->height &&
@@ -40,7 +38,7 @@ static bool is_picture(const hl_image *image, const hl_image *expected) {
                  (size_t)expected->width * (size_t)expected->height * 4 * sizeof(float)) == 0);
 }
 
-/* expected: the picture that it must be where it can be read; null: any. */
+/* expected: the picture that the file must have if it can be read; null: any picture. */
 static hl_status decode(hl_context *context, decoder function, const unsigned char *bytes, size_t length,
                         const hl_image *expected) {
   unsigned char *exact = malloc(length > 0 ? length : 1);
@@ -80,7 +78,7 @@ static void damage(const char *extension, decoder function, int width, int heigh
   unsigned char *bytes = read_bytes(context, path, &length);
   hl_image *undamaged = NULL;
   assert_int_equal(function(context, "undamaged", bytes, length, &undamaged, NULL), HL_OK);
-  /* Of these formats PNG alone holds checksums: what they let pass must be the picture. */
+  /* Of these formats, only PNG has checksums. A damaged file that passes them must have the right picture. */
   const hl_image *expected = function == hl_png_format.decode ? undamaged : NULL;
   assert_int_equal(decode(context, function, bytes, length, undamaged), HL_OK);
   for (size_t cut = 0; cut < length; cut++)
@@ -136,7 +134,7 @@ static void damaged_tiff(void **state) {
   damage("tif", hl_tif_format.decode, 3, 4, &options);
 }
 
-/* PNG's checksums hide what lies behind them from plain damage: mend them after each change. */
+/* PNG's checksums hide the rest of the decoder from damage. Here they are made right after each change. */
 static uint32_t crc_of(const unsigned char *bytes, size_t length) {
   uint32_t crc = 0xffffffffu;
   for (size_t i = 0; i < length; i++) {
@@ -184,8 +182,8 @@ static void damaged_png_with_right_checksums(void **state) {
       memcpy(changed, bytes, length);
       changed[at] = (unsigned char)value;
       mend_checksums(changed, length);
-      /* The header may now say another size or kind of pixels. libpng does not ask for the checksum of zlib
-       * itself once all rows are there: compressed data may be of another picture. */
+      /* After the change, the header may have another size or kind of pixels. libpng does not check zlib's
+       * own checksum once it has all rows, so that the compressed data may be of another picture. */
       bool of_header = at >= 8 && at < 33, of_pixels = at >= data && at < data + data_length;
       decode(context, hl_png_format.decode, changed, length, of_header || of_pixels ? NULL : expected);
     }
@@ -196,7 +194,8 @@ static void damaged_png_with_right_checksums(void **state) {
   end_context(context);
 }
 
-/* A few bytes that claim the greatest picture: refused before its pixels are allocated. */
+/* A file of a few bytes that claims the greatest picture is refused before memory for its pixels is
+ * allocated. */
 static void claims_are_held_against_the_bytes(void **state) {
   (void)state;
   hl_context *context = make_context();

@@ -9,7 +9,7 @@ static int closed_form_code(double linear, int maximum) {
   return (int)floor(maximum * (l <= 0.0031308 ? 12.92 * l : 1.055 * pow(l, 1 / 2.4) - 0.055) + 0.5);
 }
 
-/* A PNG file's samples as they are stored, by libpng without any conversion. */
+/* The samples of a PNG file as they are stored, read by libpng without conversion. */
 typedef struct png_samples {
   int width, height, depth, channels;
   int has_srgb;
@@ -79,8 +79,8 @@ static png_samples write_and_load(const fixture *f, const hl_image *image, int d
   return load_samples(f->path);
 }
 
-/* 16 bits are the closed form exactly; 8 bits are it to less than one code, and exactly where nothing was
- * drawn. */
+/* With 16 bits the colours are exactly those of the closed form. With 8 bits they deviate by less than a
+ * code, and are exact where nothing was drawn. */
 static void composites_in_linear_light(void **state) {
   (void)state;
   enum { W = 37, H = 23 };
@@ -111,8 +111,8 @@ static void composites_in_linear_light(void **state) {
   end(&f);
 }
 
-/* 2^stops times the picture's light, and nothing of the background's; whole and other stops, with and without
- * alpha. */
+/* The picture's light is 2^stops times as strong, and the background's stays the same; for whole and other
+ * numbers of stops, with and without alpha. */
 static void exposure_multiplies_the_light(void **state) {
   (void)state;
   static const double stops[] = {0, 1, -2, 0.5, -3.7, 32, -32};
@@ -140,7 +140,7 @@ static void exposure_multiplies_the_light(void **state) {
   end(&f);
 }
 
-/* Beyond what the format has, and not a number. */
+/* Numbers beyond the format's range, and numbers that are not finite. */
 static void exposure_out_of_range_is_refused(void **state) {
   (void)state;
   hl_context *context = make_context();
@@ -156,8 +156,8 @@ static void exposure_out_of_range_is_refused(void **state) {
   end_context(context);
 }
 
-/* 1 - .4^2 / (m - .2) over the brightest channel m above .6, the same factor for all three, after the
- * exposure; darker light and the background as they are. */
+/* The tone curve maps the brightest channel m above .6, after the exposure, to 1 - .4^2 / (m - .2). The other
+ * channels get the same factor. Darker light and the background stay the same. */
 static void filmic_tone_bends_bright_light(void **state) {
   (void)state;
   static const float lights[][3] = {{0.59f, 0.2f, 0.01f}, {1, 0.5f, 0.25f}, {0.3f, 8, 2}, {1e30f, 1e30f, 0}};
@@ -191,7 +191,7 @@ static void filmic_tone_bends_bright_light(void **state) {
   end(&f);
 }
 
-/* Greys from black to far beyond white never get darker than the one before, and clip up to white alone. */
+/* Greys from black to far beyond white never become darker than the one before, and only white is clipped. */
 static void filmic_tone_is_monotone(void **state) {
   (void)state;
   enum { N = 4096 };
@@ -210,7 +210,7 @@ static void filmic_tone_is_monotone(void **state) {
   }
   int darkest_of_white = 4 * (N / 8), falls = 0;
   for (int i = 0; i < 4 * N; i += 4) {
-    if (i >= 4 * 8) falls += codes[1][i] + 1 < codes[1][i - 4 * 8]; /* 8: the dither's period */
+    if (i >= 4 * 8) falls += codes[1][i] + 1 < codes[1][i - 4 * 8]; /* 8 is the period of the dither */
     if (codes[0][i] < 204 && i < darkest_of_white) assert_int_equal(codes[0][i], codes[1][i]);
   }
   assert_int_equal(falls, 0);
@@ -271,7 +271,7 @@ static void transparent_pictures_keep_colour_and_alpha(void **state) {
   end(&f);
 }
 
-/* NaN writes as black, and nothing else is touched by it. */
+/* NaN is written as black, and the other pixels stay the same. */
 static void nan_is_black(void **state) {
   (void)state;
   fixture f = begin();
@@ -288,8 +288,8 @@ static void nan_is_black(void **state) {
   end(&f);
 }
 
-/* A dark gradient, 20 pixels to a code: averaged over 8 x 8 pixels it must be nearer the truth than rounding
- * (0.289 codes) could be; and no code is more than one off. */
+/* A dark gradient with 20 pixels for a code. The mean over 8 x 8 pixels must be nearer to the true value than
+ * rounding could bring it (0.289 codes), and no code may be off by more than one. */
 static void dither_removes_bands(void **state) {
   (void)state;
   enum { W = 400, H = 16 };
@@ -307,7 +307,8 @@ static void dither_removes_bands(void **state) {
     for (int i = 0; i < 64; i++) {
       int code = sample(&s, x + i % 8, i / 8, 0);
       assert_true(fabs(code - (20 + (x + i % 8) / 20.0)) < 1);
-      assert_int_equal(code, sample(&s, x + i % 8, 8 + i / 8, 2)); /* greys stay grey; the pattern repeats */
+      /* greys stay grey, and the pattern of the dither repeats */
+      assert_int_equal(code, sample(&s, x + i % 8, 8 + i / 8, 2));
       sum += code - (20 + (x + i % 8) / 20.0);
     }
     square += sum / 64 * sum / 64;
@@ -318,7 +319,7 @@ static void dither_removes_bands(void **state) {
   end(&f);
 }
 
-/* Reading and writing again gives the same bytes: the dither does not accumulate. */
+/* Reading and writing again gives the same bytes, so that the dither does not accumulate. */
 static void rewriting_keeps_codes(void **state) {
   (void)state;
   fixture f = begin();
@@ -361,7 +362,7 @@ static void scene_is_stored(void **state) {
 
 enum { OTHER_WIDTH = 13, OTHER_HEIGHT = 9 };
 
-/* What sample c of the pixel at (x, y) holds, for a depth. */
+/* The value of sample c of the pixel at (x, y), for a depth. */
 static int other_sample(int x, int y, int c, int depth) {
   return (x * 7 + y * 31 + c * 101) * 257 & ((1 << depth) - 1);
 }
@@ -384,7 +385,7 @@ static void write_other(const char *path, int type, int depth, int interlace, in
   key.green = (png_uint_16)other_sample(3, 2, 1, depth);
   key.blue = (png_uint_16)other_sample(3, 2, 2, depth);
   if (type != PNG_COLOR_TYPE_PALETTE && with_key) png_set_tRNS(png, info, NULL, 0, &key);
-  png_set_gAMA(png, info, 0.9); /* not to be believed */
+  png_set_gAMA(png, info, 0.9); /* readers must not use this exponent */
   png_write_info(png, info);
   size_t row_bytes = png_get_rowbytes(png, info);
   png_bytep rows[OTHER_HEIGHT];
@@ -405,7 +406,7 @@ static void write_other(const char *path, int type, int depth, int interlace, in
   fclose(file);
 }
 
-/* The unassociated colour and alpha that the file says, 0..1, colour encoded. */
+/* The colour, without premultiplication and encoded, and the alpha that the file has; from 0 to 1. */
 static void other_pixel(int x, int y, int type, int depth, int with_key, double rgba[4]) {
   double maximum = (1 << depth) - 1;
   int s[4];
@@ -460,8 +461,8 @@ static void every_kind_is_read(void **state) {
   end(&f);
 }
 
-/* Bytes for a toolkit are those of an 8-bit PNG, with alpha 255 over a background; what lies between rows
- * stays. */
+/* The bytes for a toolkit are those of an 8-bit PNG, with alpha 255 over a background. The bytes between rows
+ * stay the same. */
 static void bytes_are_those_of_a_png(void **unused) {
   (void)unused;
   enum { WIDTH = 37, HEIGHT = 19, STRIDE = 4 * WIDTH + 12 };

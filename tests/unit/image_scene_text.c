@@ -48,7 +48,8 @@ static void scenes_are_found(void **state) {
       assert_null(found);
       assert_true(strlen(error.message) > 20);
     }
-    for (size_t place = 0; place < length; place++) { /* the sum tells; but of the mark and the length */
+    for (size_t place = 0; place < length; place++) {
+      /* the checksum covers the chunk without its mark and length */
       file[place] ^= 0x15;
       assert_int_equal(hl_image_find_scene(context, "a.png", file, length, &found, &error), HL_ERROR_INPUT);
       file[place] ^= 0x15;
@@ -57,7 +58,7 @@ static void scenes_are_found(void **state) {
   end_context(context);
 }
 
-/* A file says its size, channels and bits in its header, and a palette's colours have 8 bits. */
+/* A file's header has its size, channels and bits. The colours of a palette have 8 bits. */
 static void files_say_what_they_are(void **state) {
   (void)state;
   static const struct {
@@ -82,7 +83,7 @@ static void files_say_what_they_are(void **state) {
   assert_int_equal(hl_image_get_about("a.png", file, sizeof file, &about, &error), HL_ERROR_ARGUMENT);
 }
 
-/* Text that inflates beyond the limit, and compressed data that are none. */
+/* Compressed text that is longer than the limit when it is unpacked, and data that are no compressed text. */
 static void scenes_have_limits(void **state) {
   (void)state;
   hl_context *context = make_context();

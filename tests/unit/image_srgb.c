@@ -1,4 +1,5 @@
-/* tests/unit/image_srgb.c - the sRGB curve against its closed form, at every step and every code. */
+/* tests/unit/image_srgb.c - the sRGB curve against its closed form, at every step between codes and at every
+ * code. */
 #include "image_parts.h"
 
 #include "image/srgb.h"
@@ -20,8 +21,8 @@ static void decode_is_the_closed_form(void **state) {
   assert_true(fabs(hl_srgb_decode(0.5) - 0.21404114048223255) < 1e-15);
 }
 
-/* The exact step between codes k - 1 and k is at decode((k - 0.5) / maximum): the floats on either side of it
- * must get the two codes. As codes rise with the value, this settles every float there is. */
+/* The exact step between the codes k - 1 and k is decode((k - 0.5) / maximum). The floats on its two sides
+ * must get the two codes. Since codes rise with the value, this tests every float. */
 static void every_step_is_exact(void **state) {
   (void)state;
   hl_context *context = make_context();
@@ -72,7 +73,8 @@ static void out_of_range_saturates(void **state) {
   end_context(context);
 }
 
-/* Whole codes do not move; between them the mean over all offsets is the encoded value. */
+/* Values of whole codes do not change. Between codes, the mean over all dither offsets is the encoded value.
+ */
 static void offsets_keep_codes_and_means(void **state) {
   (void)state;
   hl_context *context = make_context();

@@ -12,7 +12,7 @@ static inline double distance(int i, int j, int k, double x, double y, double z)
   return hypot(hypot(i - x, j - y), k - z);
 }
 
-/* values[] = each(i, j, k) */
+/* Sets values[] to each(i, j, k). */
 static inline void fill(double (*each)(int i, int j, int k)) {
   for (int v = 0; v < COUNT; v++) values[v] = (float)each(v % N, v / N % N, v / N / N);
 }
@@ -23,7 +23,7 @@ static inline double noise(int i, int j, int k) { /* -0.5..0.5 */
   return (double)((state ^ (state >> 13)) & 0xffff) / 65536 - 0.5;
 }
 
-/* A body in Hounsfield units: air, skin and muscle, a bone. */
+/* A body in Hounsfield units: air, skin and muscle, and a bone. */
 static inline double body(int i, int j, int k) {
   double r = distance(i, j, k, 24, 23, 25), soft = 1 / (1 + exp((r - 17) / 0.6)),
          bone = 1 / (1 + exp((r - 6) / 0.6));
@@ -40,7 +40,7 @@ static inline double regions(int i, int j, int k) {
   return i < 20 ? 3 : j < 25 ? 17 : k < 24 ? 42 : 1001;
 }
 
-/* Noisy tissue in air. share: the share of something much brighter in the voxel, 0..1. */
+/* Noisy tissue in air. share: the fraction of the voxels that are much brighter, 0 to 1. */
 static inline double tissue(int i, int j, int k, double share) {
   if (distance(i, j, k, 24, 24, 24) > 23) return 8 + 6 * noise(i, j, k);
   return 100 + 280 * fmin(fmax(share, 0), 1) + 40 * noise(i, j, k) + 40 * noise(k, i, j);
@@ -54,7 +54,7 @@ static inline double angiogram(int i, int j, int k) {
   return tissue(i, j, k, 2.2 - fmin(first, fmin(second, third)));
 }
 
-/* Beads in tissue, as bright as vessels. */
+/* Beads in tissue that are as bright as vessels. */
 static inline double beads(int i, int j, int k) {
   return tissue(i, j, k, 3.5 - distance(i % 16, j % 16, k % 16, 8, 8, 8));
 }
@@ -67,14 +67,14 @@ static inline double head_in_mr(int i, int j, int k) {
   return grey + white + fat + (4 + 16 * (r < 20)) * noise(i, j, k);
 }
 
-/* Three materials in air: each has a colour of its own, and so have the materials of a scan with noise. */
+/* Three materials in air. Each needs a colour of its own, also in a scan with noise. */
 static inline double three(int i, int j, int k) {
   if (distance(i, j, k, 24, 24, 24) > 20) return 10 + 4 * noise(i, j, k);
   return (i < 20 ? 60 : i < 30 ? 120 : 200) + 8 * noise(i, j, k);
 }
 
-/* A block of one material, whose faces lie along the axes and are blurred over two voxels: their values make
- * two peaks of the histogram. */
+/* A block of one material. Its faces lie along the axes and are blurred over two voxels, and these values
+ * make two more peaks of the histogram. */
 static inline double block(int i, int j, int k) {
   const int at[3] = {i, j, k};
   double part = 1;
