@@ -69,6 +69,18 @@ bool hl_has_colormap(const hl_composer *composer, const hl_scene_description *de
  * volumes of values, and no "tf", "colormap" or "iso" names it. */
 bool hl_is_left_out(const hl_composer *composer, const hl_scene_description *description, size_t index);
 
+/* ---- face_window.c ---- */
+
+/* Finds whether "range" is the window of a volume's cut faces: options cut a bare scanned body with the look
+ * of a surface, and no option gives the volume another function or other colours. */
+hl_status hl_windows_faces(const hl_composer *composer, const hl_scene_description *description, size_t index,
+                           bool *windows);
+
+/* Makes the values behind a body's surface grey, from black at window[0] to white at window[1]. The surface
+ * keeps its colours, and all values their opacity. */
+hl_status hl_window_faces(const hl_composer *composer, const hl_volume *volume, const double window[2],
+                          hl_transfer_function *function);
+
 /* ---- see_through.c ---- */
 
 /* In a bare scene of channels, makes channels translucent by which the camera hardly sees another channel. In

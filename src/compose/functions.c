@@ -506,6 +506,7 @@ bool hl_asks_for_functions(const hl_asked *asked) {
  * is for the volume. */
 typedef struct function_changes {
   const char *range, *threshold, *colormap;
+  bool windows_faces; /* whether "range" is the window of cut faces */
 } function_changes;
 
 /* Applies "range", "threshold" and "colormap", in this order. */
@@ -519,6 +520,8 @@ static hl_status change_function(const hl_composer *composer, const hl_scene_vol
   value_range range;
   hl_asked threshold;
   hl_status status = find_range(composer, volume, changes->range, &range);
+  if (status == HL_OK && changes->windows_faces)
+    return hl_window_faces(composer, volume, range.ends, function);
   if (status == HL_OK && range.given && changes->threshold == NULL)
     status = spread(composer, volume, &range, use, function);
   if (status == HL_OK && changes->threshold != NULL &&
@@ -536,7 +539,7 @@ hl_status hl_compose_function(const hl_composer *composer, const hl_scene_descri
   const char *named = hl_text_for(composer, HL_ASK_TF, volume, index);
   function_changes changes = {hl_text_for(composer, HL_ASK_RANGE, volume, index),
                               hl_text_for(composer, HL_ASK_THRESHOLD, volume, index),
-                              hl_text_for(composer, HL_ASK_COLORMAP, volume, index)};
+                              hl_text_for(composer, HL_ASK_COLORMAP, volume, index), false};
   char item[256];
   hl_status status = HL_OK;
   if (is_list(composer, &asked[HL_ASK_COLORMAP])) {
@@ -557,6 +560,8 @@ hl_status hl_compose_function(const hl_composer *composer, const hl_scene_descri
     if (status == HL_OK) status = replace(composer, &loaded, function);
     hl_transfer_function_release(composer->context, &loaded);
   }
+  if (status == HL_OK && changes.range != NULL)
+    status = hl_windows_faces(composer, description, index, &changes.windows_faces);
   if (status != HL_OK) return status;
   if (function->plane.second == HL_SECOND_NONE)
     return change_function(composer, volume, &changes, slice || hl_is_maximum(composer, description),

@@ -206,21 +206,20 @@ const cli_option render_options[RENDER_OPTION_COUNT] = {
                  "opacity stays; ARRAY, of FILE, or alone of\nthe input; MAP: a colormap (default "
                  "viridis) over the\nvalues LO to HI (default: all)",
          .hint = ", as temperature.nrrd:inferno:300,2000"},
-    [RENDER_RANGE] =
-        {.name = "range",
-         .kind = OPTION_NUMBERS,
-         .argument = "[NAME=]LO,HI",
-         .help =
-             "values over which opacity and colours spread (what is\nclear stays clear, "
-             "with --colormap); or percentiles of\nthe data (1%,99.5%); give it again for other volumes or\n"
-             "channels: NAME= as for --tf",
-         .count = 2,
-         .separator = ',',
-         .percent = true,
-         .named = true,
-         .repeatable = true,
-         .low = -INFINITY,
-         .high = INFINITY},
+    [RENDER_RANGE] = {.name = "range",
+                      .kind = OPTION_NUMBERS,
+                      .argument = "[NAME=]LO,HI",
+                      .help = "values over which opacity and colours spread (what is\nclear stays clear, "
+                              "with --colormap), or the\nwindow of greys on cut faces of a body; or "
+                              "percentiles of\nthe data (1%,99.5%); give it again for other volumes or\n"
+                              "channels: NAME= as for --tf",
+                      .count = 2,
+                      .separator = ',',
+                      .percent = true,
+                      .named = true,
+                      .repeatable = true,
+                      .low = -INFINITY,
+                      .high = INFINITY},
     [RENDER_RANGE_SCALE] = {.name = "range-scale",
                             .kind = OPTION_CHOICE,
                             .help = "linear: opacity and colours spread evenly over --range;\nlog: over the "

@@ -24,4 +24,4 @@ done
 # A face of the box is in the volume.
 halflight render ball_16x16x16_uint8.raw --size 24 --cut-plane z=1 --cut-plane z=:0 --cut-box x=1: --clip y=0:1 -o no.png 2>message
 grep -c warning message || true
-metres --slice z=1 -o face.png
+metres --slice z=1 --quiet -o face.png
