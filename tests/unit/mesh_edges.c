@@ -63,7 +63,7 @@ static vec3 edge_normal(const hl_mesh *mesh, size_t triangle, int corner) {
   return vector(mesh->edge_normals[mesh->edges[triangle][corner]]);
 }
 
-/* All corners of a box have their faces' normals, however long the box is. */
+/* All corners of a box have the normals of their faces, however long the box is. */
 static void test_long_box(void **state) {
   (void)state;
   static const uint32_t box[12][3] = {{0, 2, 1}, {1, 2, 3}, {4, 5, 6}, {5, 7, 6}, {0, 1, 4}, {1, 5, 4},
@@ -78,7 +78,7 @@ static void test_long_box(void **state) {
   end(&s, mesh);
 }
 
-/* The wall of a can is round up to its rims, and its ends are flat; the middles of the ends are no edges. */
+/* The wall of a can is round up to its rims, and its ends are flat. The middles of the ends are no edges. */
 static void test_can(void **state) {
   (void)state;
   static set_up s;
@@ -109,7 +109,7 @@ static void test_can(void **state) {
   end(&s, mesh);
 }
 
-/* A ball is round everywhere. A vertex of very many triangles keeps one normal. */
+/* A ball is round everywhere. A vertex at which very many triangles meet keeps one normal. */
 static void test_no_edges(void **state) {
   (void)state;
   static set_up s;

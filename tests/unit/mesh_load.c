@@ -1,5 +1,5 @@
-/* tests/unit/mesh_load.c - meshes from files and from memory: what is read, what is left out, what is
- * refused. */
+/* tests/unit/mesh_load.c - meshes from files and from memory: which are read, what is left out of them, and
+ * which are refused. */
 #define _GNU_SOURCE
 #include <math.h>
 #include <setjmp.h>
@@ -25,7 +25,7 @@ static int remove_folder(void **state) {
   return rmdir(folder);
 }
 
-/* Loads a file of this text. mesh: null where it is refused, with `told` in the message. */
+/* Loads a file that contains the text. mesh: null if the file must be refused, with `told` in the message. */
 static hl_mesh *load(hl_context *context, const char *name, const char *text, size_t length,
                      const char *told) {
   char path[300];
@@ -63,19 +63,21 @@ static void test_ply(void **state) {
   assert_memory_equal(d->triangles[1], ((uint32_t[3]){0, 2, 3}), 12);
   assert_memory_equal(d->positions[3], ((float[3]){0, 3, 1}), 12);
   assert_true(d->colors[0][0] == 1 && d->colors[0][1] == 0 && d->colors[1][3] == 0.2f);
-  assert_true(d->colors[3][1] > 0.50f && d->colors[3][1] < 0.51f); /* 188 of sRGB is 0.503 linear */
+  /* the code 188 of sRGB is 0.503 in linear light */
+  assert_true(d->colors[3][1] > 0.50f && d->colors[3][1] < 0.51f);
   double low[3], high[3];
   assert_int_equal(hl_mesh_get_box(mesh, low, high), HL_OK);
   assert_true(low[0] == 0 && high[0] == 2 && high[1] == 3 && high[2] == 1);
   assert_false(mesh->closed);
   hl_mesh_release(mesh);
-  for (size_t length = 0; length < sizeof PLY - 9; length++) /* without the last face all is refused */
+  for (size_t length = 0; length < sizeof PLY - 9; length++) /* without the last face, the file is refused */
     assert_null(load(context, "a.ply", PLY, length, ""));
   assert_int_equal(hl_context_memory_held(context), 0);
   hl_context_destroy(context);
 }
 
-/* A file without faces is a cloud of points: each is a sphere of a 400th of the diagonal of their box. */
+/* A file without faces is a cloud of points. Each point becomes a sphere whose radius is a 400th of the
+ * diagonal of the points' box. */
 static void test_ply_points(void **state) {
   (void)state;
   static const char text[] =
@@ -98,7 +100,7 @@ static void test_ply_points(void **state) {
   hl_context_destroy(context);
 }
 
-/* Faces with colours: a quad's two triangles have its colour, and a face without opacity is opaque. */
+/* A face with a colour gives it to the triangles made of it. A face without an opacity is opaque. */
 static void test_ply_faces(void **state) {
   (void)state;
   static const char text[] = PLY_HEAD("ascii") "element face 2\nproperty list uchar int vertex_indices\nproperty uchar "
@@ -120,7 +122,7 @@ static void test_ply_faces(void **state) {
   hl_context_destroy(context);
 }
 
-/* The six faces of a cube as an OBJ of quads, as ASCII STL, and from memory turned inside out. */
+/* The six faces of a cube: as an OBJ of quads, as ASCII STL, and turned inside out from memory. */
 static void test_cube_is_closed(void **state) {
   (void)state;
   static const int faces[6][4] = {{1, 3, 4, 2}, {5, 6, 8, 7}, {1, 2, 6, 5},
@@ -163,7 +165,7 @@ static void test_cube_is_closed(void **state) {
   hl_context_destroy(context);
 }
 
-/* A glTF file of one triangle: its 36 bytes of positions and 6 of indices in base64. */
+/* A glTF file with one triangle: 36 bytes of positions and 6 of indices, in base64. */
 #define GLTF(node, more)                                                                                  \
   "{\"asset\": {\"version\": \"2.0\"}, \"scenes\": [{\"nodes\": [0]}], \"nodes\": [" node                 \
   "], \"meshes\": "                                                                                       \
@@ -178,7 +180,7 @@ static void test_cube_is_closed(void **state) {
   "6}], \"accessors\": [{\"bufferView\": 0, \"componentType\": 5126, \"count\": 3, \"type\": \"VEC3\"}, " \
   "{\"bufferView\": 1, \"componentType\": 5123, \"count\": 3, \"type\": \"SCALAR\"}]" more "}"
 
-/* Nodes place their meshes, a mirror turns triangles over, and the base colour is that of the vertices. */
+/* Nodes of glTF place their meshes. A mirror reverses triangles. Vertices get the base colour. */
 static void test_gltf(void **state) {
   (void)state;
   static const char *const texts[] = {
@@ -200,7 +202,8 @@ static void test_gltf(void **state) {
   hl_context_destroy(context);
 }
 
-/* A glTF file cut anywhere, or with any byte changed, is read or refused, and never more than that. */
+/* A glTF file that is cut at any length, or with any byte changed, is read or refused, and does nothing else.
+ */
 static void test_damaged_gltf(void **state) {
   (void)state;
   char text[2000];
@@ -232,7 +235,7 @@ static void test_damaged_gltf(void **state) {
   "Name=\"offsets\" format=\"ascii\">3</DataArray></Polys></Piece>"
 #define VTP(pieces) "<VTKFile type=\"PolyData\"><PolyData>" pieces "</PolyData></VTKFile>"
 
-/* Programs that write in parallel leave empty pieces, before and after the full one. */
+/* Programs that write in parallel leave empty pieces before and after the full one. */
 static void test_empty_pieces(void **state) {
   (void)state;
   static const char *const texts[] = {VTP(FULL_PIECE), VTP(EMPTY_PIECE FULL_PIECE),
@@ -256,7 +259,7 @@ static void test_empty_pieces(void **state) {
 #define CELLS(kind, points, ends) \
   "<" kind ">" ARRAY("Int64", "connectivity", "1", points) ARRAY("Int64", "offsets", "1", ends) "</" kind ">"
 
-/* Two pieces, the first with a strip, the second with two vertices, and a triangle each. */
+/* Two pieces with a triangle each: the first also has a strip, and the second two single vertices. */
 #define TWO_PIECES(first_data, second_data)                                                    \
   VTP("<Piece NumberOfPoints=\"4\" NumberOfPolys=\"1\" NumberOfStrips=\"1\"><Points>" ARRAY(   \
       "Float32", "p", "3", "0 0 0 1 0 0 0 1 0 1 1 0") "</Points>" CELLS("Polys", "0 1 2", "3") \
@@ -266,7 +269,7 @@ static void test_empty_pieces(void **state) {
           "Float64", "p", "3", "5 0 0 6 0 0 5 1 0") "</Points>" CELLS("Verts", "2 0", "1 2")   \
           CELLS("Polys", "2 1 0", "3") second_data "</Piece>")
 
-/* Pieces become one mesh: cells of each kind in the pieces' order, with the colours that are theirs. */
+/* All pieces become one mesh. The cells of each kind are in the pieces' order, and each keeps its colour. */
 static void test_several_pieces(void **state) {
   (void)state;
   static const char text[] = TWO_PIECES(
@@ -292,7 +295,7 @@ static void test_several_pieces(void **state) {
   hl_context_destroy(context);
 }
 
-/* Pieces far into a file: a triangle each, at a place of its own. */
+/* Pieces at the end of a large file: each has a triangle at a place of its own. */
 static void test_many_pieces(void **state) {
   (void)state;
   enum { PIECES = 1000 };
@@ -320,8 +323,8 @@ static void test_many_pieces(void **state) {
   hl_context_destroy(context);
 }
 
-/* Scalars of pieces share one range; arrays that only one piece has are refused, and so is a cell that names
- * a point of another piece. */
+/* The scalars of all pieces share one range. Arrays of only one piece are refused, as is a cell that names a
+ * point of another piece. */
 static void test_arrays_of_pieces(void **state) {
   (void)state;
   static const char
@@ -340,7 +343,7 @@ static void test_arrays_of_pieces(void **state) {
   assert_memory_equal(d->colors[3], d->colors[6], sizeof *d->colors);
   assert_memory_equal(d->colors[4], d->colors[5], sizeof *d->colors);
   assert_true(d->colors[0][2] < d->colors[3][2] &&
-              d->colors[4][0] > 0.9f); /* viridis: violet, teal, yellow */
+              d->colors[4][0] > 0.9f); /* the colormap viridis: violet, teal, yellow */
   hl_mesh_release(mesh);
   assert_null(load(context, "a.vtp", absent, strlen(absent), "its pieces differ in their arrays"));
   assert_null(load(context, "a.vtp", other, strlen(other), "its pieces differ in their arrays"));
@@ -349,7 +352,7 @@ static void test_arrays_of_pieces(void **state) {
   hl_context_destroy(context);
 }
 
-/* Normals of cells make a mesh flat: its vertices have none, and so triangles show their own. */
+/* Normals of cells make a mesh flat: its vertices have no normals, so that triangles show their own. */
 static void test_normals_of_cells(void **state) {
   (void)state;
 #define CELL_NORMALS "<CellData Normals=\"n\">" ARRAY("Float32", "n", "3", "0 0 1 0 0 1") "</CellData>"
@@ -413,7 +416,7 @@ static void test_refused(void **state) {
   hl_context_destroy(context);
 }
 
-/* Triangles that cannot be seen are left out; those that name no vertex are refused. */
+/* Triangles that cannot be seen are left out. Triangles that name a missing vertex are refused. */
 static void test_from_memory(void **state) {
   (void)state;
   const float positions[5][3] = {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {NAN, 0, 0}, {2, 0, 0}};
@@ -436,7 +439,7 @@ static void test_from_memory(void **state) {
   hl_context_destroy(context);
 }
 
-/* Tubes are closed; lines of one point, and what has no radius, are left out; faces keep their colours. */
+/* Tubes are closed. Lines of one point and lines without a radius are left out. Faces keep their colours. */
 static void test_round(void **state) {
   (void)state;
   const float points[7][4] = {{0, 0, 0, 1}, {4, 0, 0, 1},   {4, 0, 0, 1},   {4, 4, 1, 1},
@@ -456,7 +459,7 @@ static void test_round(void **state) {
   assert_int_equal(made->sphere_count, 1);
   assert_int_equal(made->line_count, 1);
   assert_int_equal(made->line_point_count, 3);
-  assert_int_equal(made->triangle_count, 4 * 24 + 2 * 12); /* two pieces, two rims, two ends */
+  assert_int_equal(made->triangle_count, 4 * 24 + 2 * 12); /* the two pieces have two rims and two ends */
   assert_true(mesh->closed);
   hl_mesh_release(mesh);
   d.line_point_count = 6;

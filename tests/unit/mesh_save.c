@@ -14,7 +14,8 @@
 
 enum { N = 24 };
 
-/* A ball of the radius 8 whose values fall by 1 a voxel outwards, in voxels of edges 1, 2 and 0.5. */
+/* A ball of the radius 8, whose values fall by 1 for each unit outwards, in voxels with edges of 1, 2 and
+ * 0.5. */
 static hl_volume *make_ball(hl_context *context) {
   static float values[N * N * N];
   for (int v = 0; v < N * N * N; v++) {
@@ -50,7 +51,7 @@ static void surfaces_lie_in_the_world(void **state) {
   hl_context_destroy(context);
 }
 
-/* Spheres have no triangles: no area, and nothing that is enclosed. */
+/* Spheres have no triangles, and so have no area and enclose nothing. */
 static void spheres_alone_measure_nothing(void **state) {
   (void)state;
   static const float spheres[1][4] = {{0, 0, 0, 1}};

@@ -1,5 +1,5 @@
-/* tests/unit/mesh_scene.c - meshes that a scene's text holds itself: arrays, spheres, lines, floors; they
- * read back as they were written. */
+/* tests/unit/mesh_scene.c - meshes within a scene's text: arrays, spheres, lines, floors. They read back as
+ * they were written. */
 #include <math.h>
 #include <setjmp.h>
 #include <stdarg.h>
@@ -83,7 +83,8 @@ static void test_refused(void **state) {
   hl_context_destroy(context);
 }
 
-/* A floor touches what stands on it, is as wide as was asked, and is not framed. */
+/* A floor touches the objects that stand on it and has the size that was asked for. The camera does not take
+ * it into view. */
 static void test_floor(void **state) {
   (void)state;
   static const char with[] = SCENE("{\"spheres\": [[1, 2, 3, 2]]}, {\"floor\": 4}"),

@@ -1,5 +1,5 @@
-/* unit/occupancy.c - tiles and sheets are marked where bricks lie: by bounds in double precision, and by no
- * more than rounding. */
+/* unit/occupancy.c - which tiles and sheets are marked as touched by bricks, compared with bounds in double
+ * precision: all that bricks touch, and beyond rounding no more. */
 #include <setjmp.h>
 #include <stdarg.h>
 #include <stdlib.h>
@@ -16,7 +16,7 @@ typedef struct marks {
   bool at[TILES][TILES][SHEETS];
 } marks;
 
-/* What a brick touches, so many pixels and sheets around it included. */
+/* The pixels and sheets that a brick touches, with a margin of pixels and sheets. */
 static void mark(const bench *bench, const footprint_map *map, uint32_t brick, double pixels, double sheets,
                  marks *marks) {
   int32_t place[3];
@@ -56,7 +56,7 @@ static void check(const bench *bench, const occupancy *o, long counts[2]) {
     }
 }
 
-/* The next slab that touches a patch is the first of those whose sheets do. */
+/* The next slab that touches a patch is the first one whose sheets do. */
 static void check_slabs(const occupancy *o) {
   for (size_t patch = 0; patch < o->patch_count; patch++)
     for (int slab = 1; slab < o->sheets; slab++) {
@@ -82,7 +82,7 @@ static void test_next_slabs(void **state) {
       .sheets = WORDS * 64 - LEFT_OUT, .words = WORDS, .patch_count = LEFT_OUT, .by_patch = bits[0]});
 }
 
-/* A grid's range ends where its patches' sheets do. */
+/* The range of slabs of a grid ends where the sheets of its patches end. */
 static void check_range(const occupancy *o) {
   sheet_range all = {INT32_MAX, -1};
   for (size_t patch = 0; patch < o->patch_count; patch++)
@@ -95,7 +95,7 @@ static void check_range(const occupancy *o) {
   assert_int_equal(o->sheets_of[0].last, all.last);
 }
 
-/* A few bright voxels: few bricks matter. */
+/* With a few bright voxels, few bricks are marked. */
 static void open_grid(bench *bench, uint8_t *voxels) {
   memset(voxels, 0, SIDE * SIDE * SIDE);
   uint32_t seed = 4;
@@ -114,7 +114,7 @@ static void test_bricks_mark_what_they_touch(void **state) {
   uint32_t seed = 9;
   long counts[2] = {0};
   for (int round = 0; round < ROUNDS; round++) {
-    /* in parallel, from outside, from within, and from afar */
+    /* views in parallel, from outside, from within, and from far away */
     static const double distances[] = {0, 40, 5, 1e5}, pixels[] = {0.5, 0.1, 2};
     vec3 direction = bench_random_direction(&seed), normal = bench_random_normal(direction, &seed);
     bench_look(&bench, direction, normal, pixels[round % 3], distances[round % 4], HL_KERNEL_BSPLINE);

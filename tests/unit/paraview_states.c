@@ -1,5 +1,5 @@
-/* tests/unit/paraview_states.c - functions of the volumes that ParaView's states (.pvsm) show: colours and
- * opacities, the opacity that boxes have, where they lie on a volume, and errors. */
+/* tests/unit/paraview_states.c - transfer functions from ParaView's states (.pvsm): colours and opacities,
+ * the opacity of boxes, their places on a volume, and errors. */
 #define _GNU_SOURCE
 #include <stdio.h>
 #include <unistd.h>
@@ -47,8 +47,8 @@ static plane_sum at(const hl_transfer_function *f, double value, double second) 
   return hl_plane_mean(f, &(plane_box){{value, second}, {value, second}});
 }
 
-/* Over the length of the unit a box of ParaView with this alpha has the opacity alpha exp(-r^2 / (2 0.3^2)),
- * r from its middle, of its sides; without a volume numbers are the file's. */
+/* Over the unit of length, a box of ParaView with the opacity alpha has alpha exp(-r^2 / (2 0.3^2)), where r
+ * is the distance from its middle in its sides. Without a volume, the numbers of the file are kept. */
 static void boxes_are_gaussians(void **state) {
   (void)state;
   hl_context *context = make_context();
@@ -65,7 +65,7 @@ static void boxes_are_gaussians(void **state) {
       assert_near(sum.color[1], sum.extinction * hl_srgb_decode(0.5), 1e-9);
     }
   assert_true(at(&f, 19.9, 4).extinction == 0 && at(&f, 40, 6.1).extinction == 0);
-  /* The mean over a part is that of its points. */
+  /* The mean of the function over a range of both numbers is the mean over the points of the range. */
   double mean = 0;
   for (int n = 0; n < 1000; n++) mean += at(&f, 15 + 0.02 * (n + 0.5), 4).extinction / 1000;
   assert_near(hl_plane_mean(&f, &(plane_box){{15, 4}, {35, 4}}).extinction, mean, 1e-4);
@@ -75,7 +75,7 @@ static void boxes_are_gaussians(void **state) {
 }
 
 /* VTK lays the function's range, 100 by 10, over the values, 0 to 40, and over a quarter of their range, 10,
- * per mean voxel edge, 3. */
+ * for each mean edge of a voxel, 3. */
 static void boxes_are_laid_over_the_volume(void **state) {
   (void)state;
   hl_context *context = make_context();
@@ -98,8 +98,8 @@ static void boxes_are_laid_over_the_volume(void **state) {
   hl_context_destroy(context);
 }
 
-/* What ParaView 5.11.0 saved of a volume of one array (the rest of its state taken away): its own colours and
- * opacities at some values. It has 256 colours of 8 bits, so that they jump by up to 0.012. */
+/* A state that ParaView 5.11.0 saved of a volume with one array, without its other parts: the colours and
+ * opacities at some values. ParaView has 256 colours of 8 bits, so that they jump by up to 0.012. */
 static void states_of_one_number(void **state) {
   (void)state;
   static const struct {
@@ -129,7 +129,7 @@ static void states_of_one_number(void **state) {
   hl_context_destroy(context);
 }
 
-/* The same of a volume that it showed by boxes. */
+/* The same state with a transfer function of boxes. */
 static void states_of_two_numbers(void **state) {
   (void)state;
   hl_context *context = make_context();
@@ -158,7 +158,7 @@ static void states_of_two_numbers(void **state) {
       "Points", ELEMENT(0, 0) ELEMENT(1, 0.25) ELEMENT(2, 0.5) ELEMENT(3, 0)) "</Proxy>"
 #define HIDDEN PROPERTY("Visibility", ELEMENT(0, 0))
 
-/* Of several volumes the one that is shown counts, wherever what it names stands. */
+/* If a state has several volumes, the visible one counts, wherever its functions stand in the file. */
 static void hidden_volumes_do_not_count(void **state) {
   (void)state;
   hl_context *context = make_context();

@@ -1,6 +1,6 @@
 /* tests/unit/particles.c - volumes of particles, against closed forms: mass, the column density of a kernel,
- * even matter, periods, neighbours by trying all; the same bytes with any number of threads; numbers that
- * cannot be right. */
+ * even matter, periodic boxes, and neighbours that are found by trying all. The bytes are the same with any
+ * number of threads, and numbers that cannot be right are refused. */
 #include <math.h>
 #include <setjmp.h>
 #include <stdarg.h>
@@ -42,7 +42,7 @@ static hl_particles_description describe(size_t count) {
   return d;
 }
 
-/* Clusters of very different sizes, whose smoothing lengths differ as much. */
+/* Clusters of very different sizes, with smoothing lengths that differ as much. */
 static hl_particles_description clusters(size_t count) {
   seed = 7;
   for (size_t n = 0; n < count; n++) {
@@ -53,7 +53,7 @@ static hl_particles_description clusters(size_t count) {
     values[n] = (float)(n % 5);
   }
   hl_particles_description d = describe(count);
-  d.side = 160; /* tests look at each voxel */
+  d.side = 160; /* the tests look at each voxel */
   return d;
 }
 
@@ -72,7 +72,7 @@ static hl_volume_info info_of(const hl_volume *volume) {
   return info;
 }
 
-/* The mass of a volume. periodic: the last voxels along the axes are the first ones once more. */
+/* The mass of a volume. periodic: whether the last voxels along the axes are the first ones again. */
 static double mass_of(const hl_volume *volume, const int periodic[3]) {
   hl_volume_info info = info_of(volume);
   double sum = 0;
@@ -96,7 +96,7 @@ static void mass_is_kept(void **state) {
   hl_volume *volume = make(&d);
   assert_true(fabs(mass_of(volume, open) / total_mass(MOST) - 1) < 2e-6);
   hl_volume_release(volume);
-  d.spacing = 0.07; /* wider than most kernels */
+  d.spacing = 0.07; /* wider than most of the kernels */
   volume = make(&d);
   assert_true(fabs(info_of(volume).spacing[1] / 0.07 - 1) < 1e-12);
   assert_true(fabs(mass_of(volume, open) / total_mass(MOST) - 1) < 2e-6);
@@ -108,13 +108,13 @@ static void mass_is_kept(void **state) {
   hl_volume_release(volume);
 }
 
-/* The cubic B-spline at a distance in voxels. */
+/* The cubic B-spline at a distance, in voxels. */
 static double spline(double x) {
   x = fabs(x);
   return x < 1 ? 2.0 / 3 - x * x + x * x * x / 2 : x < 2 ? (2 - x) * (2 - x) * (2 - x) / 6 : 0;
 }
 
-/* The kernel's integral along a line at a distance b from its middle, h = 1. */
+/* The integral of the kernel with h = 1 along a line at the distance b from its middle. */
 static double column_of_kernel(double b) {
   enum { STEPS = 400 };
   double sum = 0, end = b < 2 ? sqrt(4 - b * b) : 0;
@@ -125,7 +125,7 @@ static double column_of_kernel(double b) {
   return 2 * sum * end / STEPS;
 }
 
-/* The column density of the field at a point, in the volume's lattice: the integral of a B-spline is 1. */
+/* The column density of the field at a point of the volume's lattice. The integral of a B-spline is 1. */
 static double column_of_field(const hl_volume *volume, double x, double y) {
   hl_volume_info info = info_of(volume);
   double sum = 0;
@@ -140,11 +140,13 @@ static double column_of_field(const hl_volume *volume, double x, double y) {
   return sum;
 }
 
-/* Largest and root of the mean squared error of a particle's columns, in parts of its greatest. */
+/* The greatest and the root mean square error of a particle's column densities, as fractions of the greatest
+ * density. */
 static void column_errors(double spacing, double place, double *most, double *rms) {
   enum { RAYS = 12 };
   positions[0][0] = positions[0][1] = positions[0][2] = place;
-  positions[1][0] = positions[1][1] = positions[1][2] = 40; /* so that the lattice has more than one level */
+  /* the h is so large that the lattice has more than one level */
+  positions[1][0] = positions[1][1] = positions[1][2] = 40;
   masses[0] = 1, masses[1] = 0;
   lengths[0] = 1, lengths[1] = 4;
   hl_particles_description d = describe(2);
@@ -162,15 +164,15 @@ static void column_errors(double spacing, double place, double *most, double *rm
   hl_volume_release(volume);
 }
 
-/* With two voxels for h the shape is not the kernel's, though mass and width are: 5 % at the middle. With
- * nearly four voxels it is. */
+/* If h is two voxels, the mass and the width are the kernel's, but the shape is not: 5 % are missing in the
+ * middle. If h is nearly four voxels, the shape is right. */
 static void a_particle_has_the_kernels_column(void **state) {
   (void)state;
   for (int n = 0; n < 4; n++) {
     double most, rms, place = 20.123 + 0.117 * n;
     column_errors(0.5, place, &most, &rms);
     assert_true(most < 0.055 && rms < 0.022);
-    column_errors(0.25, place, &most, &rms); /* level 1 has the spacing 0.5 */
+    column_errors(0.25, place, &most, &rms); /* the level 1 has voxels of 0.5 */
     assert_true(most < 0.055 && rms < 0.022);
     column_errors(0.26, place, &most, &rms);
     print_message("# nearly four voxels: %.4f %.4f\n", most, rms);
@@ -178,7 +180,7 @@ static void a_particle_has_the_kernels_column(void **state) {
   }
 }
 
-/* In matter of many particles, 57 in a kernel, the errors of single ones mostly cancel. */
+/* Where many particles overlap, 57 in a kernel, the errors of single ones mostly cancel. */
 static void matter_has_the_kernels_columns(void **state) {
   (void)state;
   enum { RAYS = 100 };
@@ -207,7 +209,7 @@ static void matter_has_the_kernels_columns(void **state) {
   hl_volume_release(volume);
 }
 
-/* Particles on a cubic lattice of `side`^3 in the unit box, with h in distances. */
+/* Particles on a cubic lattice of `side`^3 points in the unit box. h: in distances of the points. */
 static hl_particles_description even(int side, double h) {
   size_t n = 0;
   for (int k = 0; k < side; k++)
@@ -269,7 +271,7 @@ static int compare(const void *a, const void *b) {
   return (x > y) - (x < y);
 }
 
-/* Half of the distance of the 48th neighbour, by looking at all. */
+/* Half of the distance to the 48th neighbour, found by looking at all particles. */
 static double length_of(size_t count, size_t n, double period) {
   static double distance[MOST];
   for (size_t m = 0; m < count; m++) {
@@ -304,7 +306,7 @@ static void neighbours_are_the_nearest(void **state) {
   assert_true(fabs((double)found[1] / length_of(3, 1, 0) - 1) < 1e-5);
 }
 
-/* Voxels with h found by the volume itself. */
+/* Makes voxels. The volume itself finds h. */
 static void threads_do_not_matter(void **state) {
   (void)state;
   static const int threads[] = {1, 2, 7};
@@ -352,7 +354,8 @@ static hl_particle_field spread_over(hl_pool *pool, const hl_particle_set *set, 
   return field;
 }
 
-/* The greatest difference between the coefficients of bricks and those of an array, in parts of each. */
+/* The greatest difference between the coefficients of bricks and those of an array, as a fraction of the
+ * array's greatest. */
 static double differ(const hl_bricks *bricks, const float *voxels, const size_t points[3]) {
   double most = 0;
   const float *voxel = voxels;
@@ -402,8 +405,7 @@ static void compare_bricks(hl_pool *pool, const double period[3], size_t side) {
   hl_particles_release(context, &set);
 }
 
-/* The field in bricks is the field of all points, coefficient by coefficient, so its mass is the same, too.
- */
+/* The field in bricks has the coefficients of the field of all points, and so the same mass. */
 static void bricks_have_all_coefficients(void **state) {
   (void)state;
   hl_pool *pool = NULL;
@@ -416,7 +418,7 @@ static void bricks_have_all_coefficients(void **state) {
 
 /* ---- how far a field is from the kernels ---- */
 
-/* W(r / h) / (pi h^3), summed over all particles one by one. */
+/* The sum of W(r / h) / (pi h^3) over all particles, one by one. */
 static double sum_of_all(const hl_particle_set *set, const double period[3], const uint32_t place[3]) {
   double sum = 0;
   for (size_t n = 0; n < set->count; n++) {
@@ -469,9 +471,9 @@ static void probes_are_sums_of_all_kernels(void **state) {
   compare_sums((const double[3]){1.2, 1.3, 1.7}, 2);
 }
 
-/* A single particle's field differs from its kernel most in its middle, where the kernel is 1 / (pi h^3). It
- * is spread on a level whose spacing is at most h / 2. A lattice that does not resolve the kernel keeps
- * little of its height. */
+/* The field of a single particle differs from its kernel most in the middle, where the kernel is 1 / (pi
+ * h^3). The particle is put into a level whose voxels are at most h / 2. A lattice that does not resolve the
+ * kernel keeps little of its height. */
 static void the_difference_is_told(void **state) {
   (void)state;
   static const double spacings[2] = {0.5, 4};
@@ -522,7 +524,7 @@ static void wrong_numbers_are_refused(void **state) {
   expect(&d, HL_ERROR_INPUT, "no particles");
 }
 
-/* Lengths from nearly nothing to far more than the box, places far away, and some that are not finite. */
+/* Smoothing lengths from nearly 0 to far more than the box, places far away, and some that are not finite. */
 static void wild_numbers_make_volumes(void **state) {
   (void)state;
   hl_particles_description d = clusters(1000);

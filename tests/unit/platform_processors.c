@@ -1,4 +1,5 @@
-/* unit/platform_processors.c - the processors that control groups grant, of both versions. */
+/* unit/platform_processors.c - the number of processors that Linux's control groups allow, of both versions.
+ */
 #define _GNU_SOURCE
 #include <math.h>
 #include <setjmp.h>
@@ -14,7 +15,7 @@
 
 #include "platform/processors.h"
 
-/* A folder that stands for the system's root. */
+/* A folder that takes the place of the system's root. */
 static char root[64];
 
 static int make_root(void **state) {
@@ -30,7 +31,7 @@ static int remove_root(void **state) {
   return system(command);
 }
 
-/* Writes a file below the root, and the folders above it. */
+/* Writes a file below the root, and makes the folders above it. */
 static void write_file(const char *path, const char *text) {
   char whole[512];
   snprintf(whole, sizeof whole, "%s%s", root, path);
@@ -58,18 +59,19 @@ static void test_no_groups(void **state) {
 static void test_version_2(void **state) {
   (void)state;
   write_file("/proc/self/cgroup", "0::/kubepods/pod7/box\n");
-  expect(INFINITY); /* no group's folder is there */
+  expect(INFINITY); /* the group's folder is not there */
   write_file("/sys/fs/cgroup/kubepods/pod7/box/cpu.max", "max 100000\n");
   expect(INFINITY);
   write_file("/sys/fs/cgroup/kubepods/pod7/box/cpu.max", "250000 100000\n");
   expect(2.5);
-  write_file("/sys/fs/cgroup/kubepods/cpu.max", "80000 50000\n"); /* a group above grants less */
+  write_file("/sys/fs/cgroup/kubepods/cpu.max", "80000 50000\n"); /* a group above it allows less */
   expect(1.6);
   write_file("/sys/fs/cgroup/kubepods/pod7/box/cpu.max", "");
   expect(1.6);
 }
 
-/* A container sees its own group at the top, whatever its path outside. */
+/* A process in a container sees its own group as the root of all groups, whatever path it has outside of the
+ * container. */
 static void test_container(void **state) {
   (void)state;
   write_file("/proc/self/cgroup", "0::/../elsewhere\n");
@@ -92,7 +94,7 @@ static void test_nonsense(void **state) {
   (void)state;
   write_file("/proc/self/cgroup", "\n::\nx\n0:/\n4:cpuset:/job\n0::/mad\n");
   write_file("/sys/fs/cgroup/mad/cpu.max", "many 0\n");
-  expect(4); /* of the group at the top */
+  expect(4); /* the limit of the root group */
   write_file("/sys/fs/cgroup/mad/cpu.max", "100 0\n");
   expect(4);
 }

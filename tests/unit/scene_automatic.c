@@ -16,7 +16,7 @@ static float noise(unsigned *state) { /* 0..1 */
   return (float)(*state >> 8) / 16777216.0f;
 }
 
-/* A soft-edged ball of material 1 with a core of material 2 in noisy air, as a scanner sees it. */
+/* A ball of material 1 with a blurred edge and a core of material 2, in noisy air, as a scanner sees it. */
 static void make_ball(float *values, double noisy) {
   unsigned state = 5;
   for (int k = 0, v = 0; k < N; k++)
@@ -40,7 +40,7 @@ static void assert_ascending(const hl_transfer_function *f) {
   for (size_t p = 1; p < f->color_count; p++) assert_true(f->color[p].value >= f->color[p - 1].value);
 }
 
-/* Air is transparent, the ball is seen, and the core has another colour than the rest. */
+/* The air is transparent, the ball shows, and its core has another colour. */
 static void separates_air_from_things(void **state) {
   (void)state;
   static float values[N * N * N];
@@ -65,7 +65,7 @@ static void separates_air_from_things(void **state) {
   hl_context_destroy(context);
 }
 
-/* Scaled, shifted and turned upside down, the same volume gets the same function in its own units. */
+/* If a volume's values are scaled, shifted and reversed, it gets the same function in its own units. */
 static void does_not_depend_on_units(void **state) {
   (void)state;
   static float values[N * N * N];
@@ -95,7 +95,7 @@ static void does_not_depend_on_units(void **state) {
   hl_context_destroy(context);
 }
 
-/* Two lobes of a signed field, on any background value. */
+/* Two lobes of different signs, on any value of the background. */
 static void signed_fields_show_both_lobes(void **state) {
   (void)state;
   static float values[N * N * N];
@@ -119,7 +119,7 @@ static void signed_fields_show_both_lobes(void **state) {
     assert_true(hl_transfer_function_opacity(&f, offset) == 0);
     assert_true(hl_transfer_function_opacity(&f, offset + 0.7) > 0.2 &&
                 hl_transfer_function_opacity(&f, offset - 0.7) > 0.2);
-    /* a clear shell on each side: more opaque than the matter outside it, and than the matter within */
+    /* each side has a clear shell: it is more opaque than the matter outside of it and within it */
     const double shell = a.faint + 0.35 * (a.solid - a.faint);
     for (int side = -1; side <= 1; side += 2) {
       const double at = hl_transfer_function_opacity(&f, offset + side * shell);
@@ -144,8 +144,8 @@ static double depth_of_ball(const hl_light *light) {
   return 1 / fmax(middle, 1e-9);
 }
 
-/* A field that falls off smoothly, and rough smoke that does, are told apart; smoke is lit as a medium: from
- * the side, so that the borders of round smoke stand out. */
+/* A field that falls off smoothly and smoke that is rough but falls off are told apart. Smoke is lit as a
+ * medium, from the side, so that the borders of round smoke show. */
 static void tells_fields_from_smoke(void **state) {
   (void)state;
   static float values[N * N * N];
@@ -173,7 +173,7 @@ static void tells_fields_from_smoke(void **state) {
   hl_context_destroy(context);
 }
 
-/* Grids without anything to tell apart, and with hardly anything in them, still get a scene. */
+/* Grids in which nothing can be told apart, or with hardly any data, still get a scene. */
 static void odd_volumes_get_a_scene(void **state) {
   (void)state;
   hl_context *context = make_context();
@@ -204,7 +204,7 @@ static void odd_volumes_get_a_scene(void **state) {
   hl_context_destroy(context);
 }
 
-/* Where NaNs are the air, on the grid's faces too, the rest is shown. */
+/* If NaN takes the place of air, also on the grid's faces, the rest shows. */
 static void nan_may_be_the_air(void **state) {
   (void)state;
   static float values[N * N * N];
@@ -219,7 +219,7 @@ static void nan_may_be_the_air(void **state) {
   assert_true(hl_transfer_function_opacity(&f, 2.2) > 0.5);
   hl_transfer_function_release(context, &f);
   hl_volume_release(volume);
-  static float lonely[N * N * N * 27]; /* one finite voxel in a grid that is sampled with gaps */
+  static float lonely[N * N * N * 27]; /* one finite voxel lies where a search with gaps does not look */
   for (int v = 0; v < N * N * N * 27; v++) lonely[v] = NAN;
   lonely[3 * N * (3 * N * 3 + 3) + 3] = 1;
   lonely[3 * N * (3 * N * 3 + 3) + 4] = 2;
@@ -229,7 +229,7 @@ static void nan_may_be_the_air(void **state) {
   assert_true(hl_transfer_function_opacity(&hl_scene_describe(scene)->volumes[0].transfer_function, 2) > 0);
   hl_scene_release(scene);
   hl_volume_release(volume);
-  /* A hundred voxels of a million, above or below the rest. */
+  /* A hundred voxels of a million lie above or below the rest. */
   for (int below = 0; below < 2; below++) {
     for (int v = 0; v < N * N * N * 27; v++) lonely[v] = v % 17389 == 0 ? (below ? -3.0f : 3.0f) : 0.0f;
     volume = volume_of_voxels(context, 3 * N, 3 * N, 3 * N, HL_VOXEL_F32, lonely);
@@ -244,7 +244,7 @@ static void nan_may_be_the_air(void **state) {
   hl_context_destroy(context);
 }
 
-/* A CT in Hounsfield units and the same squeezed into 8 bits: bone at the same places. */
+/* A CT in Hounsfield units, and the same CT in 8 bits: bone is in the same places. */
 static void ct_presets_adapt(void **state) {
   (void)state;
   static float values[N * N * N];
@@ -303,7 +303,7 @@ static void colormaps_have_their_published_colors(void **state) {
   hl_transfer_function f = {0};
   assert_int_equal(hl_transfer_function_colormap(context, "viridis", 10, 20, &f, NULL), HL_OK);
   assert_true(f.color[0].value == 10 && f.color[f.color_count - 1].value == 20);
-  for (int n = 0; n <= 100; n++) { /* the points stand for the whole map */
+  for (int n = 0; n <= 100; n++) { /* the points stand for the whole colormap */
     double exact[3], line[3];
     hl_colormap_evaluate("viridis", n / 100.0, exact);
     hl_transfer_function_color(&f, 10 + n / 10.0, line);
@@ -359,7 +359,8 @@ static double spacing_of_ball(double softness) {
   return spacing;
 }
 
-/* In a small grid sheets lie closer than a quarter of a voxel where surfaces are thin, and nowhere else. */
+/* In a small grid, sheets are closer together than a quarter of a voxel if surfaces are thin, and else they
+ * are not. */
 static void thin_surfaces_of_small_grids_get_more_sheets(void **state) {
   (void)state;
   double thin = spacing_of_ball(0.4), thick = spacing_of_ball(3);
@@ -367,7 +368,7 @@ static void thin_surfaces_of_small_grids_get_more_sheets(void **state) {
   assert_true(thick == 0.25);
 }
 
-/* Ids of atlases are far apart, and far from 0. */
+/* The numbers of an atlas's labels are far from each other and from 0. */
 static void ids_of_any_size_are_labels(void **state) {
   (void)state;
   enum { N = 24 };
@@ -389,8 +390,8 @@ static void ids_of_any_size_are_labels(void **state) {
   hl_context_destroy(context);
 }
 
-/* Voxels that are repeated, as nearest neighbours enlarge a scan, are equal to their neighbours without being
- * names of regions. A label map that is enlarged in this way stays one. */
+/* Voxels that are repeated, as a scan is enlarged by nearest neighbours, are equal to their neighbours, but
+ * they are no labels. A label map that is enlarged in this way is one. */
 static void repeated_voxels_are_no_labels(void **state) {
   (void)state;
   enum { N = 12, TIMES = 4, SIDE = N * TIMES };

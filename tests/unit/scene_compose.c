@@ -79,7 +79,7 @@ static void the_order_of_the_list_does_not_matter(void **state) {
   hl_scene_release(other);
 }
 
-/* What was chosen for a volume is chosen anew; what a scene says stays. */
+/* Things that were chosen for a volume are chosen anew, and things that a scene states stay the same. */
 static void bare_scenes_follow(void **state) {
   (void)state;
   static const hl_option ambient = {"ambient", "0.1"}, size = {"size", "300x100"};
@@ -145,7 +145,7 @@ static hl_scene *make_label_map(void) {
   return scene;
 }
 
-/* A bare label map has its labels, until an option asks for its values; a named look has none. */
+/* A bare label map is drawn by its labels, unless an option asks for its values or names a look. */
 static void bare_label_maps_have_their_labels(void **state) {
   (void)state;
   static const struct {
@@ -215,7 +215,7 @@ static void options_are_described(void **state) {
   assert_null(hl_option_choices("nothing"));
 }
 
-/* The brightest channel of a scene's picture of 64x64 pixels, at its largest. */
+/* The brightest channel of a scene's picture of 64x64 pixels. */
 static float brightest(const hl_scene *scene, float *least_alpha) {
   static float pixels[64 * 64 * 4];
   hl_renderer *renderer = NULL;
@@ -253,7 +253,7 @@ static void light_rigs_expose_bare_volumes(void **state) {
   assert_non_null(strstr(error.message, "--light-rig and --light exclude each other"));
 }
 
-/* Behind a ball that hides the middle, all other pixels are the sky's one colour, with alpha 1. */
+/* Behind a ball in the middle, all other pixels have the sky's one colour, with alpha 1. */
 static void a_sky_is_seen_as_background(void **state) {
   (void)state;
   static float pixels[64 * 64 * 4];

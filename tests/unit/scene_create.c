@@ -1,4 +1,5 @@
-/* tests/unit/scene_create.c - the immutable scene: deep copies, and every refusal with its exact line. */
+/* tests/unit/scene_create.c - scenes that cannot be changed: deep copies, and each refusal with its exact
+ * message. */
 #include "scene_parts.h"
 
 #include "scene/light/light_kind.h"
@@ -9,7 +10,7 @@ static void copies_everything(void **state) {
   parts_make(&p);
   hl_scene *scene = NULL;
   assert_int_equal(hl_scene_create(p.context, &p.description, &scene, NULL), HL_OK);
-  /* What the caller does to its own arrays no longer matters. */
+  /* The caller may change its own arrays afterwards. */
   p.light.intensity = 77;
   p.slide[1] = 77;
   p.opacity[1].opacity = 0.9;
@@ -48,7 +49,7 @@ static void copies_a_lights_own_image(void **state) {
   parts_release(&p);
 }
 
-/* A memory limit at every size below what is needed: an orderly refusal, and nothing leaks. */
+/* With any memory limit below the need, the call fails in order, and nothing leaks. */
 static void survives_any_memory_limit(void **state) {
   (void)state;
   int refused = 0, made = 0;
@@ -82,7 +83,7 @@ static void survives_any_memory_limit(void **state) {
   assert_true(refused > 2);
 }
 
-/* Each case spoils one field of a good scene. */
+/* Each case makes one field of a good scene wrong. */
 typedef struct refusal {
   const char *message;
   hl_status status;
@@ -375,8 +376,8 @@ static void refuses_with_the_place_and_the_mend(void **state) {
   }
 }
 
-/* A rect's moments are known, a polygon of the same outline has the same; so has one with a corner cut in and
- * out again. */
+/* The moments of a rect are known. A polygon with the same outline has the same moments, also with one corner
+ * cut in and out again. */
 static void shapes_have_their_moments(void **state) {
   (void)state;
   static const double outline[][3] = {{-1, -3, 5}, {3, -3, 5}, {3, 1, 5}, {3, 3, 5}, {-1, 3, 5}};
@@ -398,7 +399,8 @@ static void shapes_have_their_moments(void **state) {
   assert_near(a.row[0].x, 16.0 / 12, 1e-12);
   assert_near(a.row[1].y, 36.0 / 12, 1e-12);
   for (int row = 0; row < 3; row++) assert_near(vec3_length(vec3_subtract(a.row[row], b.row[row])), 0, 1e-12);
-  /* three unit squares: the mean of x is 7/6; of x^2 (1/3 + 7/3 + 7/3) / 3; of x y (1/4 + 3/4 + 9/4) / 3 */
+  /* for three unit squares, the mean of x is 7/6, of x^2 (1/3 + 7/3 + 7/3) / 3, and of x y (1/4 + 3/4 + 9/4)
+   * / 3 */
   polygon.vertices = notched;
   polygon.vertex_count = 6;
   shape = hl_light_shape(&polygon);
@@ -410,7 +412,7 @@ static void shapes_have_their_moments(void **state) {
   assert_near(b.row[0].y, 13.0 / 12 - 35.0 / 36, 1e-12);
 }
 
-/* Two points at one value are a step, and the second holds at the value itself. */
+/* Two points at one value are a step. The second point holds at the value itself. */
 static void transfer_function_closed_forms(void **state) {
   (void)state;
   hl_opacity_point points[] = {{0, 0}, {10, 0}, {10, 0.5}, {20, 1}, {30, 0}, {40, 0}, {40, 0.25}};
@@ -439,7 +441,7 @@ static void transfer_function_closed_forms(void **state) {
   assert_true(c[0] == 1 && c[1] == 1 && c[2] == 1);
 }
 
-/* visible() agrees with sampling the function densely, on random functions with steps. */
+/* On random functions with steps, visible() agrees with a dense sampling of the function. */
 static void visible_agrees_with_sampling(void **state) {
   (void)state;
   srand(7);
@@ -478,8 +480,8 @@ static void empty_value_is_the_commonest_transparent_one(void **state) {
   (void)state;
   hl_context *context = make_context();
   float values[64];
-  for (int v = 0; v < 64; v++)
-    values[v] = v < 40 ? 0.0f : v < 60 ? 5.0f : (float)v; /* air 0, a wall 5, a few things */
+  /* air is 0, a wall is 5, and a few voxels have other values */
+  for (int v = 0; v < 64; v++) values[v] = v < 40 ? 0.0f : v < 60 ? 5.0f : (float)v;
   hl_volume *volume = make_volume(context, 4, values);
   hl_scene_volume sv;
   hl_scene_volume_defaults(&sv);
@@ -491,7 +493,7 @@ static void empty_value_is_the_commonest_transparent_one(void **state) {
   sv.transfer_function = (hl_transfer_function){
       .unit_distance = 1,
       .opacity = band,
-      .opacity_count = 4}; /* zero is opaque: the wall is the surroundings */
+      .opacity_count = 4}; /* zero is opaque, so that the wall is the surroundings */
   assert_near(hl_scene_volume_empty_value(&sv), 5, 0.2);
   assert_true(hl_transfer_function_opacity(&sv.transfer_function, hl_scene_volume_empty_value(&sv)) == 0);
   sv.transfer_function = (hl_transfer_function){.unit_distance = 1, .opacity = none, .opacity_count = 1};
@@ -500,20 +502,20 @@ static void empty_value_is_the_commonest_transparent_one(void **state) {
   hl_context_destroy(context);
 }
 
-/* The three stretch the file's own axes, whatever the rotation turns them to. */
+/* The three scales stretch the file's own axes, whatever the rotation does with these. */
 static void three_scales_come_before_the_rotation(void **state) {
   (void)state;
   parts p;
   parts_make(&p);
   p.scene_volume.scale = 2;
   memcpy(p.scene_volume.axis_scale, (double[3]){1, 3, 0.5}, sizeof p.scene_volume.axis_scale);
-  p.scene_volume.rotate_angle_deg = 90; /* about z: x becomes y, y becomes -x */
+  p.scene_volume.rotate_angle_deg = 90; /* turned about z, x becomes y and y becomes -x */
   vec3 world = affine3_apply(hl_scene_volume_index_to_world(&p.scene_volume), (vec3){1, 2, 3});
   assert_near(world.x, -12, 1e-12);
   assert_near(world.y, 2, 1e-12);
   assert_near(world.z, 3, 1e-12);
   hl_scene_volume clipped = p.scene_volume;
-  clipped.clipped = 1; /* in the file's world, before any scale */
+  clipped.clipped = 1; /* in the file's world, before the scales */
   for (int a = 0; a < 3; a++) clipped.clip_min[a] = 0.25, clipped.clip_max[a] = 1.5;
   double low[3], high[3];
   hl_scene_volume_box(&clipped, low, high);
@@ -526,7 +528,7 @@ static void transform_is_scale_then_rotate_then_translate(void **state) {
   parts p;
   parts_make(&p);
   p.scene_volume.scale = 2;
-  p.scene_volume.rotate_angle_deg = 90; /* about z: x becomes y */
+  p.scene_volume.rotate_angle_deg = 90; /* turned about z, x becomes y */
   p.scene_volume.translate[0] = 10;
   vec3 world = affine3_apply(hl_scene_volume_index_to_world(&p.scene_volume), (vec3){1, 2, 3});
   assert_near(world.x, 10 - 4, 1e-12);

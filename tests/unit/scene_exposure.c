@@ -1,4 +1,5 @@
-/* tests/unit/scene_exposure.c - how bright bare volumes are: the fit of lights, of skies and of cut faces. */
+/* tests/unit/scene_exposure.c - the brightness of bare volumes: the fit of lights, of skies and of cut faces.
+ */
 #include "guess/exposure.h"
 #include "looks_volumes.h"
 #include "scene_parts.h"
@@ -6,7 +7,8 @@
 /* A ball whose values rise evenly towards its middle, 10 a voxel. */
 static double cone(int i, int j, int k) { return fmax(0, 10 * (20 - distance(i, j, k, 24, 24, 24))); }
 
-/* A scene of a volume of values[], seen whole, with opacities from 0 at `clear` to `most` at 200. */
+/* A scene of a volume with values[], as a whole in view. Opacities rise from 0 at `clear` to `most` at 200.
+ */
 static hl_volume *ball_scene(hl_context *context, double clear, double most, parts *p) {
   parts_make(p);
   hl_volume *volume = make_volume(context, N, values);
@@ -23,15 +25,15 @@ static hl_volume *ball_scene(hl_context *context, double clear, double most, par
   return volume;
 }
 
-/* The optical depth from the place where the values are `clear` to t voxels on, where they rise by 10 a
- * voxel: of opacity r v after a value v, the integral of -ln(1 - r v) dv is ((1 - r v) ln(1 - r v) + r v) / r
- * (derived). */
+/* The optical depth from the place where values are `clear` to a place t voxels farther on. Values rise by 10
+ * a voxel, and the opacity is r v for a value that is v above `clear`. The integral of -ln(1 - r v) dv is ((1
+ * - r v) ln(1 - r v) + r v) / r (derived). */
 static double optical_depth(double clear, double most, double t) {
   double rate = most / (200 - clear), left = 1 - rate * 10 * t;
   return (left * log(left) + 1 - left) / rate / 10;
 }
 
-/* Steep functions have thin surfaces: an optical depth of 1 begins and ends within their thickness. */
+/* Steep functions have thin surfaces. The optical depth of 1 begins and ends within their thickness. */
 static void surfaces_are_measured(void **state) {
   (void)state;
   static const double cases[][2] = {{20, 0.9}, {60, 0.9}, {100, 0.97}, {20, 0.5}};
@@ -52,9 +54,9 @@ static void surfaces_are_measured(void **state) {
   hl_context_destroy(context);
 }
 
-/* A matt ball in the light of a lamp at the eye is as bright as its colour in its middle: the factor is 0.871
- * (240 of 255) over colour times intensity. Ambient light adds up with it, the part that is left takes from
- * it. */
+/* A matt ball in the light of a lamp at the eye has the brightness of its colour in its middle. The factor is
+ * 0.871 (240 of 255) divided by colour times intensity. Ambient light is added, and the lamp's light is less
+ * by it. */
 static void lights_are_fitted(void **state) {
   (void)state;
   hl_context *context = make_context();
@@ -82,9 +84,10 @@ static void lights_are_fitted(void **state) {
   hl_context_destroy(p.context);
 }
 
-/* The same under skies alone. Where the zenith is behind the eye, a sky that shines from there lights the
- * ball's middle by 2/3 of its radiance, the mean of the sine weighted by the cosine; an even one lights all
- * of it by 1. What is left of lights is not asked: the sky's light is that at the ball's outside. */
+/* The same under a sky alone. A sky that shines from a zenith behind the eye lights the ball's middle by 2/3
+ * of its radiance, which is the mean of the sine weighted by the cosine. An even sky lights the whole ball
+ * by 1. The light that matter leaves does not matter here, since the sky's light is the light at the ball's
+ * outside. */
 static void skies_are_fitted(void **state) {
   (void)state;
   static const struct {
@@ -117,10 +120,10 @@ static void skies_are_fitted(void **state) {
   hl_context_destroy(p.context);
 }
 
-/* A ball that is cut through its middle, the face towards the eye, in the light of a lamp at the eye or at an
- * angle of 45 degrees: what the eye meets of the face in two steps, 0.99, sends its colour times the angle's
- * cosine, times 0.8 for what the light loses on its way to the matter that is seen; the rest has no normal. A
- * clip box leaves the same face as a plane does. */
+/* A ball that is cut through its middle turns the face to the eye, in the light of a lamp at the eye or at an
+ * angle of 45 degrees. The eye's ray meets .99 of the face's opacity in two steps. That part sends its colour
+ * times the cosine of the angle, times 0.8 for the light that is lost on the way to the matter. The rest has
+ * no normal. A clip box leaves the same face as a plane. */
 static void cut_faces_are_fitted(void **state) {
   (void)state;
   static const double azimuths[] = {0, 45}, factors[] = {0.871, 1.223};
@@ -144,7 +147,7 @@ static void cut_faces_are_fitted(void **state) {
     if (fabs(exposure[n].factor / factors[n] - 1) > 0.04)
       fail_msg("%g degrees: %g in place of %g", azimuths[n], exposure[n].factor, factors[n]);
   }
-  /* the clip box's face, seen and lit from above, in light that what is cut away does not hold off */
+  /* the face of the clip box, seen and lit from above; matter that is cut away takes no light from it */
   assert_int_equal(hl_camera_frame(&p.description, 30, 80, 1, &p.description.camera), HL_OK);
   hl_light_direction(camera, 0, 0, p.light.direction);
   for (int by_clip = 0; by_clip < 2; by_clip++) {
@@ -163,8 +166,8 @@ static void cut_faces_are_fitted(void **state) {
   hl_context_destroy(p.context);
 }
 
-/* A bare volume stands under a sky whose zenith is the camera's up; under a tight memory limit the same
- * lights shine beside constant light instead. */
+/* A bare volume stands under a sky whose zenith is the camera's up. With a tight memory limit, the same
+ * lights shine, with constant light in place of the sky. */
 static void volumes_stand_under_a_sky(void **state) {
   (void)state;
   hl_context_options options;

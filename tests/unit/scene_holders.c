@@ -1,5 +1,5 @@
-/* tests/unit/scene_holders.c - what holds a scanned object is cut away, and nothing else: balls beside boards
- * of which the answer is known. */
+/* tests/unit/scene_holders.c - things that hold a scanned object are cut away, and nothing else is. Balls
+ * beside boards, for which the answer is known. */
 #include "core/memory.h"
 #include "scene/geometry/cut.h"
 #include "scene_parts.h"
@@ -47,7 +47,7 @@ static double footed(int i, int j, int k) {
   return foot ? 108 + 4 * noise(i, j, k) : on_board(i, j, k);
 }
 
-/* A compact piece beside the ball, cut off by the border, as dense as a board. */
+/* A compact piece beside the ball that the border cuts, as dense as a board. */
 static double with_piece(int i, int j, int k) {
   return hypot(hypot(i - 8, j - 8), k - 2) < 8 ? 80 + 4 * noise(i, j, k) : ball(i, j, k);
 }
@@ -61,7 +61,7 @@ static double on_slanted_board(int i, int j, int k) {
   return in_slanted_board(i, j, k) ? 80 + 4 * noise(i, j, k) : ball(i, j, k);
 }
 
-/* A board below, and a compact piece above: the board is a holder, and the piece is none. */
+/* A board below and a compact piece above. The board is a holder, and the piece is not. */
 static bool in_upper_piece(int i, int j, int k) { return hypot(hypot(i - 8, j - 8), k - 58) < 8; }
 static double on_board_with_piece(int i, int j, int k) {
   return in_upper_piece(i, j, k) ? 80 + 4 * noise(i, j, k) : on_board(i, j, k);
@@ -96,12 +96,12 @@ static hl_scene *make_scene(hl_context *context, double (*each)(int i, int j, in
   return scene;
 }
 
-/* The number of a body's voxels, and of those that no plane cuts off. */
+/* The number of voxels of a body, and the number of them that no plane cuts off. */
 typedef struct counts {
   int all, left;
 } counts;
 
-/* Counts the voxels of a body. None of the ball's is cut off, nor of the voxel around it. */
+/* Counts the voxels of a body. No voxel of the ball, and no voxel beside it, is cut off. */
 static counts count_left(hl_context *context, const hl_scene_volume *volume,
                          bool (*in)(int i, int j, int k)) {
   cut_shape *cuts;
@@ -119,8 +119,8 @@ static counts count_left(hl_context *context, const hl_scene_volume *volume,
   return found;
 }
 
-/* The board is cut away but for what lies within two cells of the ball's hull, wherever the grid lies and
- * however it is turned. */
+/* All of the board is cut away except for the part within two cells of the ball's hull, wherever the grid
+ * lies and however it is turned. */
 static void boards_are_cut_away(void **state) {
   (void)state;
   hl_context *context = make_context();
@@ -135,7 +135,7 @@ static void boards_are_cut_away(void **state) {
   hl_context_destroy(context);
 }
 
-/* A plane that lies just as a slanted board cuts it off alone, and whole. */
+/* A plane parallel to a slanted board cuts off all of it, and nothing else. */
 static void one_plane_cuts_a_board_off(void **state) {
   (void)state;
   hl_context *context = make_context();
@@ -149,7 +149,7 @@ static void one_plane_cuts_a_board_off(void **state) {
   hl_context_destroy(context);
 }
 
-/* Crumbs all around the object go with its holder, although each plane cuts off few of them. */
+/* Crumbs all around the object go with its holder, although each plane cuts off only a few of them. */
 static void crumbs_go_with_the_board(void **state) {
   (void)state;
   hl_context *context = make_context();
@@ -164,7 +164,7 @@ static void crumbs_go_with_the_board(void **state) {
   hl_context_destroy(context);
 }
 
-/* Planes that cut a holder off cut nothing of a body that is none. */
+/* Planes that cut off a holder cut nothing off a body that is no holder. */
 static void planes_spare_other_bodies(void **state) {
   (void)state;
   hl_context *context = make_context();

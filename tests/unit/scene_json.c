@@ -1,5 +1,5 @@
-/* tests/unit/scene_json.c - scene files: every case of tests/scenes/cases.json, syntax, round trips, hostile
- * bytes. */
+/* tests/unit/scene_json.c - scene files: all cases of tests/scenes/cases.json, syntax, writing and reading
+ * again, hostile bytes. */
 #define _GNU_SOURCE
 #include <jansson.h>
 #include <stdio.h>
@@ -69,14 +69,14 @@ static hl_status read_text(hl_context *context, const char *text, hl_scene **sce
   return hl_scene_from_json(context, text, strlen(text), folder, "S", scene, error);
 }
 
-/* Equal, or equal up to a star at the end of expected. */
+/* Returns whether two texts are equal, or equal up to a star at the end of `expected`. */
 static void assert_message(const char *message, const char *expected) {
   size_t length = strlen(expected);
   if (length > 0 && expected[length - 1] == '*') assert_memory_equal(message, expected, length - 1);
   else assert_string_equal(message, expected);
 }
 
-/* read(write(s)) == s, told by the text, which holds every field to the last digit. */
+/* Asserts that read(write(s)) == s, by the text, which holds each field to the last digit. */
 static void assert_round_trip(hl_context *context, const hl_scene *scene) {
   char *text = NULL, *again = NULL;
   hl_scene *second = NULL;
@@ -139,7 +139,8 @@ static void every_case(void **state) {
   hl_context_destroy(context);
 }
 
-/* Equal shapes are sampled once, and a program's own text, groups and all, can be written. */
+/* Equal shapes are sampled once. A program can write its own text of shapes, with groups and everything else.
+ */
 static void shapes_are_made_once(void **state) {
   (void)state;
   static const char text[] =
@@ -239,7 +240,7 @@ static void syntax_errors_have_line_and_column(void **state) {
   hl_context_destroy(context);
 }
 
-/* What the file does not say. */
+/* The defaults of fields that the file does not have. */
 static void defaults_are_the_documented_ones(void **state) {
   (void)state;
   hl_context *context = make_context();
@@ -264,7 +265,8 @@ static void defaults_are_the_documented_ones(void **state) {
   assert_true(d->render.shadows == HL_SHADOWS_SOFT && d->render.soft_method == HL_SOFT_CASCADE);
   assert_true(d->render.sheet_spacing == 0.5 && d->render.shadow_resolution == 0 &&
               d->render.light_samples == 4);
-  assert_ptr_equal(d->volumes[0].volume, d->volumes[1].volume);   /* one file, loaded once */
+  /* the file is named twice, and loaded once */
+  assert_ptr_equal(d->volumes[0].volume, d->volumes[1].volume);
   assert_true(d->volumes[0].transfer_function.opacity_count > 1); /* automatic */
   assert_true(d->volumes[1].transfer_function.opacity_count == 1 &&
               d->volumes[1].transfer_function.unit_distance == 1);
@@ -315,8 +317,8 @@ static void files_are_relative_to_the_scene_file(void **state) {
   hl_context_destroy(context);
 }
 
-/* Decoded to linear light, over black; the name as it opens from here, and the screen, survive a round
- * trip. */
+/* The image is decoded to linear light over black. The name under which it opens from here, and the screen,
+ * are the same after writing and reading. */
 static void textures_are_read_linear(void **state) {
   (void)state;
   hl_context *context = make_context();
@@ -341,8 +343,8 @@ static void textures_are_read_linear(void **state) {
   hl_context_destroy(context);
 }
 
-/* The image on a light's own surface is read likewise, and survives a round trip; a rect says which way is up
- * itself. */
+/* The image on a light's own surface is read in the same way, and is the same after writing and reading. A
+ * rect states its own up. */
 static void emissions_are_read_linear(void **state) {
   (void)state;
   static const char *const lights[] = {
@@ -424,13 +426,13 @@ static void odd_values_survive(void **state) {
   hl_context_destroy(context);
 }
 
-/* Every byte of a good scene changed, left out or doubled, and the text cut there. */
+/* In the text of a good scene, each byte is changed, left out or doubled, and the text is cut there. */
 static void damage(hl_context *context, const char *good, int *accepted, int *refused) {
   size_t size = strlen(good) + 1;
   char *text = malloc(size + 1);
   for (size_t at = 0; at + 1 < size; at++)
     for (int kind = 0; kind < 4; kind++) {
-      size_t keep = kind == 1 ? at + 1 : at; /* what follows the damage */
+      size_t keep = kind == 1 ? at + 1 : at; /* the text after the damage */
       memcpy(text, good, at);
       if (kind == 0) text[at] = (char)(rand() % 256), memcpy(text + at + 1, good + at + 1, size - at - 1);
       else if (kind == 1) memcpy(text + at, good + keep, size - keep);
@@ -448,7 +450,7 @@ static void damage(hl_context *context, const char *good, int *accepted, int *re
   free(text);
 }
 
-/* An answer, and never a leak. */
+/* Reads the text. The call answers, and nothing leaks. */
 static void damaged_scenes_are_answered(void **state) {
   (void)state;
   static const char *const good[] = {
@@ -476,7 +478,8 @@ static hl_status read_like(hl_context *context, const char *text, const hl_scene
   return hl_scene_from_json_like(context, text, strlen(text), folder, "changed", like, scene, error);
 }
 
-/* The files are gone when the changed text is read: what it names is the open scene's own. */
+/* The files have been removed when the changed text is read, so that all files that it names must be the open
+ * scene's own. */
 static void changed_texts_open_no_file(void **state) {
   (void)state;
   const char *text =
@@ -532,7 +535,7 @@ static void changed_texts_open_no_file(void **state) {
   hl_context_destroy(context);
 }
 
-/* A page writes 4.0 as 4. */
+/* a page writes 4.0 as 4 */
 static void whole_numbers_have_one_spelling(void **state) {
   (void)state;
   const char *real =

@@ -1,4 +1,4 @@
-/* tests/unit/scene_labels.c - labels from segmentations and tables, in scenes and back. */
+/* tests/unit/scene_labels.c - labels from segmentations and tables, in scenes, and written and read again. */
 #define _GNU_SOURCE
 #include <stdio.h>
 #include <unistd.h>
@@ -96,7 +96,7 @@ static void tables_of_other_programs(void **state) {
   hl_context_destroy(context);
 }
 
-/* Where commas, semicolons or tabs part the words, names have blanks. */
+/* If commas, semicolons or tabs separate words, names may have blanks. */
 static void names_of_tables_have_blanks(void **state) {
   (void)state;
   static const char *const lines[] = {"4,left lung,255,0,128",       "4, left lung , 255, 0, 128",
@@ -184,7 +184,7 @@ static void scenes_keep_their_labels(void **state) {
   hl_context_destroy(context);
 }
 
-/* The number of a label in a scene's text is whole, however it is written. */
+/* The number of a label in a scene's text must be whole, however it is written. */
 static void numbers_of_labels_are_whole(void **state) {
   (void)state;
   hl_context *context = make_context();
@@ -209,7 +209,7 @@ static void numbers_of_labels_are_whole(void **state) {
   hl_context_destroy(context);
 }
 
-/* The settings of a look have their ranges in a volume that is drawn by its labels, too. */
+/* The settings of a look have their ranges also if the volume is drawn by its labels. */
 static void looks_of_labels_have_their_ranges(void **state) {
   (void)state;
   hl_context *context = make_context();
@@ -234,7 +234,7 @@ static void looks_of_labels_have_their_ranges(void **state) {
   hl_context_destroy(context);
 }
 
-/* A scene makes the fields of its labels for its first frame, once: to be described costs no field. */
+/* A scene makes the fields of its labels once, for its first frame. Describing the scene needs no fields. */
 static void fields_are_made_for_the_first_frame(void **state) {
   (void)state;
   hl_context *context = make_context();
@@ -247,7 +247,7 @@ static void fields_are_made_for_the_first_frame(void **state) {
   assert_int_equal(hl_scene_from_json(context, text, strlen(text), NULL, "s", &scene, NULL), HL_OK);
   hl_volume *map = hl_scene_describe(scene)->volumes[0].volume;
   assert_false(scene->drawn->made);
-  assert_null(map->shelf); /* where fields of the map are kept */
+  assert_null(map->shelf); /* the place where fields of the map are kept */
   assert_int_equal(hl_scene_draw(scene, &first, NULL), HL_OK);
   assert_non_null(map->shelf);
   assert_ptr_not_equal(first->description.volumes[0].volume, map);
@@ -259,7 +259,7 @@ static void fields_are_made_for_the_first_frame(void **state) {
   hl_context_destroy(context);
 }
 
-/* What can only be known by the fields, the first frame tells; the next one tells it again. */
+/* Faults that only the fields show are reported by the first frame, and by the next one again. */
 static void labels_without_voxels_are_told(void **state) {
   (void)state;
   hl_context *context = make_context();

@@ -1,5 +1,5 @@
-/* tests/unit/scene_load.c - transfer functions from files: Halflight's, ParaView's and Slicer's; expected
- * numbers of the foreign ones were computed with VTK 9.1. */
+/* tests/unit/scene_load.c - transfer functions from files of Halflight, ParaView and Slicer. The expected
+ * numbers of ParaView and Slicer were computed with VTK 9.1. */
 #define _GNU_SOURCE
 #include <stdio.h>
 #include <unistd.h>
@@ -78,7 +78,7 @@ static void paraview_color_spaces(void **state) {
         spaces[s].name);
     hl_transfer_function f = {0};
     assert_int_equal(load(context, text, &f, NULL), HL_OK);
-    assert_int_equal(f.opacity_count, 0); /* the file has none */
+    assert_int_equal(f.opacity_count, 0); /* the name that the file does not have */
     const double values[3] = {2.5, 5, 8.75};
     for (int n = 0; n < 3; n++) {
       double linear[3];
@@ -90,8 +90,7 @@ static void paraview_color_spaces(void **state) {
   hl_context_destroy(context);
 }
 
-/* "Blue to Red Rainbow" of ParaView runs over green; along the shorter arc of hues it would run over magenta.
- */
+/* "Blue to Red Rainbow" of ParaView passes green. On the shorter arc of hues it would pass magenta. */
 static void paraview_rainbow(void **state) {
   (void)state;
   hl_context *context = make_context();
@@ -155,7 +154,7 @@ static void slicer_presets(void **state) {
   hl_context_destroy(context);
 }
 
-/* Of a polygon without an apex, the vertices' mean is the apex. */
+/* The apex of a polygon without one is the mean of its vertices. */
 static void functions_of_two_numbers(void **state) {
   (void)state;
   hl_context *context = NULL;

@@ -1,4 +1,4 @@
-/* tests/unit/scene_looks.c - what volumes are taken for, and how they are then shown. */
+/* tests/unit/scene_looks.c - the kinds for which volumes are taken, and how they are then shown. */
 #include "guess/looks.h"
 #include "image/srgb.h"
 #include "looks_volumes.h"
@@ -11,7 +11,7 @@ static double casting(int i, int j, int k) {
 
 static double eight_bits(int i, int j, int k) { return floor((body(i, j, k) + 1100) / 8.3); }
 
-/* Cut out by a program: all else is 0. */
+/* A body that a program has cut out, so that everything else is 0. */
 static double cut_out(int i, int j, int k) {
   return distance(i, j, k, 24, 23, 25) < 17
              ? 100 + 40 * (distance(i, j, k, 24, 23, 25) < 11) + 30 * noise(i, j, k)
@@ -25,7 +25,7 @@ static double twigs(int i, int j, int k) { /* a few thin rods in noisy air */
 
 static double mask(int i, int j, int k) { return distance(i, j, k, 24, 24, 24) < 15; }
 static double whole_noise(int i, int j, int k) { return floor(40 * (noise(i, j, k) + 0.5)); }
-/* Waves of many directions that fill the grid, about a mean. */
+/* Waves of many directions fill the grid, around a mean. */
 static double waves(int i, int j, int k) {
   double sum = 0;
   for (int n = 1; n <= 12; n++)
@@ -34,18 +34,18 @@ static double waves(int i, int j, int k) {
 }
 static double density(int i, int j, int k) { return 20 + waves(i, j, k); }
 static double gradient(int i, int j, int k) { return 300 + 2 * i + 0.1 * j + 0.01 * k; }
-static double orbital(int i, int j, int k) { /* saturated lobes on nothing */
+static double orbital(int i, int j, int k) { /* lobes of the greatest value on zeros */
   double lobe = 3 * exp(-pow(distance(i, j, k, 15, 24, 24) / 7, 2)) -
                 3 * exp(-pow(distance(i, j, k, 33, 24, 24) / 7, 2));
   return fabs(lobe) < 0.05 ? 0 : fmax(-1, fmin(1, lobe));
 }
 
-/* An oblique membrane in one half of tissue, as bright as vessels. */
+/* An oblique membrane in one half of tissue that is as bright as vessels. */
 static double membrane(int i, int j, int k) {
   double from = fabs(k - 24 - 0.3 * i + 0.2 * j);
   return tissue(i, j, k, i < 24 ? 1.2 - from : 0);
 }
-/* A flame's temperature, which is highest in a shell; and the same as a scanner would measure it. */
+/* The temperature of a flame, which is highest in a shell; and the same as a scanner would measure it. */
 static double flame(int i, int j, int k) {
   double sway = 3 * sin(0.3 * k), wide = 5 + 0.12 * k, r = hypot(i - 24 - sway, j - 24 + 0.5 * sway) / wide,
          fuel = exp(-r * r);
@@ -53,7 +53,7 @@ static double flame(int i, int j, int k) {
 }
 static double noisy_flame(int i, int j, int k) { return flame(i, j, k) + 60 * noise(i, j, k); }
 
-/* Turbulent air lies on both sides of its mean, and so does noise, which is no flow. */
+/* Turbulent air has values on both sides of its mean. So has noise, which is no flow. */
 static double noise_about_a_mean(int i, int j, int k) {
   double sum = 0;
   for (int n = 0; n < 6; n++) sum += noise(i + 50 * n, j, k);
@@ -105,20 +105,20 @@ static void kinds_are_told_apart(void **state) {
   hl_context_destroy(context);
 }
 
-static double puff(int i, int j, int k) { /* falls off smoothly, and ends */
+static double puff(int i, int j, int k) { /* values fall off smoothly, and end */
   double value = exp(-pow(distance(i, j, k, 24, 24, 24) / 9, 2));
   return value < 0.01 ? 0 : value;
 }
-static double filled(int i, int j, int k) { /* solid, with a soft border */
+static double filled(int i, int j, int k) { /* a solid with a soft border */
   return fmax(0, fmin(1, (15 - distance(i, j, k, 24, 24, 24)) / 2));
 }
 
-/* A file's word that its values are a fog counts where they may be one, whatever a grid is called. */
+/* A file may say that its values are a fog. That counts if they may be one, whatever the grid's name is. */
 static void fog_is_believed_where_the_data_may_be_fog(void **state) {
   (void)state;
   static const struct {
     double (*each)(int, int, int);
-    const char *kind, *said; /* the kinds without the file's word and with it */
+    const char *kind, *said; /* the kinds without the file's statement and with it */
   } cases[] = {{puff, "field", "smoke or cloud"},
                {filled, "scanned matter", "smoke or cloud"},
                {orbital, "signed field", "signed field"},
@@ -139,7 +139,7 @@ static void fog_is_believed_where_the_data_may_be_fog(void **state) {
   hl_context_destroy(context);
 }
 
-/* Of an angiogram the tissue is clear, and the vessels are seen. */
+/* In an angiogram the tissue is transparent, and the vessels show. */
 static void angiograms_show_vessels(void **state) {
   (void)state;
   hl_context *context = make_context();
@@ -157,7 +157,7 @@ static void angiograms_show_vessels(void **state) {
   hl_context_destroy(context);
 }
 
-/* A quantity that lies on both sides of 0 everywhere shows its strongest lobes: few voxels. */
+/* A quantity that has both signs everywhere shows its strongest lobes, which are few voxels. */
 static void strong_lobes_alone_are_seen(void **state) {
   (void)state;
   hl_context *context = make_context();
@@ -177,7 +177,7 @@ static double cloud_of_charge(int i, int j, int k) {
   return 100 * exp(-pow(distance(i, j, k, 24, 24, 24) / 9, 2));
 }
 
-/* A field shows an opaque core through a thin shell that lets more than half of its light pass. */
+/* A field shows an opaque core through a thin shell, which lets more than half of the light pass. */
 static void fields_show_a_core_through_a_shell(void **state) {
   (void)state;
   hl_context *context = make_context();
@@ -211,14 +211,14 @@ static void fields_show_a_core_through_a_shell(void **state) {
   hl_context_destroy(context);
 }
 
-/* A bright inside under skin that is a third as bright, both noisy. */
+/* A bright inside under a skin that is a third as bright, both with noise. */
 static double dark_skin(int i, int j, int k) {
   double r = distance(i, j, k, 24, 24, 24), skin = 22 / (1 + exp((r - 21) / 0.4)),
          inside = 50 / (1 + exp((r - 16) / 0.4));
   return 2 + skin + inside + 3 * noise(i, j, k) + (r < 21 ? 24 * noise(k, i, j) : 0);
 }
 
-/* The surface lies where dark skin begins, and not where the skin's noise crosses a value of the skin. */
+/* The surface lies where the dark skin begins, and not where the skin's noise crosses a value of the skin. */
 static void dark_skin_is_whole(void **state) {
   (void)state;
   hl_context *context = make_context();
@@ -242,7 +242,7 @@ static void dark_skin_is_whole(void **state) {
   hl_context_destroy(context);
 }
 
-/* On the face of a cut through a body, flesh is redder than the skin around it, and bone is nearly white. */
+/* On a cut through a body, flesh is redder than the skin around it, and bone is nearly white. */
 static void cut_faces_tell_flesh_from_bone(void **state) {
   (void)state;
   hl_context *context = make_context();
@@ -270,7 +270,7 @@ static double level_of(const hl_transfer_function *function, double value) {
   return 255 * hl_srgb_encode_number(0.2126 * color[0] + 0.7152 * color[1] + 0.0722 * color[2]);
 }
 
-/* The difference in brightness between two values, in the look that suits the volume. */
+/* The difference in brightness between two values, by the look that suits the volume. */
 static double contrast(hl_context *context, double (*each)(int, int, int), const char *file, double dark,
                        double light) {
   hl_data_analysis a;
@@ -285,9 +285,9 @@ static double contrast(hl_context *context, double (*each)(int, int, int), const
   return levels;
 }
 
-/* Two tissues differ on the faces of cuts, as grey and white matter differ in a slice: in a brain, in matter
- * that may be a head, and in CT, where the fluid in a brain has about 0 and the brain about 30 Hounsfield
- * units. */
+/* On the faces of cuts, two tissues differ as grey and white matter differ in a slice: in a brain, in matter
+ * that may be a head, and in a CT, in which the fluid of a brain has about 0 Hounsfield units and the brain
+ * about 30. */
 static void cut_faces_tell_tissues(void **state) {
   (void)state;
   hl_context *context = make_context();
@@ -298,7 +298,7 @@ static void cut_faces_tell_tissues(void **state) {
   hl_context_destroy(context);
 }
 
-/* The opacity of a ball of a noisy material where it surely is matter. */
+/* The opacity of a ball of noisy material at values that are surely its matter. */
 static double opacity_of_ball(hl_context *context, double radius) {
   hl_transfer_function f;
   for (int v = 0; v < COUNT; v++) {
@@ -318,7 +318,7 @@ static double opacity_of_ball(hl_context *context, double radius) {
   return opacity;
 }
 
-/* The value beyond which a ball of 100 in noisy air surely is matter, of a volume in which `hot` voxels are a
+/* The value above which a ball of 100 in noisy air is surely matter. `hot` voxels of the volume are a
  * thousand times as bright. */
 static double solid_beside_hot_voxels(hl_context *context, int hot) {
   hl_data_analysis a;
@@ -343,18 +343,18 @@ static void hot_voxels_hide_no_objects(void **state) {
   hl_context_destroy(context);
 }
 
-/* In coarse grids an edge absorbs more: the same matter is as opaque however few voxels it has. */
+/* In coarse grids, an edge absorbs more, so that the same matter is as opaque with fewer voxels. */
 static void coarse_matter_is_as_opaque(void **state) {
   (void)state;
   hl_context *context = make_context();
   double large = opacity_of_ball(context, 22), small = opacity_of_ball(context, 11);
   assert_true(large > 0.7);
-  /* the opacity of half as long an edge, from that of a whole one */
+  /* the opacity of an edge half as long, from the opacity of a whole one */
   assert_true(fabs(1 - sqrt(1 - small) - large) < 0.05);
   hl_context_destroy(context);
 }
 
-/* Red over blue of the colour where a volume's things surely are. */
+/* Red divided by blue, of the colour of values that are surely the volume's matter. */
 static double warmth(hl_context *context, double (*each)(int, int, int), double value) {
   hl_transfer_function f;
   double color[3];
@@ -376,8 +376,8 @@ static void skin_is_for_bodies(void **state) {
   hl_context_destroy(context);
 }
 
-/* A flow's common values are clear, its extremes are not; where all values are equally common, all are
- * visible. */
+/* The common values of a flow are transparent, and its extremes are not. If all values are equally common,
+ * all show. */
 static void flows_show_their_extremes(void **state) {
   (void)state;
   hl_context *context = make_context();
@@ -395,14 +395,15 @@ static void flows_show_their_extremes(void **state) {
   assert_int_equal(hl_transfer_function_automatic(context, volume, &f, NULL), HL_OK);
   for (double value = 301; value < 395; value += 5) {
     double opacity = hl_transfer_function_opacity(&f, value);
-    assert_true(opacity > 0.01 && opacity < 0.2); /* half-transparent: a depth of 2 across 48 voxels */
+    /* half-transparent: an optical depth of 2 across 48 voxels */
+    assert_true(opacity > 0.01 && opacity < 0.2);
   }
   hl_transfer_function_release(context, &f);
   hl_volume_release(volume);
   hl_context_destroy(context);
 }
 
-/* Every look makes a scene of every kind of volume, with a function and a shading of its own; others are
+/* Each look makes a scene of each kind of volume, with its own function and shading. Unknown names are
  * refused with the nearest name. */
 static void looks_by_name(void **state) {
   (void)state;
@@ -424,7 +425,7 @@ static void looks_by_name(void **state) {
                        HL_OK);
       assert_int_equal(shading, shown->shading);
       const bool labelled = (kinds[n] == regions || kinds[n] == mask) &&
-                            l == 0; /* "auto": their labels take no function */
+                            l == 0; /* "auto" draws them by their labels, without a function */
       assert_true((shown->label_count > 0) == labelled);
       if (!labelled) {
         assert_int_equal(f.opacity_count, shown->transfer_function.opacity_count);
@@ -445,7 +446,7 @@ static void looks_by_name(void **state) {
   hl_context_destroy(context);
 }
 
-/* A look that the data have by themselves makes the same scene if it is asked for by its name. */
+/* If the look that the data would get is named, the scene is the same. */
 static void own_looks_by_name_change_nothing(void **state) {
   (void)state;
   static const struct {

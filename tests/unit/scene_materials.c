@@ -5,11 +5,11 @@
 #include "looks_volumes.h"
 #include "scene_parts.h"
 
-/* The head has one material, also if its values are rounded to so few levels that the histogram has gaps. */
+/* A head has one material, also if its values are rounded to so few levels that the histogram has gaps. */
 static double rounded_head(int i, int j, int k) { return 4 * floor(head_in_mr(i, j, k) / 4); }
 
-/* Every label has a colour of its own up to half way to the next; only close to its number there is
- * matter. */
+/* Each label has its own colour up to half way to the next label. Matter shows only close to a label's
+ * number. */
 static void labels_have_colors_of_their_own(void **state) {
   (void)state;
   static const double labels[] = {3, 17, 42, 1001};
@@ -70,7 +70,7 @@ static void levels_are_no_materials(void **state) {
   hl_context_destroy(context);
 }
 
-/* Matter that is several times as bright as the rest is steel, which is seen within the rest. */
+/* Matter that is several times as bright as the rest is steel, which shows within the rest. */
 static void metal_is_seen_within_matter(void **state) {
   (void)state;
   hl_context *context = make_context();
@@ -87,7 +87,8 @@ static void metal_is_seen_within_matter(void **state) {
   hl_transfer_function_release(context, &f);
   hl_shading shading;
   assert_int_equal(hl_transfer_function_look(context, "vessels", volume, &f, &shading, NULL), HL_OK);
-  assert_true(hl_transfer_function_opacity(&f, 150) > 0.5); /* vessels are not the metal alone */
+  /* the vessels must not be taken for the metal alone */
+  assert_true(hl_transfer_function_opacity(&f, 150) > 0.5);
   hl_transfer_function_release(context, &f);
   hl_volume_release(volume);
   assert_int_equal(hl_context_memory_held(context), 0);

@@ -1,4 +1,4 @@
-/* tests/unit/scene_preview.c - coarser copies of volumes, and which of them a preview takes for a scene's
+/* tests/unit/scene_preview.c - coarser copies of volumes, and which copies a preview uses for a scene's
  * sheets. */
 #include <halflight/preview.h>
 
@@ -7,7 +7,8 @@
 
 static hl_context *context;
 
-/* A volume of floats whose voxel (i, j, k) is i + 10 j + 100 k, of voxels `thick` long along k. */
+/* A volume of floats with the value i + 10 j + 100 k in the voxel (i, j, k). thick: the edge of voxels along
+ * k. */
 static hl_volume *make(const size_t size[3], double thick) {
   size_t count = size[0] * size[1] * size[2];
   float *values = malloc(count * sizeof *values);
@@ -46,7 +47,7 @@ static void long_axes_stay(void **state) {
   assert_int_equal(hl_volume_make_coarser(fine, HL_COARSER_MEANS, &coarse, NULL), HL_OK);
   assert_int_equal(hl_volume_make_coarser(coarse, HL_COARSER_MEANS, &coarser, NULL), HL_OK);
   assert_int_equal(coarse->dimension[2], 4);  /* voxels of 2 x 2 x 3 */
-  assert_int_equal(coarser->dimension[2], 4); /* of 4 x 4 x 3: now the third is the short one */
+  assert_int_equal(coarser->dimension[2], 4); /* voxels of 4 x 4 x 3, whose third edge is the short one now */
   assert_int_equal(coarse->dimension[0], 4);
   assert_int_equal(coarser->dimension[0], 2);
   hl_volume_release(coarser);
@@ -57,7 +58,8 @@ static void long_axes_stay(void **state) {
 static void numbers_that_are_none_are_left_out(void **state) {
   (void)state;
   float values[16] = {1, NAN, NAN, NAN};
-  for (int n = 4; n < 16; n++) values[n] = n < 8 ? NAN : 3; /* along i: 1 and nothing in the first pair */
+  /* along i: 1 in the first pair of voxels and in no other */
+  for (int n = 4; n < 16; n++) values[n] = n < 8 ? NAN : 3;
   hl_volume *fine = volume_of_voxels(context, 4, 2, 2, HL_VOXEL_F32, values), *coarse = NULL;
   assert_int_equal(hl_volume_make_coarser(fine, HL_COARSER_MEANS, &coarse, NULL), HL_OK);
   assert_float_equal(hl_volume_value(coarse, 0, 0, 0), (1 + 4 * 3) / 5.0, 1e-6);
@@ -114,7 +116,7 @@ static hl_volume *two_boxes(void) {
   return map;
 }
 
-/* The copy of the first volume that a scene is shown with, which the preview holds. */
+/* The copy of the first volume with which a scene is shown. The preview holds it. */
 static const hl_volume *copy_in(hl_preview *preview, hl_scene *scene) {
   hl_scene *quick = NULL;
   assert_int_equal(hl_preview_scene(preview, scene, &quick, NULL), HL_OK);
@@ -124,8 +126,8 @@ static const hl_volume *copy_in(hl_preview *preview, hl_scene *scene) {
   return copy;
 }
 
-/* A volume that is shown by its labels after it was shown by its values gets copies of the other kind, once.
- * A volume that the preview does not know gets none. */
+/* If a volume is shown by its labels after it was shown by its values, it gets copies of the other kind,
+ * once. A volume that the preview does not know gets no copies. */
 static void copies_follow_the_use(void **state) {
   (void)state;
   static const hl_label labels[] = {{.value = 1, .color = {1, 0, 0}, .opacity = 1, .visible = 1}};
@@ -155,8 +157,8 @@ static void copies_follow_the_use(void **state) {
   hl_volume_release(volume);
 }
 
-/* Of eight voxels the label that most of them have, and of equally common ones the first; no mean, which
- * would be another label. */
+/* A voxel of the copy has the label that most of its eight voxels have, and of equally common labels the
+ * first. It has no mean, which would be another label. */
 static void labels_are_the_commonest(void **state) {
   (void)state;
   const uint8_t values[16] = {0, 9, 9, 9, 9, 0, 2, 2, 9, 2, 2, 9, 7, 7, 2, 2};
@@ -189,7 +191,7 @@ static void maps_and_masks_have_copies(void **state) {
     assert_int_equal(copy->dimension[0], 32);
     assert_float_equal(hl_volume_value(copy, 15, 15, 15), 1, 0);
     assert_float_equal(hl_volume_value(copy, 16, 15, 15), 5, 0);
-    assert_true(!masked || copied->volume == small); /* it is too small for copies */
+    assert_true(!masked || copied->volume == small); /* the volume is too small for copies */
     hl_scene_release(quick);
     hl_scene_release(scene);
     hl_scene_release(first);
