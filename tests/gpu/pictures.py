@@ -211,9 +211,9 @@ MADE["soft shadows beside hard ones"]["lights"].append({"type": "directional", "
 LARGE = scene(volume={"file": "large.nrrd"}, render={"sheet_spacing": 4},
               camera={"type": "perspective", "position": [380, 250, -680], "target": [0, 0, 0], "up": [0, 1, 0], "fovy_deg": 30})
 # One scene of each feature.
-FEW = ("medium", "several surfaces, colours, near light", "cuts, surfaces", "a field at levels, surfaces", "gradient opacity, surfaces",
-       "coloured voxels", "labels", "a projection of cuts", "the paper's soft shadows of surfaces, colours, near light",
-       "soft shadows of surfaces, a mask", "a mask, surfaces in layers, near light", "a sky, soft shadows of surfaces, colours")
+FEW = ("medium", "a field at levels, surfaces", "gradient opacity, cuts, light from behind", "coloured voxels", "labels", "a projection of cuts",
+       "the paper's soft shadows of surfaces, colours, near light", "a sky, soft shadows of surfaces, colours",
+       "soft shadows of surfaces in layers, a mask, cuts, light from behind")
 LEFT = {
     "sub-lights": scene(shadows="soft", light=SUN, render={"soft_method": "sublights"}),
     "meshes or isosurfaces": {**scene(), "meshes": [{"spheres": [[0, -12, 0, 3]]}]},

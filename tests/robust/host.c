@@ -450,7 +450,7 @@ static void *scribble_on(void *data) {
 }
 
 static void change_voxels(hl_voxel_type type, bool meanwhile) {
-  enum { PATTERNS = 12 };
+  enum { PATTERNS = 5 }; /* each of the four renderers is made anew once */
   hl_context *context = make_context();
   hl_renderer *renderers[4];
   hl_scene *scenes[4];
