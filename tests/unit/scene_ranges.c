@@ -1,5 +1,5 @@
-/* tests/unit/scene_ranges.c - percentiles of volumes, and functions spread over ranges evenly and by
- * logarithms. */
+/* tests/unit/scene_ranges.c - percentiles of volumes, and transfer functions that are spread over ranges,
+ * evenly or by logarithms. */
 #include "guess/function_writer.h"
 #include "scene/function/transfer_function.h"
 #include "scene_parts.h"
@@ -22,7 +22,8 @@ static double percentile_of(const hl_volume *volume, double percent) {
 /* The numbers 0 to COUNT - 1 in mixed order (7919 and COUNT have no common factor). */
 static unsigned mixed(unsigned n) { return n * 7919u % COUNT; }
 
-/* Of the numbers 0 to n - 1, p percent is p (n - 1) / 100, whatever their order and storage. */
+/* For the numbers from 0 to n - 1, percentile p is p (n - 1) / 100, in whatever order and type they are
+ * stored. */
 static void percentiles_of_a_ramp(void **state) {
   (void)state;
   static uint16_t whole[COUNT];
@@ -46,7 +47,7 @@ static void percentiles_of_a_ramp(void **state) {
   hl_context_destroy(context);
 }
 
-/* Voxels that are no numbers do not count; of a volume with none that is one, a percentile is 0. */
+/* Voxels that are not finite do not count. If a volume has only such voxels, all its percentiles are 0. */
 static void only_finite_voxels_count(void **state) {
   (void)state;
   static float values[COUNT];
@@ -67,8 +68,8 @@ static void only_finite_voxels_count(void **state) {
   hl_context_destroy(context);
 }
 
-/* A colormap over 1 to 10^6 by logarithms: value v has the colour at log10(v) / 6, as near as an even one
- * has. */
+/* A colormap over the range from 1 to 10^6 by logarithms. The value v has the colour at log10(v) / 6, as
+ * exactly as in an even colormap. */
 static void colormap_by_logarithms(void **state) {
   (void)state;
   hl_context *context = make_context();
@@ -95,8 +96,8 @@ static void colormap_by_logarithms(void **state) {
   hl_context_destroy(context);
 }
 
-/* A ramp over 10 to 20 with a step at 15: by logarithms over 1 to 100 the step is at 10 = sqrt(1 * 100), the
- * value v has what was at 10 + 10 log(v) / log(100), and beyond the range the ends are held. */
+/* A ramp from 10 to 20 with a step at 15. By logarithms over 1 to 100, the step is at 10 = sqrt(1 * 100), the
+ * value v has what was at 10 + 10 log(v) / log(100), and the ends hold beyond the range. */
 static void points_by_logarithms(void **state) {
   (void)state;
   hl_opacity_point opacity[] = {{0, 0}, {10, 0.1}, {15, 0.3}, {15, 0.6}, {30, 0.9}}, gradient[] = {{5, 1}};
@@ -138,8 +139,8 @@ static double opacity_at(const hl_transfer_function *function, double value) {
   return hl_transfer_function_opacity(function, value);
 }
 
-/* Opacity over 300 to 1000 of values from 0 to 1000 moves to the ends of a range, except to an end that
- * chooses no values. */
+/* An opacity between 300 and 1000, of values from 0 to 1000, moves to the ends of a range, but not to an end
+ * that chooses no values. */
 static void clear_surroundings_stay_clear(void **state) {
   (void)state;
   static float values[COUNT];
@@ -148,7 +149,8 @@ static void clear_surroundings_stay_clear(void **state) {
   hl_color_point color[] = {{300, {0, 0, 0}}, {1000, {1, 1, 1}}};
   const hl_transfer_function from = {
       .unit_distance = 1, .opacity = opacity, .opacity_count = 3, .color = color, .color_count = 2};
-  /* range: from 0 to 1000 all values; value: where opacity has what `from` has at `was` */
+  /* `range` chooses all values, from 0 to 1000. `value` is the place at which the opacity is what `from` has
+   * at `was`. */
   static const struct {
     double range[2];
     hl_spread_use use;
@@ -161,7 +163,7 @@ static void clear_surroundings_stay_clear(void **state) {
       {{0, 4000}, HL_SPREAD_COLORMAP, 1200, 300},  /* values of other files are greater */
       {{600, 1000}, HL_SPREAD_COLORMAP, 600, 300}, /* a higher end hides matter */
       {{600, 800}, HL_SPREAD_COLORMAP, 800, 1000}, /* and a lower upper end shows more of it as opaque */
-      {{0, 1000}, HL_SPREAD_PROJECTION, 0, 300},   /* a projection's colours take all of the range */
+      {{0, 1000}, HL_SPREAD_PROJECTION, 0, 300},   /* the colours of a projection fill the range */
   };
   hl_context *context = make_context();
   hl_volume *volume = volume_of(context, HL_VOXEL_F32, values, 1);
@@ -184,7 +186,7 @@ static void clear_surroundings_stay_clear(void **state) {
   hl_context_destroy(context);
 }
 
-/* Of a volume of one value, every range is allowed. */
+/* Of a volume with one value, all ranges are allowed. */
 static void range_of_one_value(void **state) {
   (void)state;
   static float values[COUNT];
@@ -204,7 +206,7 @@ static void range_of_one_value(void **state) {
   hl_context_destroy(context);
 }
 
-/* Two parts of a colour map that meet in a number give rising points, however the numbers are rounded. */
+/* If two parts of a colormap meet at a number, the points rise, however the numbers are rounded. */
 static void parts_of_a_colormap_meet(void **state) {
   (void)state;
   const hl_data_analysis analysis = {.background = 0, .direction = 1};
@@ -218,8 +220,8 @@ static void parts_of_a_colormap_meet(void **state) {
   }
 }
 
-/* Closed forms of a peak and of a step, and of a function of many points the greatest difference that is
- * found by trying. */
+/* The greatest difference of a function with a peak or a step has a closed form. For a function of many
+ * points it is found by trying. */
 static void opacities_of_near_values(void **state) {
   (void)state;
   static const hl_opacity_point peak[] = {{0, 0}, {1, 0.8}, {3, 0}}, step[] = {{2, 0.1}, {2, 0.7}};

@@ -1,4 +1,4 @@
-/* tests/unit/scene_real.c - automatic transfer functions of real volumes, where they are at hand. */
+/* tests/unit/scene_real.c - automatic transfer functions of real volumes, if they are on this machine. */
 #define _GNU_SOURCE
 #include <stdio.h>
 #include <unistd.h>
@@ -13,7 +13,7 @@ static const struct {
   const char *file;
   hl_data_kind kind;
   double border;
-  bool held; /* a board, rails, a head rest beside the object are cut away */
+  bool held; /* a board, rails or a head rest beside the object are cut away */
 } SETS[] = {{"bonsai/bonsai.nrrd", HL_DATA_SURFACES, 0.2, true},
             {"boston_teapot/boston_teapot.nrrd", HL_DATA_SURFACES, 0.01, true},
             {"bucky/Bucky_32x32x32_uint8.raw", HL_DATA_FIELD, 0.08, false},
@@ -48,7 +48,8 @@ static void path_of(size_t n, char path[500]) {
   snprintf(path, 500, "%s/%s", folder != NULL ? folder : HALFLIGHT_SOURCE "/../shared/data", SETS[n].file);
 }
 
-/* Real volumes: hardly any of the border is visible, something is, and little of it is not in the picture. */
+/* Real volumes. Hardly any of the volume's border shows, something shows, and little of it lies outside of
+ * the picture. */
 static void real_volumes(void **state) {
   (void)state;
   hl_context *context = make_context();
@@ -56,7 +57,8 @@ static void real_volumes(void **state) {
     char path[500];
     path_of(n, path);
     if (access(path, R_OK) != 0) {
-      /* A folder that is named must hold what is to be tested; the one found by chance may hold some. */
+      /* If HALFLIGHT_DATA names a folder, it must hold all volumes of the test. A folder that is found by
+       * chance may hold some. */
       if (named_folder() != NULL) fail_msg("HALFLIGHT_DATA names a folder without %s", SETS[n].file);
       print_message("# %s is not there\n", SETS[n].file);
       continue;
@@ -102,15 +104,15 @@ static void real_volumes(void **state) {
 }
 
 /* The values of grey and of white matter in heads: the means of the middle and of the greatest of three
- * groups of the brain's values, of which the least is fluid (k-means). */
+ * groups of the brain's values (k-means). The least group is fluid. */
 static const struct {
   const char *set;
-  const char *file; /* the name that the look sees */
+  const char *file; /* the name by which the look knows the file */
   double grey, white;
 } BRAINS[] = {{"mrbrain/head256x256x109_uint8.raw.gz", NULL, 58.5, 85.8},
               {"stroke_t1_nii/T1.nii.gz", "T1.nii.gz", 112.7, 165.5}};
 
-/* A percentile of the values beyond the distance at which objects may begin. */
+/* A percentile of the values from which objects may begin. */
 static double part_of_objects(const hl_sample *sample, const hl_data_analysis *a, double part) {
   size_t first = 0;
   while (first < sample->count &&
@@ -126,8 +128,8 @@ static double level_of(const hl_transfer_function *function, double value) {
   return hl_srgb_encode_number(0.2126 * color[0] + 0.7152 * color[1] + 0.0722 * color[2]);
 }
 
-/* Grey and white matter differ by at least .6 of what they differ by in a slice whose window reaches from the
- * first to the last hundredth of the objects' values. */
+/* Grey and white matter differ by at least .6 of their difference in a slice whose window goes from the first
+ * to the last hundredth of the objects' values. */
 static void brains_are_like_slices(void **state) {
   (void)state;
   hl_context *context = make_context();

@@ -30,8 +30,8 @@ static hl_camera camera_of(hl_context *context, hl_volume *volume, vec3 *up) {
   return camera;
 }
 
-/* y is up, and the eye looks from the side with relief. The pot and its plate are a mask, two labels, or
- * matter of two densities. */
+/* y is up, and the eye is on the side with relief. The pot and its plate are a mask, two labels, or matter of
+ * two densities. */
 static void things_stand_upright(void **state) {
   (void)state;
   static float values[N * N * N];
@@ -48,7 +48,7 @@ static void things_stand_upright(void **state) {
     assert_true(camera.position[2] < camera.target[2]); /* the knob is on this side */
     hl_volume_release(volume);
   }
-  /* A NIfTI file knows: z up, y to the front. */
+  /* A NIfTI file tells its directions: z is up, and y points to the front. */
   hl_volume_description d = describe_voxels(N, N, N, HL_VOXEL_F32, values);
   d.space = HL_SPACE_RAS;
   hl_volume *volume = create_volume(context, &d);
@@ -58,8 +58,9 @@ static void things_stand_upright(void **state) {
   hl_context_destroy(context);
 }
 
-/* Four lobes in one plane, of changing sign, are seen from before the plane, where they are widest. From the
- * plane's end the near lobes are large, and hide the others. across: the axis that the plane is across. */
+/* Four lobes with alternating signs lie in one plane. The eye looks straight at the plane, in which they are
+ * widest. From the plane's end, the near lobes would hide the others. across: the axis perpendicular to the
+ * plane. */
 static void fields_are_seen_from_their_wide_side(void **state) {
   (void)state;
   static float values[N * N * N];
@@ -82,8 +83,8 @@ static void fields_are_seen_from_their_wide_side(void **state) {
   hl_context_destroy(context);
 }
 
-/* Writes a head: a smooth vault, a ragged jaw, and nothing under its back. over: it lies upside down in the
- * grid. */
+/* Writes a head with a smooth vault, a ragged jaw, and nothing under its back. over: whether it is upside
+ * down in the grid. */
 static void write_head(float values[N * N * N], bool over) {
   for (int k = 0, v = 0; k < N; k++)
     for (int j = 0; j < N; j++)
@@ -95,7 +96,7 @@ static void write_head(float values[N * N * N], bool over) {
       }
 }
 
-/* The z of the way up in which a head is shown. over: it lies upside down in the grid. */
+/* The z of the up direction of a head's picture. over: whether the head is upside down in the grid. */
 static double up_of_head(hl_context *context, bool over) {
   static float values[N * N * N];
   write_head(values, over);
@@ -106,8 +107,8 @@ static double up_of_head(hl_context *context, bool over) {
   return up.z;
 }
 
-/* The elevation, in degrees, from which a NIfTI file's ball in noisy air is seen; middle: the height of its
- * middle, voxels. */
+/* The elevation, in degrees, of the eye above a ball in noisy air of a NIfTI file. middle: the height of the
+ * ball's middle, in voxels. */
 static double elevation_of_body(hl_context *context, double middle) {
   static float values[N * N * N];
   unsigned state = 7;
@@ -130,7 +131,7 @@ static double elevation_of_body(hl_context *context, double middle) {
   return elevation;
 }
 
-/* A body that the grid cuts off, as a head at the neck, is seen from the height of its eyes. */
+/* A body that the grid cuts, as a head at the neck, is seen from the height of its eyes. */
 static void bodies_that_are_cut_off_are_seen_from_lower(void **state) {
   (void)state;
   hl_context *context = make_context();
@@ -149,7 +150,7 @@ static void heads_do_not_hang(void **state) {
   hl_context_destroy(context);
 }
 
-/* Cuts grooves into a head at one side of y, where its face is then. */
+/* Cuts grooves into a head at one side of y. The head's face is on that side. */
 static void cut_face(float values[N * N * N], bool at_upper_y) {
   for (int v = 0; v < N * N * N; v++) {
     const int x = abs(v % N - 20), j = v / N % N, depth = at_upper_y ? 33 - j : j - 7;

@@ -13,7 +13,7 @@
 
 enum { SIDE = 32, MARGIN = 4, STRIDE = SIDE + 2 * MARGIN };
 
-/* The buffer's values are this of their pixels' middles. */
+/* The value of a buffer's pixel is this function of the pixel's middle. */
 typedef double surface(double u, double v);
 
 static double plane(double u, double v) { return 0.2 + 0.006 * u + 0.011 * v; }
@@ -62,7 +62,7 @@ static void test_cubic_keeps_squares(void **state) {
       off_bilinear = fmax(off_bilinear, fabs((double)bilinear[lane] - expected));
     }
   }
-  assert_true(off_bilinear > 1e-4); /* which keeps planes alone */
+  assert_true(off_bilinear > 1e-4); /* bilinear interpolation is exact for planes alone */
   buffer = fill(pixels, plane);
   places at = some_places(&random, 0.5f, SIDE - 0.5f);
   shadow_taps taps = taps_at_position(&map, 0, at.u, at.v);
@@ -71,8 +71,8 @@ static void test_cubic_keeps_squares(void **state) {
     assert_true(fabs((double)bilinear[lane] - plane((double)at.u[lane], (double)at.v[lane])) < 2e-6);
 }
 
-/* Cubic convolution overshoots beside an edge, but the light that it finds does not; outside the buffer there
- * is no shadow. */
+/* Cubic convolution overshoots beside an edge, but the light that is looked up does not. Outside of the
+ * buffer there is no shadow. */
 static void test_light_stays_light(void **state) {
   (void)state;
   static float pixels[STRIDE * STRIDE];
@@ -96,7 +96,7 @@ static void test_light_stays_light(void **state) {
   assert_true(between > 100);
 }
 
-/* Of any pixels cubic convolution stays within the nearest four. */
+/* The result of cubic convolution lies within the range of the nearest four pixels. */
 static void test_cubic_stays_within(void **state) {
   (void)state;
   static float pixels[STRIDE * STRIDE];
@@ -120,7 +120,7 @@ static void test_cubic_stays_within(void **state) {
   assert_true(between > 100);
 }
 
-/* Lanes whose squares of pixels lie close together, and lanes whose squares do not. */
+/* The squares of pixels of some lanes are close together, and those of other lanes are not. */
 static void test_short_squares(void **state) {
   (void)state;
   static uint16_t table[STRIDE * STRIDE];

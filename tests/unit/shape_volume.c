@@ -1,4 +1,4 @@
-/* tests/unit/shape_volume.c - shapes against their closed forms, as distances and as voxels. */
+/* tests/unit/shape_volume.c - shapes, as distances and as voxels, against closed forms. */
 #include <math.h>
 #include <stdlib.h>
 
@@ -18,7 +18,7 @@ static hl_volume *make(hl_context *context, const char *text, int size, int thre
   return volume;
 }
 
-/* Cubic B-spline weights of the taps at -1 .. 2 and their derivatives, at t in [0, 1). */
+/* The weights of the cubic B-spline for the taps at -1 to 2, and their derivatives, at t in [0, 1). */
 static void bspline(double t, double weight[4], double slope[4]) {
   double s = 1 - t;
   const double w[4] = {s * s * s / 6, (4 - 6 * t * t + 3 * t * t * t) / 6,
@@ -63,7 +63,7 @@ static double angle_deg(vec3 a, vec3 b) {
   return atan2(sine, vec3_dot(a, b)) * 180 / HL_PI;
 }
 
-/* Where the surface is and where it faces, in voxels and degrees, at one point with a known normal. */
+/* The place of the surface and its normal, in voxels and degrees, near a point with a known normal. */
 static void check_surface(const hl_volume *volume, vec3 point, vec3 normal, double voxels, double degrees) {
   double index[3], gradient[3];
   to_index(volume, point, index);
@@ -97,7 +97,8 @@ static void a_sphere_faces_outwards(void **state) {
   uint32_t seed = 1;
   for (int n = 0; n < 2000; n++) {
     vec3 normal = random_direction(&seed), centre = {0.3, -0.2, 0.7};
-    /* the kernel's variance of 1/3 a side moves a curved surface by its mean curvature: (1/3) / R = 0.017 */
+    /* the kernel's variance of 1/3 for each axis moves a curved surface by its mean curvature: (1/3) / R =
+     * 0.017 */
     check_surface(volume, vec3_add(centre, vec3_scale(normal, 20)), normal, 0.02, 0.05);
   }
   hl_volume_release(volume);
@@ -114,9 +115,9 @@ static void a_tilted_box_is_flat(void **state) {
   mat3 turn = mat3_rotation(vec3_normalise((vec3){1, 2, 3}), 33 * HL_PI / 180);
   uint32_t seed = 2;
   for (int n = 0; n < 2000; n++) {
-    /* a point of the face z = 6, two voxels and the kernel's reach away from its edges */
+    /* a point of the face z = 6, farther from its edges than two voxels and the kernel's reach */
     vec3 local = {9 * (random_number(&seed) - 0.5), 14 * (random_number(&seed) - 0.5), 6}, up = {0, 0, 1};
-    /* the outermost taps lie beyond the two voxels over which the density is linear */
+    /* the outermost taps lie beyond the two voxels in which the density is linear */
     check_surface(volume, mat3_apply(turn, local), mat3_apply(turn, up), 0.001, 0.02);
   }
   hl_volume_release(volume);
@@ -172,7 +173,8 @@ static void threads_do_not_matter(void **state) {
   hl_context_destroy(context);
 }
 
-/* The bytes of a hypertexture with everything in it: another machine, compiler or day must give the same. */
+/* The bytes of a hypertexture with all its features are the same on every machine, with every compiler and at
+ * any time. */
 static void a_seed_gives_the_same_bytes(void **state) {
   (void)state;
   static const char text[] =
@@ -208,7 +210,7 @@ static void orbitals_are_hydrogens(void **state) {
                       "{\"shapes\": [{\"type\": \"orbital\", \"n\": 1, \"l\": 0, \"m\": 0, \"radius\": 24}], "
                       "\"voxel_size\": 1}",
                       0, 1);
-  double a = 2, scale = 4 * exp(-1); /* the greatest |z| e^(-|z| / 4) of whole z is at 4 */
+  double a = 2, scale = 4 * exp(-1); /* for whole numbers z, |z| e^(-|z| / 4) is greatest at 4 */
   uint32_t seed = 3;
   for (int n = 0; n < 500; n++) {
     double index[3];
@@ -241,7 +243,7 @@ static void orbitals_are_orthogonal(void **state) {
   enum { COUNT = sizeof numbers / sizeof *numbers };
   hl_shape shape[COUNT];
   double product[COUNT][COUNT] = {{0}};
-  for (int o = 0; o < COUNT; o++) { /* one Bohr radius for all */
+  for (int o = 0; o < COUNT; o++) { /* one Bohr radius for all wave functions */
     hl_shape_defaults(&shape[o]);
     memcpy(shape[o].quantum, numbers[o], sizeof numbers[o]);
     shape[o].radius = numbers[o][0] * (2 * numbers[o][0] + 4);
@@ -277,7 +279,8 @@ static void noise_is_perlins(void **state) {
     least = fmin(least, value), greatest = fmax(greatest, value);
     assert_float_equal(hl_noise_at(&noise, vec3_add(p, (vec3){256, -256, 512})), value, 1e-9);
     difference = fmax(difference, fabs(value - hl_noise_at(&other, p)));
-    /* on the lattice the slope is the gradient, towards an edge of a cube: two components of 1, one of 0 */
+    /* on the lattice, the slope is the gradient; towards an edge of a cube, two components are 1 and one is 0
+     */
     double h = 1e-4, sum = 0;
     for (int a = 0; a < 3; a++) {
       vec3 step = {a == 0 ? h : 0, a == 1 ? h : 0, a == 2 ? h : 0};
@@ -308,7 +311,7 @@ static void bias_and_gain_are_perlins(void **state) {
   }
 }
 
-/* Skipped blocks and shapes without a say must not change a voxel: every voxel is asked with all shapes. */
+/* Blocks and shapes that are skipped must not change a voxel. Each voxel is computed anew from all shapes. */
 static void bounds_hold(void **state) {
   (void)state;
   hl_shape shapes[6];
@@ -347,10 +350,10 @@ static void bounds_hold(void **state) {
     assert_true(all >= bounds.low - 1e-9 && all <= bounds.high + 1e-9);
     for (int s = 0; s < 6; s++) dead += !live[s];
   }
-  assert_true(dead > 10000); /* and they do leave shapes out */
+  assert_true(dead > 10000); /* the blocks leave out some shapes */
 }
 
-/* Distances that anyone can see. */
+/* Distances that are easy to see. */
 static void distances_are_euclidean(void **state) {
   (void)state;
   hl_shape s;
@@ -369,7 +372,7 @@ static void distances_are_euclidean(void **state) {
   assert_float_equal(hl_shapes_distance(&list, NULL, (vec3){1, 1, -3}), 1, 1e-12);
   s.from[2] = -3, s.to[2] = 3, s.radius = 2, s.end_radius = 2;
   const hl_shape_type round[] = {HL_SHAPE_CYLINDER,
-                                 HL_SHAPE_CONE}; /* a cone of two equal ends is a cylinder */
+                                 HL_SHAPE_CONE}; /* a cone with two equal ends is a cylinder */
   for (int n = 0; n < 2; n++) {
     s.type = round[n];
     assert_float_equal(hl_shapes_distance(&list, NULL, (vec3){3, 4, 0}), 3, 1e-12);

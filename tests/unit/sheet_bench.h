@@ -1,4 +1,4 @@
-/* unit/sheet_bench.h - a grid, a view and a stack of sheets to try the filling of tiles on. */
+/* unit/sheet_bench.h - a grid, a view and a stack of sheets, on which the filling of tiles is tried. */
 #ifndef SHEET_BENCH_H
 #define SHEET_BENCH_H
 
@@ -24,23 +24,23 @@ typedef struct bench {
 /* A repeatable random number in [0, 1); state: any non-zero start. */
 double bench_random(uint32_t *state);
 vec3 bench_random_direction(uint32_t *state);
-/* Of sheets that are looked at along a direction: at most about 50 degrees from it. */
+/* A random normal of sheets, at most about 50 degrees from the direction. */
 vec3 bench_random_normal(vec3 direction, uint32_t *state);
-/* Anisotropic and askew, but not degenerate. */
+/* Random axes of a grid: oblique and of different lengths, but not degenerate. */
 mat3 bench_oblique_axes(void);
 
 /* A grid of stored values, opaque everywhere, its middle at the origin; voxel (i, j, k) steps by the columns
  * of `axes`. voxels: [k][j][i] of the storage's type. */
 void bench_open(bench *bench, const size_t dimensions[3], hl_storage storage, const void *voxels, mat3 axes);
-/* Gives the volume other opacities, which must outlive the bench. */
+/* Gives the volume other opacities. They must last longer than the bench. */
 void bench_show(bench *bench, const hl_opacity_point *opacity, size_t count);
 /* 48 x 48 pixels of edge `pixel` that look along `direction` at the origin, from `distance` (0: in parallel),
  * and five sheets a third of a world unit apart around it, perpendicular to normal. Sorts the voxels for
  * them. */
 void bench_look(bench *bench, vec3 direction, vec3 normal, double pixel, double distance, hl_kernel which);
 fill_source bench_source(const bench *bench, hl_kernel which, int sheet);
-/* The slabs between the sheets; beside: by how much more than themselves the box must hold to leave them
- * whole, voxels. */
+/* The slabs between the sheets. beside: the number of voxels by which a box must reach beyond the slabs to
+ * leave them whole. */
 slab_run bench_run(const bench *bench, double beside);
 void bench_close(bench *bench);
 

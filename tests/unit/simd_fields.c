@@ -20,7 +20,7 @@ typedef struct field_state {
   field_job field;
   absorbed_job absorbed;
   split_job part;
-  sublight_job sublight, dark; /* few of the other's pixels are light */
+  sublight_job sublight, dark; /* the other field has light in few pixels */
   half_pixel_job half_pixel;
   slab_rows rows[16];
   uint16_t lit[4];
@@ -30,7 +30,7 @@ typedef struct field_state {
   field_emission_job field_image;
   ptrdiff_t offset[40];
   float a[FIELD][FIELD], b[FIELD][FIELD];
-  field_pixel lacking[FIELD][FIELD], thin[FIELD][FIELD]; /* whole numbers of a and b */
+  field_pixel lacking[FIELD][FIELD], thin[FIELD][FIELD]; /* a and b are whole numbers */
   sublight_pixel shade[FIELD][FIELD];
   struct {
     float pixels[FIELD][FIELD];
@@ -64,8 +64,8 @@ static void call_field(const hot_functions *hot, void *state) {
   if (s->which == 11) s->out.lit = hot->shadow->cascade->emission_add(&s->field_image, 1, 1);
 }
 
-/* Marks of surfaces in the dark (shadow/attenuate.h) in every seventh pixel; where the chunk began with no
- * light, `absorbed_at_start` is 1 at every other of them. */
+/* Sets marks of surfaces in the dark (shadow/attenuate.h) in every seventh pixel. In every second one of them
+ * `absorbed_at_start` is 1: the chunk began without light. */
 static void mark_dark(float *pixels, float *absorbed_at_start, uint32_t *seed) {
   for (int i = 0; i < FIELD * TILE; i += 7) {
     pixels[i] = -DARK_MARK * random_between(seed, 0, 1);
@@ -73,7 +73,7 @@ static void mark_dark(float *pixels, float *absorbed_at_start, uint32_t *seed) {
   }
 }
 
-/* Surfaces that take all light, in pieces of forty pixels. */
+/* Sets surfaces that absorb all light, in pieces of forty pixels. */
 static void mark_opaque(float *pixels) {
   for (int i = 0; i < FIELD * TILE; i++)
     if (i / 40 % 2) pixels[i] = -LEAST_MARK;
@@ -101,7 +101,8 @@ void test_fields(void **unused) {
     s.blur = (blur_job){&s.a[MARGIN][MARGIN], &s.out.pixels[MARGIN][MARGIN], FIELD, FIELD,
                         hl_blur_box(random_between(&seed, 1, round % 5 ? 30 : 150))};
     s.field = (field_job){lacking, thin, out, FIELD, FIELD, round % 2 ? thin + 3 * FIELD : NULL, ALL_ROWS};
-    /* what both read and write: the light in pixels, what was lacked and the older light in rows below */
+    /* arrays that both read and write: the light of pixels, and in the rows below, the light that was lacking
+     * and the older light */
     s.left = (refill_job){.absorbed = lacking,
                           .absorbed_at_start = &s.out.pixels[MARGIN + 2 * TILE][MARGIN],
                           .to = &s.out.pixels[MARGIN][MARGIN],

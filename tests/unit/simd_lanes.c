@@ -1,6 +1,6 @@
-/* unit/simd_lanes.c - what of lanes.h and packing.h the compiler's vectors do not have, as the baseline
- * builds it: arithmetic against the C library's in floats and doubles, every choice of lanes. simd_equal.c
- * holds the other instruction sets to it. */
+/* unit/simd_lanes.c - the functions of lanes.h and packing.h that are not the compiler's own, in the code of
+ * the baseline: arithmetic, compared with the C library's in floats and doubles, and moving of lanes.
+ * simd_equal.c compares the other instruction sets with the baseline. */
 #include <math.h>
 #include <setjmp.h>
 #include <stdarg.h>
@@ -22,10 +22,10 @@ static float float_of_bits(uint32_t bits) {
   return x;
 }
 
-/* From 1 to 2, every float alike. */
+/* Numbers from 1 to 2. Every float is equally likely. */
 static float one_to_two(uint64_t *state) { return 1.0f + (float)(next_random(state) >> 9) * 0x1p-23f; }
 
-/* The same float, or both none. */
+/* Returns whether two floats are the same, or both NaN. */
 static void assert_same(float found, float wanted, float a, float b, float c) {
   uint32_t bits[2];
   memcpy(&bits[0], &found, sizeof found);
@@ -41,7 +41,7 @@ static void assert_fma(lanes a, lanes b, lanes c) {
     assert_same(found[lane], fmaf(a[lane], b[lane], c[lane]), a[lane], b[lane], c[lane]);
 }
 
-/* Any floats, none of them left out: infinite ones, subnormal ones, no numbers. */
+/* Random floats of all kinds, infinite ones, subnormal ones and NaN included. */
 static void test_fma_of_any(void **state) {
   (void)state;
   uint64_t random = 1;
@@ -51,7 +51,7 @@ static void test_fma_of_any(void **state) {
       a[lane] = float_of_bits(next_random(&random));
       b[lane] = float_of_bits(next_random(&random));
       c[lane] = float_of_bits(next_random(&random));
-      /* one in two: a sum in which both parts matter */
+      /* in one of two sums, both numbers matter */
       if (lane % 2 == 0)
         c[lane] = a[lane] * b[lane] * ldexpf(one_to_two(&random), (int)(next_random(&random) % 60) - 30);
     }
@@ -59,8 +59,8 @@ static void test_fma_of_any(void **state) {
   }
 }
 
-/* Sums in the middle between two floats, and as near it as doubles do not tell: where rounding twice goes
- * wrong. */
+/* Sums that lie in the middle between two floats, or so near to it that doubles cannot tell. If they were
+ * rounded twice, they would be wrong. */
 static void test_fma_near_the_middle(void **state) {
   (void)state;
   uint64_t random = 2;
@@ -73,10 +73,8 @@ static void test_fma_near_the_middle(void **state) {
             odd = (float)((next_random(&random) & 0x7fffff) | 0x800000);
       float little = (float)(next_random(&random) % 4) * 0x1p-23f;
       if (subnormal) odd = (float)(next_random(&random) & 0x3ff);
-      c[lane] =
-          sign *
-          ldexpf(odd,
-                 scale); /* its last bit is 2^scale; a b is half of it, or less by one part in 2^46 or so */
+      /* the sum's last bit is 2^scale, and a b is half of it, or less by about one part in 2^46 */
+      c[lane] = sign * ldexpf(odd, scale);
       a[lane] = ldexpf(1.0f + little, half);
       b[lane] = ldexpf(next_random(&random) % 2 == 0 ? 1.0f - little : little - 1.0f, scale - 1 - half);
     }
@@ -84,7 +82,7 @@ static void test_fma_near_the_middle(void **state) {
   }
 }
 
-/* What is left when products cancel, down to subnormal floats. */
+/* The rest of products that cancel each other, down to subnormal floats. */
 static void test_fma_that_cancels(void **state) {
   (void)state;
   uint64_t random = 3;
@@ -99,7 +97,8 @@ static void test_fma_that_cancels(void **state) {
   }
 }
 
-/* lanes_exp2() and lanes_log2() as exact as lanes.h says; nothing attenuated leaves all of the light. */
+/* lanes_exp2() and lanes_log2() are as exact as lanes.h says. If nothing attenuates light, all of it is left.
+ */
 static void test_powers(void **state) {
   (void)state;
   double worst = 0, worst_log = 0;
@@ -118,8 +117,8 @@ static void test_powers(void **state) {
   assert_true(lanes_exp_negative(lanes_set(0))[0] == 1.0f);
 }
 
-/* Each choice of lanes moves together to where it is told, in its order, leaves the other lanes, and comes
- * back. */
+/* For each choice of lanes: the lanes move to their places in their order, other lanes stay the same, and
+ * moving back gives the lanes of before. */
 static void test_packing(void **state) {
   (void)state;
   lanes x, into;

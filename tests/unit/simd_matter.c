@@ -129,7 +129,7 @@ static void call_label_rows(const label_row_functions *functions, label_rows_sta
   s->out.whole = functions->find_crossed(&near, s->count, s->level, s->out.crossed);
 }
 
-/* The table is no part of the renderer's. */
+/* Rows of labels have a table of functions of their own, beside the renderer's. */
 void test_label_rows(void **unused) {
   (void)unused;
   static label_rows_state state, expected;
@@ -172,7 +172,7 @@ static void call_fill(const hot_functions *hot, void *state) {
   s->out.filled = fill(&s->source, s->tile_x, s->tile_y, s->need, s->others, s->out.density);
 }
 
-/* Of a third of the bricks no cell shows, of a third all do. */
+/* In a third of the bricks no cell shows, and in a third all do. */
 static void spread_bits(grid *grid, uint32_t *seed) {
   for (size_t brick = 0; brick < hl_grid_bricks(grid); brick++) {
     double kind = bench_random(seed);
@@ -198,7 +198,7 @@ static void check_fill(const size_t n[3], hl_storage storage, uint32_t seed) {
     double pixel = round % 9 == 8
                        ? 3
                        : 0.3 + 0.2 * (round / 3 %
-                                      5); /* blocks as wide as a window or as two bricks, and wider */
+                                      5); /* blocks as wide as a window or as two bricks, and wider ones */
     bench_look(&bench, direction, normal, pixel, round % 2 ? 12 : 0, which);
     spread_bits(&bench.grid, &seed);
     for (int gather = 0; gather < 2; gather++) {
@@ -226,7 +226,7 @@ void test_fill(void **unused) {
   for (int storage = 0; storage < 3; storage++) {
     check_fill((size_t[3]){13, 11, 12}, (hl_storage)storage, 17);
     check_fill((size_t[3]){5, 13, 9}, (hl_storage)storage, 19);
-    check_fill((size_t[3]){10, 8, 6}, (hl_storage)storage, 20); /* a window's slices, or fewer */
+    check_fill((size_t[3]){10, 8, 6}, (hl_storage)storage, 20); /* all slices of a window, or fewer */
     check_fill((size_t[3]){8, 9, 5}, (hl_storage)storage, 21);
     check_fill((size_t[3]){1, 7, 3}, (hl_storage)storage, 18);
   }

@@ -27,7 +27,7 @@ typedef struct shade_state {
   float density[4][TILE_PIXELS];
   float cut[2][TILE_PIXELS];
   float buffer[HL_CHANNELS][64][64];
-  sublight_pixel left[HL_CHANNELS][64][64]; /* whole numbers of buffer */
+  sublight_pixel left[HL_CHANNELS][64][64]; /* whole numbers of the buffer's pixels */
   struct {
     float pixels[4 * TILE_PIXELS];
     uint64_t samples;
@@ -53,7 +53,7 @@ static void call_shade(const hot_functions *hot, void *state) {
   s->out.open = function(&s->job, &tile, s->out.pixels, &s->out.samples);
 }
 
-/* steepest: pixels that places lie apart at most, for each unit. */
+/* steepest: the greatest distance in pixels between neighbouring places. */
 static shadow_map random_map(uint32_t *seed, double steepest) {
   shadow_map map = {.stride = 64, .width = 60, .height = 50};
   for (int row = 0; row < 3; row++)
@@ -187,9 +187,10 @@ static void set_up_shade(shade_state *s, uint32_t *seed, int round) {
                                    {{-1, 0}, {0, -1}, {-1, -1}},
                                    round % 4 == 3,
                                    NULL,
+                                   /* a sky needs the field */
                                    v,
                                    round % 3 == 1 ? -0.7f : round % 3 * 0.4f,
-                                   round / 3 % 4 || round % 3 != 1 ? &s->phase : NULL, /* a sky needs it */
+                                   round / 3 % 4 || round % 3 != 1 ? &s->phase : NULL,
                                    round / 3 % 4 ? &s->phase : NULL,
                                    (round + v) % 3 == 1 ? colors_bench : (voxel_colors){.voxels = NULL},
                                    {0.9f, 0.8f, 1},
@@ -217,7 +218,7 @@ static void set_up_shade(shade_state *s, uint32_t *seed, int round) {
   s->blocks = round == 0 ? ALL_BLOCKS : (uint32_t)(65536 * bench_random(seed));
 }
 
-/* What is measured takes more floats a pixel than a colour. */
+/* Measuring writes more floats for each pixel than a colour has. */
 typedef struct measure_state {
   shade_state shade;
   struct {
@@ -241,10 +242,10 @@ void test_measure(void **unused) {
   int marked = 0;
   for (int round = 0; round < 4 * ROUNDS; round++) {
     set_up_shade(&state.shade, &seed, round);
-    state.shade.job.back_to_front = 0; /* measured front to back only */
+    state.shade.job.back_to_front = 0; /* measured only from front to back */
     for (int i = 0; i < MEASURES * TILE_PIXELS; i++) {
       int row = i / BLOCK_PIXELS % MEASURES;
-      /* alpha on both sides of the 0.01 from which on a ray has met something */
+      /* alpha on both sides of 0.01, above which a ray has met something */
       state.out.pixels[i] = row == MEASURE_ALPHA         ? random_between(&seed, 0, i % 2 ? 1 : 0.012)
                             : row == MEASURE_DEPTH_FIRST ? INFINITY
                                                          : random_between(&seed, -9, 9);
@@ -378,8 +379,8 @@ void test_surface(void **unused) {
   assert_true(lit > SURFACE_SAMPLES * ROUNDS);
 }
 
-/* One volume has code of its own: a second one that has nothing in the tile changes nothing, rounding
- * apart. */
+/* For one volume there is code of its own. A second volume that has nothing in the tile changes nothing,
+ * except for rounding. */
 void test_shade_beside_nothing(void **unused) {
   (void)unused;
   static shade_state alone, beside;
@@ -387,7 +388,8 @@ void test_shade_beside_nothing(void **unused) {
   int lit = 0;
   for (int round = 0; round < 4 * ROUNDS; round += 2) {
     set_up_shade(&alone, &seed, round);
-    for (int i = 0; i < 3; i++) alone.lights[i].nearest = 0; /* a rounding apart is another pixel there */
+    /* a difference by rounding would be another pixel there */
+    for (int i = 0; i < 3; i++) alone.lights[i].nearest = 0;
     beside = alone;
     beside.job.lights = beside.lights;
     beside.patch_count = 2;

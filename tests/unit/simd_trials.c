@@ -14,7 +14,7 @@
 #include "simd_trials.h"
 
 enum {
-  SETS = 4, /* x86's, or Arm's one */
+  SETS = 4, /* an instruction set of x86, or of Arm */
   TIMED = 100,
   TIMED_RUNS = 5
 };
@@ -24,7 +24,7 @@ typedef struct contender {
   const char *name;
 } contender;
 
-/* The instruction sets to hold against the scalar one. */
+/* The instruction sets that are compared with the scalar one. */
 static int contenders(contender list[SETS]) {
   int count = 0;
   for (int set = HL_INSTRUCTION_SET_AVX2; set <= HL_INSTRUCTION_SET_AVX512_VBMI; set++)
@@ -96,7 +96,7 @@ void fill_salted(float *values, size_t count, uint32_t *seed, double low, double
   for (size_t i = 0; i < count; i++) values[i] = salted(seed, low, high);
 }
 
-/* Rays that run along the sheets, or nowhere: positions become huge or NaN. */
+/* Rays that run along the sheets, or in no direction, so that positions become huge or NaN. */
 void spoil_rays(sheet_rays *rays, int round) {
   if (round % 8 == 5) rays->h0 = rays->hu = rays->hv = 0;
   if (round % 8 == 6) rays->w0[round % 3] = NAN;

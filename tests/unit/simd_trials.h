@@ -11,9 +11,9 @@
 
 enum { ROUNDS = 40 };
 
-extern bool simd_timing; /* print the time of calls */
+extern bool simd_timing; /* whether the time of calls is printed */
 
-/* A call with all that it reads and writes: outputs are compared byte by byte. */
+/* A call with everything that it reads and writes. Outputs are compared byte by byte. */
 typedef struct trial {
   void (*call)(const hot_functions *hot, void *state);
   void *state;
@@ -32,7 +32,8 @@ float random_between(uint32_t *seed, double low, double high);
 float salted(uint32_t *seed, double low, double high);
 void fill_salted(float *values, size_t count, uint32_t *seed, double low, double high);
 
-/* Makes rays run along the sheets, or nowhere, in some rounds: positions become huge or NaN. */
+/* Makes rays run along the sheets, or in no direction, in some rounds, so that positions become huge or NaN.
+ */
 void spoil_rays(sheet_rays *rays, int round);
 sheet_rays random_rays(uint32_t *seed, int round);
 

@@ -1,5 +1,5 @@
-/* unit/sky_suns.c - the suns of skies' images: disks that are painted are found again, no light is lost, and
- * images without suns stay as they are. */
+/* unit/sky_suns.c - the suns in images of skies: disks that are painted are found again, no light is lost,
+ * and images without suns are not changed. */
 #include <stdlib.h>
 #include <string.h>
 
@@ -14,7 +14,7 @@ static const double DEGREE = HL_PI / 180;
 static float pixels[PIXELS * 3];
 
 typedef struct disk {
-  double elevation, turn, radius; /* degrees; turn: from the image's middle column to the right */
+  double elevation, turn, radius; /* degrees. turn: from the image's middle column to the right. */
   double radiance[3];
 } disk;
 
@@ -32,7 +32,7 @@ static void paint_even(double r, double g, double b) {
   for (int i = 0; i < 3 * PIXELS; i++) pixels[i] = (float)color[i % 3];
 }
 
-/* Paints an even disk in place of what was there: each pixel has the part of itself that the disk covers. */
+/* Paints an even disk. A pixel's colour changes by the fraction of it that the disk covers. */
 static void paint(const disk *of) {
   enum { SUB = 24 };
   vec3 middle = direction_at(of->elevation, of->turn);
@@ -73,8 +73,8 @@ static double angle_between(vec3 a, vec3 b) {
 static void check_disk(const sky_sun *sun, const disk *of, const double around[3]) {
   double solid_angle = 2 * HL_PI * (1 - cos(of->radius * DEGREE)), pixel = HL_PI / HEIGHT;
   assert_near(angle_between(sun->towards, direction_at(of->elevation, of->turn)), 0, 0.05 * pixel);
-  /* derived: a pixel's box and tent have the variances 1/12 and 1/6 along its sides, those of a disk add up
-   * to half the square of its radius */
+  /* derived: the box and the tent of a pixel have the variances 1/12 and 1/6 along its sides; the variances
+   * of a disk along two axes add up to half of the square of its radius */
   double side = pixel * cos(of->elevation * DEGREE), own = of->radius * DEGREE;
   double radius = sqrt(own * own + (pixel * pixel + side * side) / 2);
   assert_near(sun->half_angle / radius, 1, 0.012);
@@ -88,8 +88,8 @@ static const disk DISKS[] = {{35, 20, 4, {300, 280, 250}},  {-20, 179.7, 2, {200
                              {0.3, 90, 6, {200, 200, 300}}};
 enum { DISK_COUNT = sizeof DISKS / sizeof *DISKS };
 
-/* One disk on an even sky: its direction, width and light, at poles and over the image's edge; the rest of
- * the image is the even sky to the last bit. */
+/* One disk on an even sky, at poles and across the image's edge: its direction, width and light are found.
+ * The rest of the image is the even sky to the last bit. */
 static void test_disk(void **state) {
   static const double around[3] = {0.25, 0.5, 1};
   hl_context *context = *state;
@@ -105,7 +105,8 @@ static void test_disk(void **state) {
   }
 }
 
-/* Three disks, one close beside another: brightest first, however often they are looked for. */
+/* Three disks, one of them close to another. The brightest is found first, however often they are searched
+ * for. */
 static void test_several(void **state) {
   static const disk disks[] = {
       {40, 30, 2, {900, 900, 900}}, {40, 40, 2, {800, 800, 800}}, {-10, -120, 5, {200, 100, 50}}};
@@ -137,7 +138,7 @@ static void test_none(void **state) {
   hl_sky sky = image_of(pixels);
   paint_even(1, 1, 1);
   expect_none(context, &sky);
-  paint(&faint); /* a hundredth of the light */
+  paint(&faint); /* a hundredth of the sky's light */
   expect_none(context, &sky);
   paint(&wide);
   expect_none(context, &sky);
@@ -149,7 +150,7 @@ static void test_none(void **state) {
   }
   expect_none(context, &sky);
   paint_even(1, 1, 1);
-  for (int p = 7; p < PIXELS; p += 1301) /* single bright pixels, as of a noisy picture */
+  for (int p = 7; p < PIXELS; p += 1301) /* single bright pixels, as in a noisy picture */
     for (int c = 0; c < 3; c++) pixels[3 * p + c] = 400;
   expect_none(context, &sky);
   paint_even(1, 1, 1);
@@ -180,8 +181,9 @@ static void integrate(const hl_sky *sky, double sum[3]) {
     }
 }
 
-/* On an uneven sky, with a glow around one sun and the other half below the horizon: what the image sends is
- * what its rest and the lights send to a medium, 4 pi times their colour there, in each channel. */
+/* An uneven sky with a glow around one sun, and another sun half below the horizon. The rest of the image and
+ * the suns' lights together send a medium the light of the image, 4 pi times their colour, in each channel.
+ */
 static void test_nothing_is_lost(void **state) {
   static const disk high = {35, 20, 1, {4e4, 3e4, 2e4}}, low = {0.4, -100, 5, {100, 200, 300}};
   hl_context *context = *state;
@@ -220,8 +222,8 @@ static void test_nothing_is_lost(void **state) {
 
 /* ---- lights ---- */
 
-/* The light comes from where the turned image is bright, and gives a surface that faces it what the disk
- * gives: its radiance / pi times the integral of the cosine, pi sin^2 a. */
+/* The light comes from where the turned image is bright. A surface that faces it gets the disk's radiance /
+ * pi times the integral of the cosine, pi sin^2 a. */
 static void test_light(void **state) {
   hl_context *context = *state;
   for (int i = 0; i < DISK_COUNT; i++) {
@@ -245,7 +247,7 @@ static void test_light(void **state) {
   }
 }
 
-/* Images of few pixels are no trouble. */
+/* Images of very few pixels are accepted. */
 static void test_small_images(void **state) {
   static const int sizes[][2] = {{1, 1}, {2, 1}, {1, 2}, {3, 2}, {5, 4}, {16, 8}, {64, 1}, {1, 64}};
   hl_context *context = *state;

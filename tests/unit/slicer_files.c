@@ -1,6 +1,5 @@
-/* tests/unit/slicer_files.c - 3D Slicer's presets.xml, .vp and .vp.json files: which preset and component is
- * read, what of it, and errors.
- */
+/* tests/unit/slicer_files.c - 3D Slicer's files presets.xml, .vp and .vp.json: which preset and component is
+ * read, how, and errors. */
 #define _GNU_SOURCE
 #include <stdio.h>
 #include <unistd.h>
@@ -85,8 +84,9 @@ static void lines_are_read(void **state) {
   hl_context_destroy(context);
 }
 
-/* VTK's lengths of gradients are data units per mean voxel edge, and end at a quarter of the values' range.
- * Edges 1, 2 and 6: the mean is 3; range 40: at 10 the factor is 0.5, and that is held. */
+/* VTK's lengths of gradients are data units for each mean edge of a voxel, and end at a quarter of the
+ * values' range. For edges of 1, 2 and 6 the mean is 3. For a range of 40 the factor is 0.5 at 10, and stays
+ * so. */
 static void gradients_are_fitted_to_the_volume(void **state) {
   (void)state;
   hl_context *context = make_context();
@@ -124,7 +124,8 @@ static hl_volume *load_component(hl_context *context, int component) {
   return volume;
 }
 
-/* The functions of component 1 are 3/4, those of 0 a quarter. Voxels of one component take the first. */
+/* The functions of component 1 are 3/4, and those of component 0 a quarter. For voxels with one component,
+ * component 0 is read. */
 static void each_component_has_its_functions(void **state) {
   (void)state;
   hl_context *context = make_context();

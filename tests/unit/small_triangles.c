@@ -1,5 +1,5 @@
-/* unit/small_triangles.c - sixteen small triangles, or spheres, at a time cover the samples that they cover
- * one by one, at the heights of their planes, on every instruction set with the same bytes. */
+/* unit/small_triangles.c - sixteen small triangles or spheres are covered at a time. They cover the same
+ * samples as one by one, at the heights of their planes, with the same bytes on every instruction set. */
 #include <math.h>
 #include <setjmp.h>
 #include <stdarg.h>
@@ -48,8 +48,8 @@ static void open_view(set_up *s, bool perspective) {
   s->sheets = (sheet_stack){vec3_normalise((vec3){-0.3, 0.1, -1}), -20, 0.8, 50};
 }
 
-/* Corners about a point of the view; some triangles are slivers, some reach over the tile's border, and some
- * are not small. */
+/* Corners around a point of the view. Some triangles are slivers, some reach across the tile's border, and
+ * some are not small. */
 static void place_triangles(set_up *s, uint32_t *seed) {
   for (int t = 0; t < SMALL_TRIANGLES; t++) {
     double u = random_between(seed, -1, 17), v = random_between(seed, -1, 17),
@@ -111,7 +111,7 @@ static void set_small_view(set_up *s, bool closed) {
   for (int t = 0; t < SMALL_TRIANGLES; t++) describe_triangle(s, t);
 }
 
-/* What is told of a covered pixel: against the plane in doubles. */
+/* Compares a covered pixel with the triangle's plane in doubles. */
 static void check_pixel(const set_up *s, const small_cover *cover, int k, int t, int column, int row) {
   surface_plane plane;
   double u, v;
@@ -139,7 +139,7 @@ static void check_pixel(const set_up *s, const small_cover *cover, int k, int t,
   assert_near(cover->last_slab[k][t], end / spacing + 0.5, 0.5 + 3 * near_delay / spacing);
 }
 
-/* The samples of each pixel of the tile, as cover_small() tells them. */
+/* The samples of each pixel of the tile that cover_small() reports. */
 static void collect_samples(const small_cover *cover, int t, uint16_t samples[TILE_PIXELS]) {
   memset(samples, 0, TILE_PIXELS * sizeof *samples);
   for (int k = 0; k < SMALL_PIXELS; k++)
@@ -190,7 +190,7 @@ static void test_against_one_by_one(void **state) {
   assert_true(covered > ROUNDS * SMALL_TRIANGLES / 2);
 }
 
-/* A triangle over more pixels or higher than the bounds is left to others. */
+/* A triangle that covers more pixels or is higher than the bounds is left to other code. */
 static void test_not_small(void **state) {
   (void)state;
   uint32_t seed = 11;
@@ -245,8 +245,8 @@ static void test_instruction_sets(void **state) {
   }
 }
 
-/* The same triangles as a cluster: its vertices are seen where the view sees them, and the triangles that are
- * asked for are covered as if they came one by one. */
+/* The same triangles as a cluster. The cluster's vertices are seen at the same places. The triangles that are
+ * asked for cover the same samples as one by one. */
 static void test_cluster(void **state) {
   (void)state;
   uint32_t seed = 5, covered = 0;
@@ -289,7 +289,7 @@ static void test_cluster(void **state) {
   assert_true(covered > ROUNDS);
 }
 
-/* Triangles of less than a pixel, which cover_columns() covers, have the samples that each has by itself. */
+/* Triangles that are smaller than a pixel, for cover_columns(), cover the same samples as each by itself. */
 static void test_tiny(void **state) {
   (void)state;
   uint32_t seed = 13;
@@ -336,7 +336,7 @@ static void test_tiny(void **state) {
   assert_true(covered > ROUNDS);
 }
 
-/* Sixteen spheres about the view; every fourth is too large. */
+/* Sixteen spheres around the view. Every fourth one is too large. */
 static void place_spheres(const set_up *s, uint32_t *seed, small_spheres *spheres) {
   for (int n = 0; n < SMALL_TRIANGLES; n++) {
     vec3 start, way;
@@ -349,7 +349,7 @@ static void place_spheres(const set_up *s, uint32_t *seed, small_spheres *sphere
   }
 }
 
-/* Each covered pixel of a sphere: as one sphere is covered by itself, with the same bytes. */
+/* Each covered pixel of a sphere has the bytes of a sphere that is covered by itself. */
 static void check_sphere(const set_up *s, const small_cover *cover, const float sphere[4], int n,
                          int *covered) {
   uint16_t samples[TILE_PIXELS], expected[TILE_PIXELS] = {0};
@@ -385,7 +385,7 @@ static void check_sphere(const set_up *s, const small_cover *cover, const float 
   }
 }
 
-/* Small spheres are covered as they are one by one, on every instruction set; others are left to others. */
+/* Small spheres are covered as one by one, on every instruction set. Larger ones are left to other code. */
 static void test_spheres(void **state) {
   (void)state;
   uint32_t seed = 17;

@@ -1,4 +1,4 @@
-/* tests/unit/small_volume.h - what tests make volumes with: a context, a description of voxels that the test
+/* tests/unit/small_volume.h - makes volumes for tests: a context, a description of voxels that the test
  * holds, and the volume of a description. */
 #ifndef HL_TESTS_SMALL_VOLUME_H
 #define HL_TESTS_SMALL_VOLUME_H

@@ -1,4 +1,5 @@
-/* unit/splat_sheet.c - reconstruction on sheets: constants, ramps, two ways that agree, kernels, views. */
+/* unit/splat_sheet.c - the reconstruction on sheets: constants, ramps, gathering and splatting that agree,
+ * kernels, views. */
 #include <stdlib.h>
 #include <string.h>
 
@@ -7,7 +8,7 @@
 
 enum { SIDE = 48, SIDE_TILES = SIDE / TILE, ORIENTATIONS = 50 };
 
-/* A view and a slicing normal at most about 50 degrees from it; every third one in perspective. */
+/* A view, and a normal of sheets at most about 50 degrees from it. Every third view is in perspective. */
 static void look_at_random(bench *bench, uint32_t *seed, int round, double pixel, hl_kernel which) {
   vec3 direction = bench_random_direction(seed), normal = bench_random_normal(direction, seed);
   bench_look(bench, direction, normal, pixel, round % 3 == 2 ? 15 : 0, which);
@@ -44,7 +45,8 @@ static double constant_value(vec3 p) {
 }
 static double ramp_value(vec3 p) { return 0.1 + 0.03 * p.x + 0.02 * p.y + 0.01 * p.z; }
 
-/* Checks every pixel that lies margin voxels inside, on all sheets, in many orientations; both ways. */
+/* Checks all pixels that are at least `margin` voxels inside, on all sheets, in many orientations, by
+ * gathering and splatting. */
 static void check_known(expected_function *expected, double margin, double tolerance, hl_kernel which) {
   enum { N = 12 };
   static float voxels[N * N * N], sheet[SIDE][SIDE];
@@ -160,7 +162,8 @@ static int32_t cell_pair(const grid *grid, double at, int axis) {
   return ((int32_t)floor(held) + 1) / HL_LOOKUP_CELLS;
 }
 
-/* Every density lies between its cell's bounds, and these are far tighter than the range of the voxels. */
+/* Each density lies between the bounds of its cell. The bounds are far tighter than the range of the voxels.
+ */
 static void test_cells_bound_the_reconstruction(void **state) {
   (void)state;
   static uint8_t voxels[NOISE_SIDE * NOISE_SIDE * NOISE_SIDE];
@@ -199,7 +202,7 @@ static size_t place_of(const int32_t count[3], int32_t x, int32_t y, int32_t z) 
   return ((size_t)z * (size_t)count[1] + (size_t)y) * (size_t)count[0] + (size_t)x;
 }
 
-/* The extremes of the voxels that a cell depends on. */
+/* The least and greatest of the voxels on which a cell depends. */
 static void cell_extremes(const grid *grid, const int32_t cell[3], uint8_t extremes[2]) {
   extremes[0] = 255, extremes[1] = 0;
   for (int tap = 0; tap < CELL_TAPS * CELL_TAPS * CELL_TAPS; tap++) {
@@ -215,7 +218,7 @@ static void cell_extremes(const grid *grid, const int32_t cell[3], uint8_t extre
   }
 }
 
-/* What a look at the cells from one on finds, by its bits. */
+/* The answer of a look at the cells from one on, by the bits of cells. */
 static int look_at_cells(const cell_lookup *lookup, const unsigned char *visible, const int32_t first[3]) {
   int bits = 0;
   for (int bit = 0; bit < 8; bit++)
@@ -226,7 +229,8 @@ static int look_at_cells(const cell_lookup *lookup, const unsigned char *visible
   return bits;
 }
 
-/* Compares bounds and look-ups of all cells with what their voxels say; returns how many show something. */
+/* Compares the bounds and look-ups of all cells with those of their voxels. Returns the number of cells that
+ * show something. */
 static long check_cells(const bench *bench) {
   static unsigned char visible[LOOKUP_SIZES][4096];
   const grid *grid = &bench->grid;
@@ -258,7 +262,7 @@ static long check_cells(const bench *bench) {
   return shown;
 }
 
-/* Bounds of even and of grainy bricks, whole and cut by the grid's end, and what is looked up of them. */
+/* The bounds of even and of noisy bricks, whole or cut by the grid's end, and look-ups in them. */
 static void test_cells_are_what_their_voxels_say(void **state) {
   (void)state;
   static const size_t sizes[][3] = {{13, 10, 17}, {8, 12, 5}, {30, 9, 11}, {1, 3, 2}, {16, 16, 16}};
@@ -308,7 +312,7 @@ static const double bezier[4][4] = {{1 / 6.0, 4 / 6.0, 1 / 6.0, 0},
                                     {0, 1 / 3.0, 2 / 3.0, 0},
                                     {0, 1 / 6.0, 4 / 6.0, 1 / 6.0}};
 
-/* The greatest Bezier point of a span, of four values. */
+/* The greatest of the Bezier points of a span of four values. */
 static double greatest_of_span(const double value[4]) {
   double greatest = -HUGE_VAL;
   for (int point = 0; point < 4; point++) {
@@ -319,7 +323,8 @@ static double greatest_of_span(const double value[4]) {
   return greatest;
 }
 
-/* The bound, times sign, of the cell from a point's floor on: along z, then y, then x. */
+/* The bound, times `sign`, of the cell that begins at the point's whole coordinates: along z, then y, then x.
+ */
 static double bound_of_cell(const grid *grid, const int32_t floor[3], double sign) {
   double across[4];
   for (int a = 0; a < 4; a++) {
@@ -335,7 +340,7 @@ static double bound_of_cell(const grid *grid, const int32_t floor[3], double sig
   return greatest_of_span(across);
 }
 
-/* The reconstruction at a point of that cell. */
+/* The field at a point of that cell. */
 static double value_in_cell(const grid *grid, const int32_t floor[3], const double phase[3]) {
   const kernel *kernel = hl_kernel_get(HL_KERNEL_BSPLINE);
   double sum = 0;
@@ -352,8 +357,8 @@ typedef struct bit_counts {
   long set, clear, near;
 } bit_counts;
 
-/* Of every cell: a bit where its bound shows, and none where it does not, but for what rounding may blur; and
- * no point without a bit shows. */
+/* Each cell has a bit if its bound shows, and none if it does not, except for rounding. No point of a cell
+ * without a bit shows. */
 static bit_counts check_bits(const bench *bench, uint32_t *seed) {
   const grid *grid = &bench->grid;
   const classifier *classifier = &bench->classifier;
@@ -384,8 +389,8 @@ static bit_counts check_bits(const bench *bench, uint32_t *seed) {
   return counts;
 }
 
-/* A grid of noise in places, or of a plane or a ball, with a transfer function that shows what lies above or,
- * where stored values fall as data rise, below a value. */
+/* A grid with noise in some places, or with a plane or a ball. The transfer function shows values above a
+ * threshold, or below it if stored values fall as data rise. */
 static void open_bits(bench *bench, const size_t size[3], int which, bool falling, void *voxels) {
   static hl_opacity_point ramp[2];
   hl_storage storage = (hl_storage)(which % 3);
@@ -432,7 +437,7 @@ static void test_bits_are_what_cells_can_show(void **state) {
   assert_true(all.set > 10000 && all.clear > 10000 && all.near < 1000);
 }
 
-/* No pixel that shows something lies outside the blocks that are said to matter. */
+/* No pixel outside of the blocks that are said to matter shows anything. */
 static void test_relevant_blocks_miss_nothing(void **state) {
   (void)state;
   static const hl_opacity_point ramp[] = {{168, 0}, {170, 0.9}};
@@ -446,7 +451,7 @@ static void test_relevant_blocks_miss_nothing(void **state) {
   uint32_t seed = 6;
   long shown = 0, left_out = 0, left_out_by_bits = 0;
   assert_true(bench.grid.cell_bits_tell);
-  static const double pixels[] = {0.05, 0.2, 0.45, 1, 3}; /* of the last, blocks are too large for a look */
+  static const double pixels[] = {0.05, 0.2, 0.45, 1, 3}; /* the last blocks are too large for a look */
   for (int round = 0; round < 2 * ORIENTATIONS; round++) {
     look_at_random(&bench, &seed, round, pixels[round % 5], HL_KERNEL_BSPLINE);
     int at = round % (bench.sheets.count - 1);
@@ -478,7 +483,7 @@ static void test_relevant_blocks_miss_nothing(void **state) {
   bench_close(&bench);
 }
 
-/* The rays of all pixels in the blocks that matter stay in the box through slabs that are said to be
+/* The rays of all pixels in the blocks that matter stay in the box through all slabs that are said to be
  * whole. */
 static void test_uncut_slabs_are_not_cut(void **state) {
   (void)state;
@@ -532,7 +537,7 @@ static void test_kernels_sum_to_one(void **state) {
         variance += value * (phase + n) * (phase + n);
       }
       assert_near(sum, 1, 1e-6);
-      /* over the lattice the second moment is the kernel's variance, for the B-spline at any phase */
+      /* over the lattice, the second moment is the kernel's variance, for the B-spline at any phase */
       if (which == HL_KERNEL_BSPLINE) assert_near(variance, kernel->variance, 1e-6);
     }
   }

@@ -1,5 +1,5 @@
-/* unit/sublights_lit.c - the blocks of a slab that sub-lights reach, against every one of the sub-lights'
- * blocks looked at. */
+/* unit/sublights_lit.c - the blocks of a slab that sub-lights reach, compared with a search of all blocks of
+ * the sub-lights. */
 #include <setjmp.h>
 #include <stdarg.h>
 #include <stddef.h>
@@ -59,8 +59,8 @@ static void make_case(lit_case *c, uint32_t *seed) {
   }
 }
 
-/* Whether pixels of the slab, some more around its block, lie over a lit block of the sub-light in one of its
- * maps. */
+/* Returns whether pixels of the slab, with a margin around its block, lie over a lit block of the sub-light
+ * in one of its maps. */
 static bool is_under(const sublight *sublight, const sublight_map *map, int x, int y, double around) {
   for (int row = 0; row < SUBLIGHT_BLOCKS; row++)
     for (int column = 0; column < SUBLIGHT_BLOCKS; column++) {
@@ -97,8 +97,9 @@ static void test_against_all_blocks(void **state) {
     for (int y = 0; y < SLAB_BLOCKS; y++)
       for (int x = 0; x < SLAB_BLOCKS; x++) {
         bool found = c.tile_lit[y / 4 * SLAB_TILES + x / 4] >> (y % 4 * 4 + x % 4) & 1;
-        if (is_lit(&c, x, y, 1.9)) assert_true(found); /* half pixels are made of two on either side */
-        if (found) assert_true(is_lit(&c, x, y, 12));  /* near and far together, and whole blocks */
+        /* half-size pixels are made of two pixels in each direction */
+        if (is_lit(&c, x, y, 1.9)) assert_true(found);
+        if (found) assert_true(is_lit(&c, x, y, 12)); /* near and far are tested together, and whole blocks */
         lit += found;
         dark += !found;
       }
@@ -111,14 +112,14 @@ static void test_when_it_is_found(void **state) {
   uint32_t seed = 7;
   lit_case c;
   make_case(&c, &seed);
-  c.sublights.slabs = 0; /* nothing was taken yet */
+  c.sublights.slabs = 0; /* nothing was absorbed so far */
   hl_sublights_find_lit(&c.sublights, &c.slab, 0);
   assert_int_equal(c.tile_lit[0], ALL_BLOCKS);
   for (int i = 0; i < SUBLIGHTS; i++) c.sublight[i].reaches = false;
   c.sublights.slabs = 1;
   hl_sublights_find_lit(&c.sublights, &c.slab, 0);
   assert_int_equal(c.tile_lit[0], 0);
-  c.sublight[0].maps.comes = true; /* found anew with the next run only */
+  c.sublight[0].maps.comes = true; /* the blocks are found anew in the next run */
   hl_sublights_find_lit(&c.sublights, &c.slab, 0);
   assert_int_equal(c.tile_lit[0], 0);
   c.sublights.slabs = 5;

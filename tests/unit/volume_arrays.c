@@ -1,5 +1,5 @@
-/* tests/unit/volume_arrays.c - which array and component is read, what is told, and the other options of
- * loading. */
+/* tests/unit/volume_arrays.c - which array and component of a file is read, which warnings are given, and the
+ * other options of loading. */
 #include "volume_files.h"
 
 #include <math.h>
@@ -22,7 +22,7 @@ static void on_log(void *user_data, hl_log_level level, const char *message) {
   snprintf(t->last, sizeof t->last, "%s", message);
 }
 
-/* What every test has: a context, and the warnings that it told. */
+/* The things that every test has: a context, and the warnings that it gave. */
 static told t;
 static hl_context *context;
 
@@ -97,7 +97,7 @@ static void test_arrays_are_chosen_by_name(void **state) {
   volume = load(&file, "a", HL_COMPONENT_DEFAULT, &error);
   assert_true(hl_volume_value(volume, 1, 1, 1) == 8);
   hl_volume_release(volume);
-  assert_int_equal(t.warnings, 1); /* what was named needs no word */
+  assert_int_equal(t.warnings, 1); /* no warning about an array that was named */
   assert_null(load(&file, "c", HL_COMPONENT_DEFAULT, &error));
   assert_int_equal(error.code, HL_ERROR_INPUT);
   assert_non_null(strstr(error.message, "no array \"c\": there is a; b; v (3 components)"));
@@ -118,7 +118,8 @@ static void test_components(void **state) {
   assert_true(hl_volume_value(volume, 0, 0, 0) == 5 && hl_volume_value(volume, 1, 1, 1) == 7);
   hl_volume_release(volume);
   assert_int_equal(t.warnings, 0);
-  volume = load(&file, "v", HL_COMPONENT_DEFAULT, &error); /* of three the magnitude, told */
+  /* of three components, the magnitude is read, with a warning */
+  volume = load(&file, "v", HL_COMPONENT_DEFAULT, &error);
   assert_true(hl_volume_value(volume, 0, 0, 0) == 5);
   assert_int_equal(t.warnings, 1);
   assert_non_null(strstr(t.last, "their magnitude is taken"));
@@ -133,7 +134,8 @@ static void test_components(void **state) {
   assert_non_null(strstr(error.message, "one component, 0"));
 }
 
-/* A series: each volume is a component; scaled values; the magnitude of signed, scaled planes. */
+/* A series of volumes: each volume is a component. Values are scaled, and the magnitude of signed, scaled
+ * values is right. */
 static void test_series(void **state) {
   (void)state;
   byte_buffer file = {.length = 0};
@@ -214,7 +216,7 @@ static void test_times_and_channels(void **state) {
   assert_non_null(strstr(error.message, "leave \"component\" (--component) out"));
 }
 
-/* More values than a stage holds, in blocks that are read and blocks that are passed over. */
+/* There are more values than a stage holds, in blocks that are read and in blocks that are skipped. */
 static void test_large_components(void **state) {
   (void)state;
   enum { W = 300, H = 300, STEPS = 4 };
@@ -335,7 +337,7 @@ static void test_values_of_half_floats(void **state) {
   hl_volume_release(volume);
 }
 
-/* A pipe is read once: up to the first array of one component, or of the wanted name. */
+/* A pipe is read once, up to the first array of one component or to the array that was named. */
 static void test_a_pipe_is_read_once(void **state) {
   (void)state;
   static const char vtk[] =

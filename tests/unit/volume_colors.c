@@ -1,5 +1,5 @@
-/* tests/unit/volume_colors.c - colours of voxels as they are read: their codes, and the values that opacity
- * comes from. */
+/* tests/unit/volume_colors.c - colours of voxels that are read from files: their codes, and the values from
+ * which opacity follows. */
 #include "volume_files.h"
 
 #include <math.h>
@@ -27,7 +27,7 @@ static hl_volume *loaded(hl_context *context, const byte_buffer *file, int compo
   return volume;
 }
 
-/* Two voxels of NRRD; kinds: of the components' axis; last: it is the last axis. */
+/* Two voxels of NRRD. kinds: of the axis of components. last: whether it is the last axis. */
 static byte_buffer nrrd(const char *type, const char *kind, int components, bool last, const char *values) {
   byte_buffer file = {.length = 0};
   char header[400];
@@ -88,7 +88,7 @@ static void test_opacity_of_rgba_is_its_alpha(void **state) {
   hl_context_destroy(context);
 }
 
-/* 65535 is 255; values stay those of the file. */
+/* 65535 becomes 255, and the values are the file's */
 static void test_sixteen_bits_become_eight(void **state) {
   (void)state;
   hl_context *context = NULL;
@@ -101,7 +101,7 @@ static void test_sixteen_bits_become_eight(void **state) {
   hl_context_destroy(context);
 }
 
-/* Vectors are colours where the caller says so; floats and vectors of two never. */
+/* Vectors are colours if the caller says so. Floats and vectors of two components never are. */
 static void test_colors_where_asked(void **state) {
   (void)state;
   hl_context *context = NULL;

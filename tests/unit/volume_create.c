@@ -1,4 +1,5 @@
-/* tests/unit/volume_create.c - volumes from memory: storage, strides, statistics, checks, life. */
+/* tests/unit/volume_create.c - volumes from memory: storage, strides, statistics, checks, and when voxels are
+ * released. */
 #include <stdlib.h>
 #include <string.h>
 
@@ -81,7 +82,7 @@ static double write_value(hl_voxel_type type, size_t n, unsigned char *place) {
 
 enum { NI = 4, NJ = 3, NK = 2, COUNT = NI * NJ * NK };
 
-/* Each type, scaled, through any strides: the values come back and the statistics follow from them. */
+/* Each type, scaled, with any strides. The values come back, and the statistics follow from them. */
 static void check_type(hl_voxel_type type, const ptrdiff_t stride_voxels[3], size_t first, double scale,
                        double shift) {
   hl_context *context = make_context();
@@ -175,7 +176,7 @@ static void test_borrowed_voxels_are_not_copied(void **state) {
   assert_ptr_equal(volume->voxels, voxels);
   assert_null(volume->owned_voxels);
   hl_volume_release(volume);
-  description.type = HL_VOXEL_I16; /* stored otherwise: must be copied and right */
+  description.type = HL_VOXEL_I16; /* voxels of another layout must be copied, and be right */
   assert_int_equal(hl_volume_create(context, &description, &volume, NULL), HL_OK);
   assert_ptr_not_equal(volume->voxels, voxels);
   assert_true(hl_volume_value(volume, 1, 1, 1) == 8);
@@ -190,8 +191,8 @@ static void test_borrowed_voxels_are_not_copied(void **state) {
   hl_context_destroy(context);
 }
 
-/* A box cut out of a larger array: borrowed where its rows are packed; statistics and values are the box's.
- */
+/* A box that is cut out of a larger array. It is borrowed if its rows are packed. The statistics and values
+ * are those of the box. */
 static void check_cut_box(hl_context *context, hl_voxel_type type, const void *whole, size_t bytes) {
   enum { X = 7, Y = 5, Z = 6 };
   hl_volume_description description = describe_voxels(4, 3, 2, type,
@@ -225,7 +226,7 @@ static void test_rows_that_lie_apart_are_borrowed(void **state) {
   check_cut_box(context, HL_VOXEL_U8, bytes, 1);
   check_cut_box(context, HL_VOXEL_U16, shorts, 2);
   check_cut_box(context, HL_VOXEL_F32, floats, 4);
-  /* Steps along a row, slices that overlap, and slices in falling order are copied. */
+  /* Arrays with steps along a row, slices that overlap, or slices in falling order are copied. */
   const ptrdiff_t others[][3] = {{2, 14, 70}, {1, 7, 7}, {1, 7, 0}, {1, 35, 7}, {1, 7, -35}};
   for (size_t n = 0; n < sizeof others / sizeof *others; n++) {
     hl_volume_description description = describe_voxels(3, 2, 2, HL_VOXEL_U8, bytes + 100);
@@ -247,7 +248,7 @@ static void count_release(void *release_data, const void *voxels) {
   ++*(int *)release_data;
 }
 
-/* Voxels are given back once: when the last reference goes, at once where they were copied, never on failure.
+/* Voxels are released once: with the last reference; at once if they were copied; never if the call failed.
  */
 static void test_borrowed_voxels_are_given_back(void **state) {
   (void)state;
@@ -326,7 +327,7 @@ static void test_constant_volume(void **state) {
   hl_context_destroy(context);
 }
 
-/* The bins of u8 data over 0..255 are its values; mirrored by a negative scale. */
+/* The bins of the histogram of u8 data from 0 to 255 are its values, mirrored if the scale is negative. */
 static void test_histogram_bins(void **state) {
   (void)state;
   hl_context *context = make_context();
@@ -432,7 +433,7 @@ static void test_memory_limit_and_counting(void **state) {
   hl_context_destroy(context);
 }
 
-/* Swapped input gives what native input gives, also in place and from odd addresses. */
+/* Bytes in the other order give the same volume, also in place and at odd addresses. */
 static void test_byte_order(void **state) {
   (void)state;
   for (int t = HL_VOXEL_U8; t <= HL_VOXEL_F16; t++) {

@@ -1,4 +1,4 @@
-/* tests/unit/volume_exact.c - whole numbers above 2^24 keep their value: in memory, in files and as labels.
+/* tests/unit/volume_exact.c - whole numbers above 2^24 keep their values: in memory, in files and as labels.
  */
 #define _GNU_SOURCE
 #include <stdio.h>
@@ -30,7 +30,7 @@ static hl_volume *make_volume(hl_context *context, hl_voxel_type type, const voi
   return volume_of_voxels(context, SIDE, SIDE, SIDE, type, voxels);
 }
 
-/* Neighbouring whole numbers that one float stands for, of each type. */
+/* Neighbouring whole numbers that become the same float, of each type. */
 static void fill(hl_voxel_type type, unsigned char bytes[8 * COUNT]) {
   for (size_t n = 0; n < COUNT; n++) {
     int64_t wide = (n % 3 == 0 ? 0 : 720575940621039145 + (int64_t)n), narrow = 614454270 + (int64_t)n;
@@ -51,7 +51,7 @@ static void fill(hl_voxel_type type, unsigned char bytes[8 * COUNT]) {
 static const hl_voxel_type wide_types[] = {HL_VOXEL_U32, HL_VOXEL_I32, HL_VOXEL_U64, HL_VOXEL_I64,
                                            HL_VOXEL_F64};
 
-/* Every byte comes back from a file, also where doubles cannot hold the number. */
+/* All bytes come back from a file, also of numbers that doubles cannot hold. */
 static void numbers_survive_files(void **state) {
   (void)state;
   static const char *const endings[] = {"nrrd", "nii", "mha", "vti"};
@@ -104,7 +104,8 @@ static int by_value(const void *a, const void *b) {
   return (x > y) - (x < y);
 }
 
-/* As sorting them gives, to the last bit of a double; of numbers whose floats are all the same, too. */
+/* The percentiles are those of sorted numbers, to the last bit of a double, also if all numbers become the
+ * same float. */
 static void percentiles_are_exact(void **state) {
   (void)state;
   static const double percents[] = {0, 1, 12.5, 50, 61.9, 99, 100};
@@ -163,7 +164,7 @@ static void neighbouring_ids_are_two_labels(void **state) {
 
 enum { LARGE = 112, LARGE_COUNT = LARGE * LARGE * LARGE };
 
-/* Great numbers in some slices alone, small ones in others. */
+/* Some slices have great numbers, and others small ones. */
 static void fill_large(hl_voxel_type type, unsigned char *bytes) {
   size_t each = type == HL_VOXEL_U32 ? 4 : 8;
   for (size_t n = 0; n < LARGE_COUNT; n++) {
@@ -196,7 +197,7 @@ static void check_file(const char *path, const void *bytes, size_t count) {
   free(found);
 }
 
-/* A volume that memory has no room for has its numbers in a second scratch file. */
+/* If memory has no room for a volume's exact numbers, they are in a second scratch file. */
 static void numbers_larger_than_memory_are_exact(void **state) {
   (void)state;
   static const hl_voxel_type types[] = {HL_VOXEL_U32, HL_VOXEL_I64, HL_VOXEL_F64};
@@ -246,7 +247,8 @@ static void numbers_larger_than_memory_are_exact(void **state) {
   free(bytes);
 }
 
-/* Two neighbouring ids that doubles take for one: as labels, in a scene's text, shrunk, and as the range. */
+/* Two neighbouring numbers that become the same double: as labels, in a scene's text, in a shrunk volume, and
+ * as the range. */
 static void ids_above_doubles_stay_apart(void **state) {
   (void)state;
   enum { EDGE = 8 };
@@ -304,7 +306,7 @@ static void ids_above_doubles_stay_apart(void **state) {
   hl_context_destroy(context);
 }
 
-/* No label has a number that 64 bits with a sign do not hold: it is refused, and the volume is drawn by its
+/* A label's number must fit 64 bits with a sign. Other numbers are refused, and the volume is drawn by its
  * values. */
 static void numbers_beyond_labels_are_refused(void **state) {
   (void)state;

@@ -13,7 +13,7 @@ static const hl_voxel_type all_types[TYPES] = {HL_VOXEL_U8,  HL_VOXEL_I8,  HL_VO
                                                HL_VOXEL_U32, HL_VOXEL_I32, HL_VOXEL_F32, HL_VOXEL_F64,
                                                HL_VOXEL_U64, HL_VOXEL_I64};
 
-/* Each a float without rounding, and with a different byte pattern in either order. */
+/* The values are floats without rounding, and their bytes differ in both orders. */
 double voxel_value(hl_voxel_type type, int n) {
   switch (type) {
     case HL_VOXEL_U8: return 23 * n;
@@ -56,8 +56,8 @@ void add_integer(byte_buffer *target, uint64_t value, size_t length, bool big_en
 
 static void add_float(byte_buffer *target, double value, size_t length, bool big_endian) {
   uint64_t bits;
-  if (length ==
-      2) { /* of numbers that binary16 holds: the float's exponent and first ten bits of its fraction */
+  if (length == 2) {
+    /* of numbers that binary16 can hold: the float's exponent, and the first ten bits of its fraction */
     float narrow = (float)value;
     uint32_t wide;
     memcpy(&wide, &narrow, 4);
@@ -248,7 +248,7 @@ static void nrrd_samples(sample_function *function, void *data) {
       }
 }
 
-/* Headers that say less, or the same in another way. */
+/* Headers that leave things out, or that say the same in another way. */
 static void nrrd_variants(sample_function *function, void *data) {
   static const struct {
     const char *fields;
@@ -378,7 +378,8 @@ static void add_nifti_header(byte_buffer *file, int version, hl_voxel_type type,
   put_float(file, old ? 116 : 184, intercept, real, big);
   put(file, old ? 252 : 344, place == PLACE_QFORM || place == PLACE_BOTH, old ? 2 : 4, big);
   put(file, old ? 254 : 348, place == PLACE_SFORM || place == PLACE_BOTH, old ? 2 : 4, big);
-  /* A quarter turn about z: (a, b, c, d) = (cos 45, 0, 0, sin 45); a is found from the others. */
+  /* A quarter turn about z: (a, b, c, d) = (cos 45, 0, 0, sin 45). The file holds b, c and d, and a follows
+   * from them. */
   put_float(file, (old ? 256 : 352) + 2 * real, sqrt(0.5), real, big);
   static const double qoffset[3] = {10, 20, 30};
   for (int n = 0; n < 3; n++) put_float(file, (old ? 268 : 376) + (size_t)n * real, qoffset[n], real, big);
@@ -441,7 +442,7 @@ static const char *vti_type(hl_voxel_type type) {
   return names[type];
 }
 
-/* The values with the header before them, plain or in zlib blocks of two voxels less than all. */
+/* The values after the header, plain or in zlib blocks that are two voxels shorter than all values. */
 static void encode_vti(byte_buffer *target, hl_voxel_type type, bool big, size_t header_bytes,
                        bool compressed, bool base64) {
   byte_buffer voxels = {.length = 0}, header = {.length = 0}, body = {.length = 0};
@@ -491,7 +492,7 @@ static void vti_samples(sample_function *function, void *data) {
       volume_sample made = begin_sample(all_types[t], "%s_%d.vti", hl_voxel_type_name(all_types[t]), variant);
       add_vti_head(&made.file, big, header_bytes, compressed);
       bool appended = coding >= 2;
-      /* Two arrays: one to pass over, and the active one. */
+      /* Two arrays. The first is to be skipped, and the second is the active one. */
       add_text(&made.file, "<DataArray type=\"Int8\" Name=\"other\" format=\"%s\" %s/>\n", codings[coding],
                appended ? "offset=\"0\"" : "");
       add_text(&made.file,
@@ -528,15 +529,13 @@ static void legacy_samples(sample_function *function, void *data) {
                "ORIGIN -1 2 1e1\n",
                kind == 1 ? "1.0" : "5.1", kind == 1 ? "\n" : "", text ? "ASCII" : "BINARY",
                kind == 1 ? "\n" : "", kind == 1 ? "ASPECT_RATIO" : "SPACING");
-      if (kind == 2) { /* data sets may begin with fields and cell data */
+      if (kind == 2) { /* data sets may begin with fields, and with data of cells */
         add_text(&made.file, "FIELD FieldData 1\ntime 1 1 short\n");
         if (text) add_text(&made.file, "7\n");
         else add_text(&made.file, "%c%c\n", 0, 7);
-        add_text(
-            &made.file,
-            "METADATA\nINFORMATION 0\n\nCELL_DATA 4\nSCALARS c unsigned_char\nLOOKUP_TABLE default\n"); /* the
-                                                                     grid has two cells: a file that ends here
-                                                                     has no volume */
+        /* the grid has two cells; a file that ends here has no volume */
+        add_text(&made.file,
+                 "METADATA\nINFORMATION 0\n\nCELL_DATA 4\nSCALARS c unsigned_char\nLOOKUP_TABLE default\n");
         add_text(&made.file, "%s", text ? "1 2 3 4\n" : "abcd\n");
       }
       add_text(&made.file, "POINT_DATA 12\n");

@@ -31,9 +31,9 @@ typedef struct byte_buffer {
   size_t length;
 } byte_buffer;
 
-/* A file, the file it refers to if any, and what must come out. */
+/* A file, the file to which it refers, if any, and the volume that must be read. */
 typedef struct volume_sample {
-  char name[128], other_name[128]; /* other_name "": there is none */
+  char name[128], other_name[128]; /* other_name: "" if there is no other file */
   byte_buffer file, other;
   hl_voxel_type type;
   double origin[3], axis[3][3]; /* as in hl_volume_description */
@@ -70,11 +70,11 @@ void add_integer(byte_buffer *target, uint64_t value, size_t length, bool big_en
 void make_folder(char folder[FOLDER_BYTES]);
 void remove_folder(const char *folder);
 void write_file(const char *folder, const char *name, const byte_buffer *content, char path[PATH_BYTES]);
-/* The sample's files; path is that to load. */
+/* Writes the sample's files. path: of the file to load. */
 void write_sample(const char *folder, const volume_sample *sample, char path[PATH_BYTES]);
 void remove_sample(const char *folder, const volume_sample *sample);
 
-/* True if the volume is what the sample says: grid, type, place and the first voxels. */
+/* Returns whether the volume is the sample's: grid, type, place and the first voxels. */
 bool is_sample(const hl_volume *volume, const volume_sample *sample, int voxels);
 
 #endif

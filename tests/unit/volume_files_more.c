@@ -30,7 +30,7 @@ static void add_numpy_header(byte_buffer *file, int version, const char *type, b
   add_text(file, "%s%*s\n", text, (int)(whole - before - (size_t)length - 1), "");
 }
 
-/* The voxels of add_voxels() with z fastest and x slowest. */
+/* The voxels of add_voxels(), with z fastest and x slowest. */
 static void add_turned_voxels(byte_buffer *file, hl_voxel_type type, bool big) {
   byte_buffer straight = {.length = 0};
   size_t bytes = hl_voxel_type_bytes(type);
@@ -75,7 +75,7 @@ void for_each_volvis_sample(sample_function *function, void *data) {
     add_text(&made.file, "11111\n3 2 2 8\n1.000000 0.5 2\n1 6 0 %d\n2 1 XpIcTuR", packed);
     for (const unsigned char *v = voxels.data; packed && v < voxels.data + 12; v += 6) {
       const unsigned char slice[] = {0x82, v[0], v[1], 1, v[2], 0x83, v[3], v[4], v[5], 0};
-      add_text(&made.file, v == voxels.data ? "10 X" : "12 X"); /* two bytes that nobody needs */
+      add_text(&made.file, v == voxels.data ? "10 X" : "12 X"); /* two bytes without a meaning */
       add(&made.file, slice, sizeof slice);
     }
     if (packed) add_text(&made.file, "zz");
@@ -104,7 +104,7 @@ static void add_mrc_header(byte_buffer *file, int mode, const int axes[3], bool 
   memcpy(file->data + 208, big ? "MAP \x11\x11" : "MAP \x44\x44", 6);
 }
 
-/* The origin is ORIGIN, or -1 step along each of the file's axes. */
+/* The origin is ORIGIN, or, if that is off, one step back along each of the file's axes. */
 static void mrc_samples(sample_function *function, void *data) {
   static const int modes[] = {0, 0, 1, 2, 6, 12};
   static const hl_voxel_type types[] = {HL_VOXEL_I8,  HL_VOXEL_U8,  HL_VOXEL_I16,
@@ -112,7 +112,8 @@ static void mrc_samples(sample_function *function, void *data) {
   static const int orders[4][3] = {{1, 2, 3}, {3, 1, 2}, {2, 1, 3}, {3, 3, 1}};
   static const double step[3] = {0.5, 2, 3};
   for (size_t t = 0; t < sizeof modes / sizeof *modes; t++)
-    for (int variant = (int)t % 3; variant < 16; variant += 3) { /* the header is long: every third will do */
+    for (int variant = (int)t % 3; variant < 16; variant += 3) {
+      /* the header is long, so that every third variant is tested */
       bool big = variant & 1, placed = variant & 2, series = variant == 12;
       const int *order = orders[variant / 4];
       volume_sample made = begin_sample(types[t], "%zu_%d.mrc", t, variant);
@@ -147,7 +148,8 @@ typedef struct tiff_kind {
 
 static const char imagej[] = "ImageJ=1.53\nimages=2\nslices=2\nunit=um\nspacing=3\n";
 
-/* type: 3 of 16 bits, 4 of 32, 2 text, 5 a fraction; value: itself, or where it lies. */
+/* type: 2: text; 3: 16 bits; 4: 32 bits; 5: a fraction. value: the number itself, or its place in the file.
+ */
 static void add_tiff_tag(byte_buffer *file, const tiff_kind *kind, unsigned tag, unsigned type,
                          uint64_t count, uint64_t value) {
   size_t room = kind->wide ? 8 : 4, bytes = type == 3 ? 2 : type == 4 ? 4 : room;
@@ -239,7 +241,8 @@ void for_each_microscope_sample(sample_function *function, void *data) {
 
 enum { COMPONENTS = 5 };
 
-/* The voxels as component 0, and bytes of another kind as the others: side by side, or after each other. */
+/* The voxels are component 0, and the others hold bytes of another kind. Components are side by side, or one
+ * array after the other. */
 static void add_components(byte_buffer *file, hl_voxel_type type, size_t components, bool side_by_side) {
   byte_buffer voxels = {.length = 0};
   size_t bytes = hl_voxel_type_bytes(type);
@@ -302,8 +305,9 @@ static void meta_components(sample_function *function, void *data) {
 
 static void vtk_components(sample_function *function, void *data) {
   for (int first = 0; first < 2;
-       first++) { /* the volume before and after a vector; and one that is not understood */
-    /* Cut before its scalars, a file of vectors is whole: the type keeps the second out of that test. */
+       first++) { /* the volume stands before or after a vector; and an array that is not understood */
+    /* A file of vectors that is cut before its scalars is still whole, so that its type keeps it out of the
+     * test of cut files. */
     volume_sample made = begin_sample(first ? HL_VOXEL_U16 : HL_VOXEL_U8, "vectors_%d.vtk", first);
     add_text(&made.file,
              "# vtk DataFile Version 3.0\nt\nBINARY\nDATASET STRUCTURED_POINTS\nDIMENSIONS 3 2 2\nPOINT_DATA "

@@ -1,4 +1,5 @@
-/* tests/unit/volume_hostile.c - malformed, cut and damaged files, and memory that runs out: clean errors. */
+/* tests/unit/volume_hostile.c - malformed, cut and damaged files, and memory that runs out, give clean
+ * errors. */
 #define _GNU_SOURCE
 #include "volume_files.h"
 
@@ -25,7 +26,7 @@
 typedef struct malformed {
   const char *name, *content;
   hl_status status;
-  const char *message; /* a part of it */
+  const char *message; /* the text of which the message must have a part */
 } malformed;
 
 static const malformed files[] = {
@@ -179,7 +180,7 @@ static const malformed files[] = {
     {"short.slc", "11111\n2 1 1 8\n1 1 1\n1 6 0 1\n0 0 X1 X\x82", HL_ERROR_INPUT, "slice is too short"},
     {"long.slc", "11111\n2 1 1 8\n1 1 1\n1 6 0 1\n0 0 X3 X\3a", HL_ERROR_INPUT, "slice is damaged"},
     {"ended.slc", "11111\n2 1 2 8\n1 1 1\n1 6 0 1\n0 0 X2 X\2a", HL_ERROR_INPUT, "number must stand"},
-    /* NumPy; a mark, version 1.0, the header's length as its two bytes */
+    /* NumPy: the mark, version 1.0, the header's length as two bytes */
     {"version.npy", "\x93NUMPY\4.\1\1", HL_ERROR_UNSUPPORTED, "version 4 of the format"},
     {"length.npy", "\x93NUMPY\1.\1a{", HL_ERROR_INPUT, "the file ends here"},
     {"list.npy", "\x93NUMPY\1.\1\1[1, 2]" LONG_LINE, HL_ERROR_INPUT, "begins with '{'"},
@@ -276,7 +277,7 @@ static const malformed files[] = {
     {"pieces.vti", VTI "<ImageData WholeExtent=\"0 2 0 1 0 1\"><Piece/><Piece/>", HL_ERROR_INPUT,
      "no DataArray"},
     {"tag.vti", VTI "<ImageData WholeExtent=\"0 2 0 1 0 1\"", HL_ERROR_INPUT, "a tag does not end"},
-    /* raw and what is no volume */
+    /* raw voxels, and a file that is no volume */
     {"3x2x2_uint8.raw", "1234567890123", HL_ERROR_INPUT,
      "its name promises 3 x 2 x 2 uint8, 12 bytes, but the data are longer"},
     {"3x2x2_uint16.raw", TWELVE, HL_ERROR_INPUT,
@@ -324,7 +325,8 @@ static void test_malformed_files(void **unused) {
     assert_non_null(
         strstr(error.message, strstr(error.message, "/dev/zero") ? "/dev/zero" : folder)); /* the file */
     assert_int_equal(hl_context_memory_held(context), 0);
-    assert_true(hl_context_memory_peak(context) < 1 << 20); /* nothing was allocated for the promise */
+    /* no memory was taken for the size that the header claims */
+    assert_true(hl_context_memory_peak(context) < 1 << 20);
     assert_int_equal(hl_volume_load(context, path, &volume, NULL), files[n].status);
   }
   hl_context_destroy(context);
@@ -350,7 +352,7 @@ static void test_absent_files_and_null_arguments(void **unused) {
   hl_context_destroy(context);
 }
 
-/* NIfTI headers with one field wrong: its offset and new bytes. */
+/* NIfTI headers in which one field is wrong: its offset and its new bytes. */
 static void test_malformed_nifti(void **unused) {
   (void)unused;
   static const struct {
@@ -422,8 +424,8 @@ static void end_damage(damage_state *state) {
   remove_folder(state->folder);
 }
 
-/* Loads a damaged file. It may fail, with a message; what it gives must not leak. True if it was loaded with
- * the first voxels as they were before the damage. */
+/* Loads a damaged file. The call may fail with a message. A volume must not leak. Returns whether the first
+ * voxels are those of before the damage. */
 static bool load_damaged(damage_state *state, const char *path, const volume_sample *sample, int voxels,
                          hl_status *status) {
   hl_error error = {0};
@@ -441,7 +443,8 @@ static bool is_chosen(const volume_sample *sample) {
   return sample->type == HL_VOXEL_I16 || sample->type == HL_VOXEL_U8;
 }
 
-/* Every shorter file fails, or gives the whole volume (the end of a compressed file may be missing). */
+/* Each shorter file fails or gives the whole volume, since only the end of a compressed file may be missing.
+ */
 static void truncate_sample(const volume_sample *sample, void *data) {
   damage_state *state = data;
   if (!is_chosen(sample)) return;
@@ -452,7 +455,7 @@ static void truncate_sample(const volume_sample *sample, void *data) {
     for (size_t length = which ? sample->other.length : sample->file.length; length-- > 0;) {
       assert_int_equal(truncate(which ? other : path, (off_t)length), 0);
       hl_status status;
-      /* Of the last number of a text, fewer digits make another number, and no reader can know. */
+      /* If the last number of a text has fewer digits, it is another number, which no reader can know. */
       int voxels = sample->is_text ? VOXELS - 1 : VOXELS;
       if (load_damaged(state, path, sample, voxels, &status) || status != HL_OK) continue;
       print_message("# %s cut to %zu bytes: other voxels\n", sample->name, length);
@@ -523,7 +526,7 @@ static void starve_sample(const volume_sample *sample, void *data) {
   char path[PATH_BYTES];
   write_sample(state->folder, sample, path);
   hl_status status = HL_ERROR_MEMORY;
-  int fail_at = 2; /* the first is the context's */
+  int fail_at = 2; /* the first allocation is the context's */
   for (; status == HL_ERROR_MEMORY && fail_at < 60; fail_at++) {
     failing_allocator allocator = {.fail_at = fail_at};
     hl_context_options options;

@@ -42,7 +42,7 @@ static void test_all_samples(void **unused) {
   remove_folder(state.folder);
 }
 
-/* A whole file under gzip is read as the file, whatever its format. */
+/* A file that is packed by gzip as a whole is read as the file, whatever its format is. */
 static void load_compressed_sample(const volume_sample *sample, void *data) {
   if (sample->other_name[0] != 0 || sample->type != HL_VOXEL_I16 || sample->file.data[0] == 0x1f) return;
   volume_sample packed = *sample;
@@ -63,7 +63,7 @@ static void test_formats_under_gzip(void **unused) {
   remove_folder(state.folder);
 }
 
-/* Peak memory of a large load: one volume, and buffers that do not grow with it. */
+/* The peak memory of a large load is one volume, and buffers that do not depend on its size. */
 static void check_peak(const char *name, const byte_buffer *header, size_t payload_bytes,
                        size_t volume_bytes) {
   char folder[FOLDER_BYTES], path[PATH_BYTES];
@@ -144,7 +144,8 @@ static void test_progress_and_cancelling(void **unused) {
   remove_folder(folder);
 }
 
-/* Raw voxels may begin with the mark of gzip or of another format: the name and the exact size decide. */
+/* Raw voxels may begin with the mark of gzip or of another format. Their name and exact size tell that they
+ * are raw. */
 static void test_raw_voxels_that_look_compressed(void **unused) {
   (void)unused;
   char folder[FOLDER_BYTES], path[PATH_BYTES];

@@ -1,5 +1,5 @@
-/* tests/unit/volume_reslice.c - planes of voxels: exact at the voxels' centres, linear between them, thick,
- * at any angle, and refused where their numbers are impossible. */
+/* tests/unit/volume_reslice.c - planes of voxels are exact at the voxels' centres and linear between them,
+ * thick if asked, at any angle, and refused if their numbers are impossible. */
 #define _GNU_SOURCE
 #include <stdio.h>
 #include <stdlib.h>
@@ -79,7 +79,7 @@ static void oblique_planes_are_linear(void **state) {
   const double first = 75 + 5 + 1.25, across = 25 + 10 + 0.5, down = -50 + 1.25 + 2;
   const double expected[4] = {first, first + across, first + down, first + across + down};
   for (int n = 0; n < 4; n++) assert_true(fabs(values[n] - expected[n]) < 1e-12);
-  options.interpolate = 0; /* 1.25, 0.5, 0.75 is nearest to 1, 1, 1 */
+  options.interpolate = 0; /* the nearest point to 1.25, 0.5, 0.75 is 1, 1, 1 */
   assert_int_equal(hl_volume_reslice(b.volume, &options, values, NULL), HL_OK);
   assert_true(values[0] == 111);
   end(&b);
@@ -92,7 +92,7 @@ static void thick_planes_blend_their_layers(void **state) {
   for (hl_blend blend = HL_BLEND_MAXIMUM; blend <= HL_BLEND_MEAN; blend++) {
     double value;
     hl_reslice_options options = plane(1, 1);
-    options.depth = DEEP + 2; /* a layer beyond each end, which does not count */
+    options.depth = DEEP + 2; /* the layer beyond each end does not count */
     options.blend = blend;
     set(options.origin, 3, 2, -1);
     assert_int_equal(hl_volume_reslice(b.volume, &options, &value, NULL), HL_OK);
@@ -113,7 +113,7 @@ static void there_is_nothing_beside_the_grid(void **state) {
     assert_int_equal(hl_volume_reslice(b.volume, &options, values, NULL), HL_OK);
     assert_true(isnan(values[0]));
     for (int n = 1; n < 4; n++)
-      assert_true(values[n] == 0); /* from half a voxel before the first centre on */
+      assert_true(values[n] == 0); /* the range begins half a voxel before the first centre */
     set(options.origin, WIDE - 1, 0, 0);
     assert_int_equal(hl_volume_reslice(b.volume, &options, values, NULL), HL_OK);
     assert_true(values[0] == WIDE - 1 && values[1] == WIDE - 1 && isnan(values[2]));
@@ -134,7 +134,8 @@ static void values_are_the_files_own(void **state) {
     assert_int_equal(hl_volume_reslice(volume, &options, values, NULL), HL_OK);
     for (int n = 0; n < WIDE; n++) assert_true(n == 2 ? isnan(values[n]) : values[n] == wide[n]);
   }
-  set(options.origin, 0.5, 0, 0); /* half of each of two voxels: of those of number 2 nothing is known */
+  /* each point takes half of each of two voxels, and voxel number 2 has no data */
+  set(options.origin, 0.5, 0, 0);
   assert_int_equal(hl_volume_reslice(volume, &options, values, NULL), HL_OK);
   assert_true(!isnan(values[0]) && isnan(values[1]) && isnan(values[2]) && !isnan(values[3]));
   hl_volume_release(volume);
@@ -171,7 +172,7 @@ static void impossible_numbers_are_refused(void **state) {
 
 static int stop_now(void *user_data) { return *(int *)user_data; }
 
-/* A projection through many layers ends when it is no longer wanted; by many threads it is that of one. */
+/* A projection through many layers stops if it is cancelled. With many threads it is the same as with one. */
 static void large_planes_can_be_cancelled(void **state) {
   (void)state;
   int stop = 0;

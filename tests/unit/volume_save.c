@@ -1,4 +1,4 @@
-/* tests/unit/volume_save.c - what is saved is what is loaded: values, type and place. */
+/* tests/unit/volume_save.c - volumes that are saved and loaded again have the same values, type and place. */
 #define _GNU_SOURCE
 #include <stdio.h>
 #include <stdlib.h>
@@ -100,7 +100,8 @@ static void impossible_names_are_refused(void **state) {
   hl_context_destroy(context);
 }
 
-/* The mean of two labels is a third one: a shrunk label map has the commonest label of each box. */
+/* The mean of two labels would be a third one. So a voxel of a shrunk label map has the most common label of
+ * its box. */
 static void labels_keep_their_numbers(void **state) {
   (void)state;
   hl_context *context = make_context();
@@ -113,7 +114,7 @@ static void labels_keep_their_numbers(void **state) {
   assert_int_equal(hl_volume_save_with(context, volume, place("b.nrrd"), &options, NULL), HL_OK);
   assert_int_equal(hl_volume_load(context, place("b.nrrd"), &again, NULL), HL_OK);
   assert_true(hl_volume_value(again, 0, 0, 0) == 5); /* three of eight */
-  assert_true(hl_volume_value(again, 1, 0, 0) == 7); /* four 7 and four 3: the first */
+  assert_true(hl_volume_value(again, 1, 0, 0) == 7); /* of four 7 and four 3, the first is taken */
   options.shrink = 65;
   assert_int_equal(hl_volume_save_with(context, volume, place("b.nrrd"), &options, NULL), HL_ERROR_ARGUMENT);
   unlink(place("b.nrrd"));

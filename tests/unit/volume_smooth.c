@@ -1,5 +1,5 @@
-/* tests/unit/volume_smooth.c - voxels smoothed by a Gaussian, against closed forms; what is smoothed unasked.
- */
+/* tests/unit/volume_smooth.c - voxels that are smoothed by a Gaussian, against closed forms; and which
+ * volumes are smoothed without being asked. */
 #include <float.h>
 #include <stdio.h>
 #include <unistd.h>
@@ -22,7 +22,7 @@ static hl_volume *make(double thick) {
   return create_volume(context, &d);
 }
 
-/* The weight of a Gaussian at distance d, of those at whole distances that smooth.c takes. */
+/* The weight of a Gaussian at the distance d, among the weights at whole distances that smooth.c takes. */
 static double weight(double sigma, int d) {
   int radius = (int)ceil(3 * sigma);
   double sum = 0;
@@ -57,7 +57,8 @@ static void an_impulse_becomes_a_gaussian(void **state) {
   }
 }
 
-/* A step along k becomes the sum of the weights on its far side; the border goes on. */
+/* A step along k becomes the sum of the weights on its far side. Beyond the border, the border's value goes
+ * on. */
 static void a_step_becomes_a_ramp(void **state) {
   (void)state;
   for (int v = 0; v < COUNT; v++) values[v] = v / N / N < 20 ? -100.5f : 299.5f;
@@ -94,7 +95,7 @@ static void whole_numbers_keep_16_bits(void **state) {
   hl_volume_release(whole);
 }
 
-/* A hole stays, and takes nothing from its neighbours: the same value everywhere stays the same. */
+/* A hole stays a hole and takes nothing from its neighbours: equal values stay equal. */
 static void holes_stay(void **state) {
   (void)state;
   for (int v = 0; v < COUNT; v++) values[v] = (float)(v / 7 % 2 + 40);
@@ -113,8 +114,8 @@ static double noise(int i, int j, int k) { /* 0..1 */
   return (double)((state ^ (state >> 13)) & 0xffff) / 65536;
 }
 
-/* Matter of 130 to 130 + grain in air: cut out of it, or with the rim that a scanner gives; noise in the air,
- * or none. */
+/* Matter of the values 130 to 130 + grain in air. It is cut out, or has the rim that a scanner gives. The air
+ * has noise or none. */
 static void fill(bool cut_out, double air, double grain) {
   for (int k = 0; k < N; k++)
     for (int j = 0; j < N; j++)
@@ -142,7 +143,7 @@ static void cliffs_are_smoothed(void **state) {
   assert_true(smoothed_by(1) == 0.8);
   fill(false, 4, 4);
   assert_true(smoothed_by(1) == 0);
-  assert_true(smoothed_by(1.5) == 0); /* slices that the rim spans are not too thick */
+  assert_true(smoothed_by(1.5) == 0); /* if the rim is that wide, slices are not too thick */
 }
 
 /* A plane across an axis, at all places between two voxels, blurred by a Gaussian. */
@@ -154,8 +155,8 @@ static void fill_step(int axis, double sigma) {
   }
 }
 
-/* The mean over all places t between two voxels of the part of a blurred step that lies between them, of the
- * part over three voxel edges. */
+/* The fraction of a blurred step that lies between two voxels, in the mean over all places t between them;
+ * divided by the fraction over three edges of a voxel. */
 static double expected_sharpness(double sigma) {
   enum { PLACES = 1000 };
   double sum = 0;
@@ -180,10 +181,11 @@ static void sharpness_is_the_part_of_a_step_between_two_voxels(void **state) {
       assert_true(fabs(analysis.sharpness - expected_sharpness(sigmas[n])) < 0.005);
       hl_volume_release(volume);
     }
-  assert_true(fabs(expected_sharpness(0.5) - 0.614) < 0.001); /* from there on volumes are smoothed */
+  /* volumes with steps of this sharpness, or sharper, are smoothed */
+  assert_true(fabs(expected_sharpness(0.5) - 0.614) < 0.001);
 }
 
-/* Rods one voxel thin would vanish. */
+/* Rods that are one voxel thin would vanish, so that they are not smoothed. */
 static void thin_matter_is_left(void **state) {
   (void)state;
   for (int v = 0; v < COUNT; v++)
@@ -209,8 +211,8 @@ static void terraces_are_smoothed(void **state) {
   }
 }
 
-/* Noise moves a surface by its standard deviation over the slope. Uniform noise of width w has w / sqrt(12),
- * and the rim m / (1 + exp(r / .8)) in air has the slope s (1 - s / m) / .8 where its value is s. */
+/* Noise moves a surface by its standard deviation divided by the slope. Uniform noise of the width w has w /
+ * sqrt(12). The rim m / (1 + exp(r / .8)) in air has the slope s (1 - s / m) / .8 at the value s. */
 static void grain_is_smoothed_and_objects_stay_what_they_are(void **state) {
   (void)state;
   fill(false, 16, 0);
@@ -233,7 +235,7 @@ static void grain_is_smoothed_and_objects_stay_what_they_are(void **state) {
   hl_volume_release(volume);
 }
 
-/* A bare scene is smoothed, and is not where 0 was asked for. */
+/* A bare scene is smoothed, and it is not if 0 was asked for. */
 static void bare_scenes_are_smoothed(void **state) {
   (void)state;
   fill(true, 0, 40);
@@ -251,8 +253,8 @@ static void bare_scenes_are_smoothed(void **state) {
   hl_volume_release(volume);
 }
 
-/* A bare scene under any memory limit is smoothed if memory has room for it, and otherwise shows the voxels
- * as they are. */
+/* With any memory limit, a bare scene is smoothed if there is memory for it, and else shows the voxels as
+ * they are. */
 static void smoothing_keeps_to_the_memory_limit(void **state) {
   (void)state;
   enum { SIDE = 128, VOXELS = SIDE * SIDE * SIDE };
@@ -295,7 +297,7 @@ static void what_has_no_mean_is_refused(void **state) {
   assert_non_null(strstr(error.message, "label map"));
   hl_volume_release(labels);
 
-  /* A segmentation of one label looks like no label map, but its file names the label. */
+  /* A segmentation with one label does not look like a label map, but its file names the label. */
   FILE *file = fopen("halflight-one.seg.nrrd", "wb");
   assert_non_null(file);
   fputs(
@@ -366,8 +368,8 @@ static bool is_same(const hl_volume *a, const hl_volume *b) {
          memcmp(of_a.histogram, of_b.histogram, sizeof of_a.histogram) == 0;
 }
 
-/* The exact voxels are kept, out of memory where there is a scratch folder, and also by a volume that was
- * smoothed twice. They go with the smoothed volume. */
+/* The exact voxels of a smoothed volume are kept, out of memory if there is a scratch folder; also those of a
+ * volume that was smoothed twice. They are released with the smoothed volume. */
 static void unsmoothed_voxels_are_kept(void **state) {
   (void)state;
   static const hl_voxel_type types[] = {HL_VOXEL_I16, HL_VOXEL_I32};
@@ -394,7 +396,7 @@ static void unsmoothed_voxels_are_kept(void **state) {
   assert_null(hl_volume_unsmoothed(NULL));
 }
 
-/* A context that was not told to keep them lets them go. */
+/* A context that is not told to keep exact voxels releases them. */
 static void unsmoothed_voxels_are_let_go(void **state) {
   (void)state;
   hl_volume *smoothed = smooth(1, 0.8);

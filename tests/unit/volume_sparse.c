@@ -1,4 +1,4 @@
-/* tests/unit/volume_sparse.c - sparse pages: voxels of which most have one value. */
+/* tests/unit/volume_sparse.c - pages of volumes in which most voxels have one value. */
 #include <stdlib.h>
 #include <string.h>
 
@@ -7,7 +7,8 @@
 #include "volume/io/destination.h"
 #include "volume/store/pages.h"
 
-#if defined(__has_feature) && !defined(__SANITIZE_ADDRESS__) /* clang's way to tell */
+/* the way in which clang tells that there is a sanitizer */
+#if defined(__has_feature) && !defined(__SANITIZE_ADDRESS__)
 #if __has_feature(address_sanitizer)
 #define __SANITIZE_ADDRESS__
 #endif
@@ -23,8 +24,8 @@ static size_t next(uint32_t *seed, size_t below) {
 
 typedef struct stored {
   size_t n[3], bytes;
-  unsigned char value[4];         /* of voxels that are not stored */
-  unsigned char voxels[MOST * 4]; /* what the pages should hold */
+  unsigned char value[4];         /* the value of voxels that are not stored */
+  unsigned char voxels[MOST * 4]; /* the voxels that the pages should hold */
   bool known[MOST];               /* whether a voxel was stored */
 } stored;
 
@@ -61,8 +62,8 @@ static void check_rows(const hl_pages *pages, const stored *s) {
     }
 }
 
-/* Whatever boxes are stored, the pages hold them, and the one value elsewhere; a run of voxels that is said
- * to have one value has it. */
+/* Boxes are stored at random. The pages hold them, and the one value elsewhere. If a run of voxels is
+ * reported to have one value, it has. */
 static void test_boxes(void **state) {
   (void)state;
   static const hl_voxel_type types[] = {HL_VOXEL_U8, HL_VOXEL_U16, HL_VOXEL_F32};
@@ -101,7 +102,7 @@ static void test_boxes(void **state) {
   hl_context_destroy(context);
 }
 
-/* Memory is taken for the pages of stored voxels alone, and not for voxels of the one value. */
+/* Memory is taken only for the pages of stored voxels, and not for voxels of the one value. */
 static void test_memory(void **state) {
   (void)state;
   static const uint16_t one = 7, same[] = {9, 9}, other[] = {9, 8};
@@ -127,7 +128,7 @@ static void test_memory(void **state) {
   hl_context_destroy(context);
 }
 
-/* Voxels that fill more than a quarter of the pages are moved into one array. */
+/* If voxels fill more than a quarter of the pages, they are moved into one array. */
 static void test_crowded(void **state) {
   (void)state;
   hl_context *context = make_context();
@@ -154,8 +155,8 @@ static void test_crowded(void **state) {
 }
 
 #ifndef __SANITIZE_ADDRESS__ /* the address sanitizer ends a program that asks for more than 1 TiB */
-/* Without a limit, a volume gets no sparse pages for which the machine's memory has no room, however few
- * voxels a file has. */
+/* Without a limit, a volume gets no sparse pages if the machine's memory has no room for all of them, however
+ * few voxels a file has. */
 static void test_beyond_memory(void **state) {
   (void)state;
   hl_context *context = make_context();

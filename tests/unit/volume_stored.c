@@ -1,5 +1,5 @@
-/* tests/unit/volume_stored.c - what is found of a volume larger than memory while it is stored: bounds of
- * bricks, and the voxels that choices look at. */
+/* tests/unit/volume_stored.c - results about a volume larger than memory that are found while it is stored:
+ * bounds of bricks, and the voxels at which choices look. */
 #define _GNU_SOURCE
 #include <math.h>
 #include <stdio.h>
@@ -27,7 +27,7 @@ static const hl_storage storages[] = {HL_STORAGE_U8, HL_STORAGE_U16, HL_STORAGE_
 
 /* ---- bounds of bricks ---- */
 
-/* The least and greatest of voxels 4b-3 .. 4b+5 along each axis, one by one. */
+/* The least and greatest of the voxels 4b-3 to 4b+5 along each axis, one by one. */
 static void bounds_of(hl_storage storage, const void *voxels, const size_t n[3], const size_t brick[3],
                       double *low, double *high) {
   *low = INFINITY, *high = -INFINITY;
@@ -58,7 +58,7 @@ static void test_brick_bounds(void **state) {
     for (size_t v = 0; v < n[0] * n[1] * n[2]; v++)
       put(storage, voxels, v, (unsigned)(v * 2654435761u >> 13));
     assert_true(hl_brick_bounds_create(context, n, storage, &bounds));
-    for (size_t odd = 0; odd < 2; odd++) /* three slices at once, every second time */
+    for (size_t odd = 0; odd < 2; odd++) /* three slices are stored at once every second time */
       for (size_t k = 3 * odd; k < n[2]; k += 6) {
         size_t end = k + 3 < n[2] ? k + 3 : n[2];
         assert_false(hl_brick_bounds_whole(bounds));
@@ -81,7 +81,7 @@ static void test_brick_bounds(void **state) {
 
 /* ---- the glimpse ---- */
 
-static const size_t size[3] = {240, 231, 229}; /* so large that every second row is looked at */
+static const size_t size[3] = {240, 231, 229}; /* the volume is so large that every second row is looked at */
 enum { VOXELS = 240 * 231 * 229 };
 
 static void test_glimpse(void **state) {
@@ -179,7 +179,8 @@ static void choose(const hl_volume *volume, choices *made) {
   hl_sample_release(&sample);
 }
 
-/* No choice but the exposure reads the scratch file: here every read of it would end the program. */
+/* Only the exposure reads the scratch file. For all other choices, a read of it would end the program here.
+ */
 static void test_choices_read_no_pages(void **state) {
   (void)state;
   static const hl_voxel_type types[] = {HL_VOXEL_U16, HL_VOXEL_F32};
@@ -213,8 +214,8 @@ static void keep_warning(void *user_data, hl_log_level level, const char *messag
   if (level == HL_LOG_WARNING) snprintf(warned, sizeof warned, "%s", message);
 }
 
-/* What a picture of a volume will need is told where the limit is less; its file is not even made: the folder
- * for it is not there. */
+/* If the limit is less than a picture of the volume will need, that is reported before its file is made: the
+ * folder for the file does not exist. */
 static void test_warning_of_pictures(void **state) {
   (void)state;
   static const struct {

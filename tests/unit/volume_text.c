@@ -17,7 +17,7 @@ static bool same_double(double a, double b) {
   return (isnan(a) && isnan(b)) || memcmp(&a, &b, sizeof a) == 0;
 }
 
-/* The C library rounds correctly: every accepted number must agree with it to the last bit. */
+/* The C library rounds correctly. Each number that is accepted must agree with it to the last bit. */
 static void test_numbers_are_correctly_rounded(void **unused) {
   (void)unused;
   static const char *const fixed[] = {"0",
@@ -87,10 +87,11 @@ static void test_what_is_no_number(void **unused) {
   assert_true(hl_text_number(digits, HL_NUMBER_CHARACTERS - 1, &value));
 }
 
-/* In a German program 1.5 must stay 1.5, by either path. */
+/* In a program with the German locale, 1.5 must be read as 1.5, by both functions. */
 static void test_numbers_in_another_locale(void **unused) {
   (void)unused;
-  if (setlocale(LC_ALL, "de_DE.UTF-8") == NULL) return; /* not installed: nothing to see here */
+  /* the locale is not installed, so that nothing can be tested */
+  if (setlocale(LC_ALL, "de_DE.UTF-8") == NULL) return;
   double quick, slow;
   assert_true(hl_text_number("1.5", 3, &quick) && hl_text_number("1.50000000000000000000000", 25, &slow));
   setlocale(LC_ALL, "C");
@@ -118,7 +119,7 @@ static void test_words(void **unused) {
   const char *cursor = " one three fourteen";
   assert_true(hl_text_word(&cursor, word, sizeof word));
   assert_string_equal(word, "one");
-  assert_false(hl_text_word(&cursor, word, sizeof word)); /* too long: passed over */
+  assert_false(hl_text_word(&cursor, word, sizeof word)); /* the word is too long, so that it is skipped */
   assert_string_equal(cursor, " fourteen");
   assert_string_equal(hl_text_trim(text), "two words");
   assert_true(hl_text_equal("NRRD", "nrrd") && !hl_text_equal("nrrd", "nrr") &&
@@ -170,7 +171,7 @@ static size_t read_at_most(hl_stream *stream, char *text, size_t step) {
   return length;
 }
 
-/* The vectors of RFC 4648, section 10, also broken over lines, joined, and read in any portions. */
+/* The vectors of RFC 4648, section 10, also with line breaks, joined, and read in parts of any size. */
 static void test_base64(void **unused) {
   (void)unused;
   static const char *const vectors[][2] = {{"", ""},

@@ -10,7 +10,7 @@
 
 #include "volume/formats/zarr/shard.h"
 
-enum { WIDE = 1 << 20 }; /* a gap that takes longer than a request */
+enum { WIDE = 1 << 20 }; /* a gap that takes longer to read than a request takes */
 
 static void narrow_gaps_are_read_over(void **state) {
   hl_fetch_range ranges[] = {{3 * WIDE, 10}, {0, 100}, {150, 50}, {100, 20}, {3 * WIDE + 5, 5}};
@@ -28,7 +28,7 @@ static int falling(const void *a, const void *b) {
   return *first > *second ? -1 : *first < *second;
 }
 
-/* Of many chunks far apart, those with the narrowest gaps between them are joined. */
+/* If there are too many chunks far apart, the ranges with the narrowest gaps between them are joined. */
 static void the_widest_gaps_stay(void **state) {
   enum { CHUNKS = 2000, BYTES = 100 };
   hl_fetch_range ranges[CHUNKS];
@@ -50,7 +50,7 @@ static void the_widest_gaps_stay(void **state) {
                    place + BYTES);
 }
 
-/* Equal gaps stay as long as there may be more ranges. */
+/* Of equal gaps, the first stay as long as there may be more ranges. */
 static void equal_gaps_stay_where_they_may(void **state) {
   enum { CHUNKS = HL_ZARR_SPANS_MOST + 3 };
   hl_fetch_range ranges[CHUNKS];
