@@ -58,7 +58,9 @@ typedef enum hl_compose_flag {
                             * meshes, too */
   HL_COMPOSE_VALUES = 128, /* a label map of an HL_COMPOSE_BARE description is drawn by its values, even if no
                             * option asks for this */
-  HL_COMPOSE_FUNCTIONS = 256 /* the caller chose opacities: a channel that hides another one keeps its own */
+  /* whether the caller has chosen opacities; if so, a channel that hides another channel keeps its own
+     opacities */
+  HL_COMPOSE_FUNCTIONS = 256
 } hl_compose_flag;
 
 /* Makes a scene of a description and options. The options are applied in this fixed order, whatever their

@@ -32,14 +32,15 @@ extern "C" {
 /* The result of a call. Every other value than HL_OK means that the call failed. */
 typedef enum hl_status {
   HL_OK = 0,
-  HL_ERROR_ARGUMENT = 1,    /* an argument of the call is impossible: null, out of range, or of a wrong
-                             * struct_size */
-  HL_ERROR_MEMORY = 2,      /* the allocator returned null, or the context's memory limit was reached */
-  HL_ERROR_IO = 3,          /* a file could not be opened, read, written or renamed */
-  HL_ERROR_INPUT = 4,       /* a file or a scene is malformed */
-  HL_ERROR_UNSUPPORTED = 5, /* the input is well-formed, but this version cannot do what the input asks for */
-  HL_ERROR_CANCELLED = 6,   /* the context's callback `cancelled` stopped the call */
-  HL_ERROR_INTERNAL = 7     /* the library itself has a fault */
+  HL_ERROR_ARGUMENT = 1, /* an argument of the call is impossible: null, out of range, or of a wrong
+                          * struct_size */
+  HL_ERROR_MEMORY = 2,   /* the allocator returned null, or the context's memory limit was reached */
+  HL_ERROR_IO = 3,       /* a file could not be opened, read, written or renamed */
+  HL_ERROR_INPUT = 4,    /* a file or a scene is malformed */
+  /* the input is well-formed, but this version has no support for a feature that the input needs */
+  HL_ERROR_UNSUPPORTED = 5,
+  HL_ERROR_CANCELLED = 6, /* the context's callback `cancelled` stopped the call */
+  HL_ERROR_INTERNAL = 7   /* the library itself has a fault */
 } hl_status;
 
 /* An error, which says why a call failed. Every failing call fills the hl_error that it is given; null is

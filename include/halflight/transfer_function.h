@@ -70,9 +70,9 @@ typedef struct hl_function_image {
                            * end there */
 } hl_function_image;
 
-/* An opacity that depends on the value alone, and a colour that depends on the second number alone: one
- * volume in the colours of another one. Both are piecewise linear, and constant beyond the first and the last
- * point. Without colours it is white. */
+/* An opacity that depends on the first number alone, and a colour that depends on the second number alone:
+ * one volume shows in the colours of another one. Both are piecewise linear, and constant beyond the first
+ * and the last point. Without colours, the volume is white. */
 typedef struct hl_function_curves {
   const hl_opacity_point
       *opacity; /* sorted by value; per unit_distance; without points there are no curves */

@@ -46,7 +46,7 @@ typedef struct cell_search {
   double slopes[FUNCTIONS][3];
   range extents[FUNCTIONS]; /* of the functions in the cell */
   int functions;
-  double greatest; /* the bound so far; NaN: nothing was bounded yet */
+  double greatest; /* the greatest bound found so far; NaN before the first one */
 } cell_search;
 
 static range range_of(const double *values, int count) {

@@ -310,9 +310,9 @@ void hl_bricks_range(const hl_bricks *bricks, const int64_t first[3], const int6
 
 /* ---- ranges of a row of boxes ---- */
 
-/* The level of the cells in which the first and the last cell of a box may move without a change of its
- * range. It is that of the finest of its bricks, as each cell of this level lies in one brick. Constants may
- * end with each block. */
+/* Finds the level of the finest brick that a box touches. The first and the last cell of the box may move
+ * within their cells of this level without a change of the box's range, because each cell of this level lies
+ * in one brick. Constants may end with each block. */
 static int level_of_box(const hl_bricks *bricks, const int64_t first[3], const int64_t last[3]) {
   int64_t from[3], to[3], block[3];
   int level = BRICK_LEVELS_LIMIT;
@@ -330,8 +330,8 @@ static int level_of_box(const hl_bricks *bricks, const int64_t first[3], const i
   return level;
 }
 
-/* The last cell of the farthest box, along an axis, whose first and last cell lie in the cells of a level in
- * which those of a box lie. */
+/* Finds how far a box may grow along an axis: the last cell of the greatest box whose first and last cell lie
+ * in the same cells of a level as those of the given box. */
 static int64_t farthest_last(int64_t first, int64_t last, int level) {
   const int64_t size = (int64_t)1 << level, left = size - 1 - (first & (size - 1)),
                 further = size - 1 - (last & (size - 1));

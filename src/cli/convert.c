@@ -168,7 +168,7 @@ static int check_crop(const cli_value *crop, const hl_volume_save_options *optio
   return EXIT_CODE_OK;
 }
 
-/* Refuses a unit where the volume's file tells another one. */
+/* Refuses a unit if the volume's file states another one. */
 static int check_unit(const cli_value *unit, const hl_volume *volume) {
   const char *told = hl_volume_unit(volume);
   const hl_unit *known = told != NULL ? hl_unit_find(told) : NULL,

@@ -39,7 +39,7 @@ typedef struct cli_host {
   struct {
     const hl_volume *coarse; /* borrowed; null if all of a volume is read */
     double planes[4][4];
-    int level, time, channel; /* what is read in place of what the options leave open */
+    int level, time, channel; /* the values of settings that the options leave open */
   } seen;                     /* for a volume that is read where it is seen (hl_volume_load_options) */
   cli_read_files read;        /* the files that the context has read */
   char *const *operands;      /* see cli_host_options */

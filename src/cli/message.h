@@ -9,9 +9,9 @@ enum {
   EXIT_CODE_OK = 0,
   EXIT_CODE_FAILURE = 1, /* the run failed after it had begun, or a limit of `diff` was exceeded */
   EXIT_CODE_USAGE = 2,
-  EXIT_CODE_INPUT = 3,       /* a given file is missing or malformed */
-  EXIT_CODE_UNSUPPORTED = 4, /* the input was understood, but this version or this machine cannot do what the
-                              * user asks for */
+  EXIT_CODE_INPUT = 3, /* a given file is missing or malformed */
+  /* the input was understood, but this version or this machine has no support for it */
+  EXIT_CODE_UNSUPPORTED = 4,
   EXIT_CODE_INTERRUPTED = 130
 };
 

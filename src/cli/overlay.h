@@ -29,8 +29,8 @@ void overlay_release(cli_overlay *overlay);
  * describe the file. */
 bool overlay_is_any(const cli_overlay *overlay);
 
-/* Keeps the parts of the overlay in place from picture to picture of a series: those for which no corner is
- * asked have their usual ones. */
+/* Keeps the parts of the overlay in the same places in all pictures of a series. Parts without a given corner
+ * stay in their usual corners. */
 void overlay_hold(cli_overlay *overlay);
 
 /* Copies an overlay for one picture of a series or a film. In the copy's annotations, "%d" and "%04d" are

@@ -11,13 +11,13 @@
 const char *synonym_of(const char *word, const char *(*option)(const void *data, size_t index),
                        const void *data);
 
-/* Writes the JSON text that sets what a word means, for settings that only scene files have: "diffuse" gives
- * "\"material\": { \"diffuse\": 0.7 } in a volume". The word may be the key of any setting of a scene,
- * spelled as an option. Returns false if no such setting is known. */
+/* Writes the JSON text of a setting that only scene files have, for the word of an option that does not
+ * exist. "diffuse" gives "\"material\": { \"diffuse\": 0.7 } in a volume". The word may be the key of any
+ * setting of a scene, spelled as an option. Returns false if no such setting is known. */
 bool scene_setting_of(const char *word, char *text, size_t size);
 
-/* A sentence that answers a word for which there is no option, since something else does what it means; null
- * if none is known. */
+/* Returns a sentence about an option that does not exist, which names the option or command with the same
+ * purpose; null if none is known. */
 const char *answer_to(const char *word);
 
 /* The value that a word of other programs means for an option (for "view", "anterior" means "front"); null if

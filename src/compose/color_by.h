@@ -6,7 +6,7 @@
 
 /* What the option made. The description borrows it. */
 typedef struct hl_coloring {
-  hl_scene_volume *volumes; /* owned; the scene's volumes, of which the last one gives the colours */
+  hl_scene_volume *volumes; /* owned; the scene's volumes; the last one is the volume of the colours */
   hl_volume *other;         /* owned */
   char *text;               /* owned; the names of the file and the array */
   char name[64];

@@ -24,7 +24,7 @@ typedef struct scene_change {
   hl_scene_description description;
   hl_changed_volumes volumes;
   hl_scene_volume *channels; /* owned; the volumes, of which some may be translucent; null if none is */
-  hl_coloring coloring;      /* owned; the volumes in the colours of another one */
+  hl_coloring coloring;      /* owned; the volumes, in the colours of another volume */
   hl_light *lights;          /* owned; [description.light_count] */
   hl_scene_mesh *colored; /* owned; the scene's meshes if "colormap" gives some of them colours; else null */
   hl_scene_mesh *meshes;  /* owned; the meshes, of which the last ones are added; null if none is added */

@@ -28,8 +28,8 @@ typedef struct hl_world_box {
  * file tells it. Returns false if the volume's place is not known. */
 bool hl_world_box_of(const hl_volume *volume, const char *given, hl_world_box *box);
 
-/* Writes where a box lies, as "the volume goes from 0,0,0 to 1,1,1 m". what: the name of what lies there. If
- * the unit is not known, the text says by which option it is told. */
+/* Writes the place of a box, as "the volume goes from 0,0,0 to 1,1,1 m". what: the name of the thing in the
+ * box. If the unit is not known, the text names the option that sets it. */
 enum { HL_BOX_TEXT = 240 };
 const char *hl_describe_box(const hl_world_box *box, const char *what, char text[HL_BOX_TEXT]);
 
@@ -54,8 +54,8 @@ typedef struct hl_axis_range {
 bool hl_read_range(const char **text, hl_axis_range *range);
 
 /* Reads a box: ranges along axes, each axis at most once, joined by commas, as "x=0.5:,z=:40mm"; or three
- * ranges without axes, which are those of x, y and z. A range that is not given has no ends. Returns false if
- * the text is something else. */
+ * ranges without axes, for x, y and z. A range that is not given has no ends. Returns false if the text is
+ * something else. */
 bool hl_read_box(const char *text, hl_axis_range box[3]);
 
 /* Returns whether a range has an end. */

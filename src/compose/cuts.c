@@ -175,14 +175,14 @@ static cut_reach reach_of_body(const hl_cut *cut, const hl_world_box *box) {
   return squares > reach * reach ? CUT_REACHES_NONE : CUT_REACHES_SOME;
 }
 
-/* Whether number n of the cut planes is the one that "slice" stands for: the last one. */
+/* Returns whether cut plane number n is the plane of "slice", which is the last one. */
 static bool is_slice(const hl_composer *composer, hl_cut_type type, int n) {
   return composer->asked[HL_ASK_SLICE].given && type == HL_CUT_PLANE &&
          n + 1 == composer->asked[HL_ASK_CUT_PLANE].count;
 }
 
-/* Warns of cuts that lie outside of the box, and refuses a slice that does or that leaves nothing. what: what
- * lies in the box. */
+/* Warns of cuts that lie outside of the box. Refuses a slice outside of the box, or one that leaves nothing.
+ * what: the name of the thing in the box. */
 static hl_status judge_cut(const hl_composer *composer, const hl_cut *cut, const hl_world_box *box,
                            const char *what, int n) {
   char place[HL_BOX_TEXT];

@@ -133,7 +133,7 @@ static const char *after_name(const hl_context *context, const char *text) {
   return equals == NULL || hl_file_kind(context, text) != 0 ? NULL : equals + 1;
 }
 
-/* The length of a name without what the name of a file of bare voxels says of them: "engine" of
+/* The length of a name without the size and type that the names of files of bare voxels have: "engine" of
  * "engine_256x256x128_uint8". */
 static size_t length_without_size(const char *name) {
   for (const char *at = strchr(name, '_'); at != NULL; at = strchr(at + 1, '_')) {

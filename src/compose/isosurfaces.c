@@ -79,7 +79,8 @@ static hl_status warn_of_range(const hl_composer *composer, const hl_scene_volum
   return HL_OK;
 }
 
-/* Logs that opaque surfaces hide each other, where no surface of a volume lets another one be seen. */
+/* Logs that opaque surfaces hide each other, if no surface of a volume is so translucent that another one
+ * shows through it. */
 static void tell_of_hidden(const hl_composer *composer, const hl_isosurface *surfaces, size_t count) {
   bool opaque = count > 1;
   for (size_t n = 0; n < count; n++) opaque &= surfaces[n].opacity == 1;

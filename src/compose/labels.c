@@ -27,8 +27,8 @@ static size_t layers_of(const hl_volume *volume) {
   return 1;
 }
 
-/* Names the only label of a map after the map's file, if the label has no name: a mask tells in the name of
- * its file what it masks. */
+/* Names the only label of a map after the map's file, if the label has no name. The name of a mask's file
+ * often tells which object the mask marks. */
 static void name_after_file(const char *file, hl_label_layers *layers, hl_label *labels, size_t count) {
   size_t length;
   const char *stem = hl_stem(file, &length);

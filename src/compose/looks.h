@@ -20,7 +20,7 @@ bool hl_look_replaces_functions(const struct hl_composer *composer);
 hl_status hl_compose_volume_look(const struct hl_composer *composer, hl_scene_volume *volume);
 
 /* Adapts the greys of a bare volume's maximum projection to "background". The greys begin at the background's
- * colour, so that nearly transparent matter is not seen. They end at the one of black and white that differs
+ * colour, so that nearly transparent matter does not show. They end at black or at white, whichever differs
  * more from the background. */
 void hl_fit_projection(const struct hl_composer *composer, hl_transfer_function *function);
 
@@ -29,9 +29,9 @@ void hl_fit_projection(const struct hl_composer *composer, hl_transfer_function 
  * seen. */
 bool hl_is_film(const struct hl_composer *composer, const hl_scene_description *description, size_t index);
 
-/* Makes the look's white matter black, so that it only absorbs the light of the background, and so dense that
- * what is middle grey before black is middle grey on the film. Matter of other colours, as that of channels,
- * stays. */
+/* Makes the look's white matter black, so that it only absorbs the light of the background. Its density is
+ * chosen so that the grey that is middle grey before black stays middle grey before white. Matter of other
+ * colours, as in channels, stays the same. */
 void hl_make_film(hl_transfer_function *function);
 
 /* Fits a colormap in a bare volume's maximum projection to the background, if the background has one colour

@@ -19,8 +19,8 @@
 
 /* A volume is hidden if a smaller fraction of its places is seen. */
 #define ENOUGH 0.25
-/* Matter hides what lies behind it if it lets a smaller fraction of the light pass: a volume's own matter the
- * places that are not at its front, and another volume's matter the volume. */
+/* The fraction of light below which matter counts as hiding the matter behind it. A volume's own matter hides
+ * places that are not at the volume's front; another volume's matter hides the whole volume. */
 #define HIDES 0.3
 /* The fraction of the light that matter lets pass after it has become translucent. */
 #define THROUGH 0.65
@@ -36,7 +36,7 @@ typedef struct channel_views {
   size_t count;
   vec3 forward;        /* the camera's direction */
   double *thin;        /* owned; [count]; the factor for each volume's extinction */
-  size_t *hidden;      /* owned; [count]; a volume that is hidden by this one */
+  size_t *hidden;      /* owned; [count]; the index of a volume that this volume hides */
   vec3 places[PLACES]; /* [place_count]; the places of one volume, in the world */
   size_t place_count;
 } channel_views;
@@ -183,7 +183,7 @@ static const char *name_of(const hl_scene_volume *volume, char name[NAME_BYTES])
   return name;
 }
 
-/* Makes the volumes thin that hide others. "density" multiplies what is found. */
+/* Makes volumes that hide others thinner. The option "density" multiplies the result. */
 static void make_thin(const hl_composer *composer, const channel_views *views, hl_scene_volume *volumes) {
   const hl_asked *density = &composer->asked[HL_ASK_DENSITY];
   for (size_t v = 0; v < views->count; v++) {

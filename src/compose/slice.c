@@ -14,8 +14,8 @@
 #include "text/plain.h"
 #include "volume/in_bricks.h"
 
-/* The distance of a slice's sheets, in voxel edges. The values that are seen are those of the first sheets
- * behind the plane. */
+/* The distance of a slice's sheets, in voxel edges. The picture shows the values on the first sheets behind
+ * the plane. */
 #define SHEET_SPACING 0.125
 
 /* How a slice is seen. */
@@ -30,7 +30,7 @@ typedef struct slice_sight {
 typedef struct typed_slice {
   int axis;        /* across the slice; -1 if the text is no slice */
   bool is_of_body; /* whether a body's plane was named in place of an axis */
-  const char *at;  /* where the axis is cut, as a text: what was typed, or the middle */
+  const char *at;  /* the place on the axis, as a text: the user's text, or the middle */
 } typed_slice;
 
 /* Reads AXIS or AXIS=AT. AXIS is x, y or z, or one of a body's planes: all worlds whose space is known have x
@@ -137,7 +137,7 @@ hl_status hl_expand_slice(const hl_scene_description *description, hl_asked *ask
         "%c=%.60s",
         asked[HL_ASK_SLICE].text, 'x' + slice.axis, slice.at);
   const slice_sight sight = asked_sight(asked, description);
-  /* "z=AT" cuts away what lies from AT on, and "z=:AT" what lies before it */
+  /* "z=AT" cuts away all matter from AT on, and "z=:AT" all matter before AT */
   snprintf(plane, HL_SLICE_TEXT, "%c=%s%.*s", 'x' + sight.axis, sight.towards_eye > 0 ? "" : ":",
            HL_SLICE_TEXT - 4, slice.at);
   planes->given = true;

@@ -14,10 +14,10 @@ size_t hl_count_values(const hl_scene_description *description);
 /* Refuses a value of "slice" that is no plane, and options that exclude "slice". */
 hl_status hl_check_slice(const hl_asked *asked, hl_error *error);
 
-/* Refuses a body's plane where no file tells the body's directions. Adds the options that "slice" stands for:
- * the plane, as "cut-plane"; "ortho", "whole" and "shading" flat. The kernel becomes linear if no labels are
- * shown, so that the values are those of the voxels. Options that are given stay as they are. plane:
- * [HL_SLICE_TEXT], the text of the plane, to which `asked` then points. */
+/* Adds the options that "slice" means: the plane, as "cut-plane"; "ortho", "whole" and "shading" flat. The
+ * kernel becomes linear if no labels are shown, so that the picture shows the voxels' own values. Options
+ * that are given stay the same. Planes of the body are refused if no file states the body's directions.
+ * plane: [HL_SLICE_TEXT], memory for the text of the plane, to which `asked` then points. */
 hl_status hl_expand_slice(const hl_scene_description *description, hl_asked *asked, char *plane,
                           hl_error *error);
 
@@ -35,9 +35,9 @@ bool hl_slice_range(const hl_volume *volume, char text[HL_SLICE_TEXT]);
 hl_status hl_make_slice_opaque(const hl_composer *composer, const hl_scene_volume *volume,
                                hl_transfer_function *function);
 
-/* The number of volume `index` among volumes of values that lie over each other on a slice, from 1. They do
- * so if one after the first has a colormap. Otherwise their colours add up, as those of channels, and the
- * number is 0. */
+/* The number, from 1, of volume `index` among volumes of values that lie over each other on a slice. Volumes
+ * do so if one of them, except for the first, has a colormap. Otherwise their colours add up, as the colours
+ * of channels do, and the number is 0. */
 size_t hl_slice_layer(const hl_composer *composer, const hl_scene_description *description, size_t index);
 
 /* Lays an opaque volume over `below` others: it hides them from the least value of its colours on, and is

@@ -9,8 +9,8 @@
 #include <stdint.h>
 #include <string.h>
 
-/* Two parts of ln 2: the first part has 32 bits, so that its product with a whole number of up to 20 bits is
- * exact. The second part is what ln 2 exceeds the first by. */
+/* Two parts of ln 2. The first part has 32 bits, so that its product with a whole number of up to 20 bits is
+ * exact. The second part is ln 2 minus the first part. */
 static const double LN2_HIGH = 0x1.62e42feep-1, LN2_LOW = 0x1.a39ef35793c76p-33;
 
 /* Three parts of pi / 2, of 33 bits, 33 bits and the rest, for the same reason. */
@@ -93,10 +93,10 @@ double hl_expm1(double x) {
 
 /* ---- logarithms ---- */
 
-/* Computes k ln 2 + ln(1 + f), for sqrt(1/2) <= 1 + f < sqrt(2). more: what the argument exceeds 1 + f by,
- * divided by the argument. Derived: with s = f / (2 + f), ln(1 + f) = 2 artanh s = 2 s + s R, where R is the
- * sum of 2 s^(2n) / (2n + 1) from n = 1. As 2 s = f - s f and f - s f = f - f^2 / 2 + s f^2 / 2, ln(1 + f) =
- * f - (f^2 / 2 - s (f^2 / 2 + R)): the greatest term of this sum is exact. */
+/* Computes k ln 2 + ln(1 + f), for sqrt(1/2) <= 1 + f < sqrt(2). more: the difference of the argument and 1 +
+ * f, divided by the argument. Derived: with s = f / (2 + f), ln(1 + f) = 2 artanh s = 2 s + s R, where R is
+ * the sum of 2 s^(2n) / (2n + 1) from n = 1. As 2 s = f - s f and f - s f = f - f^2 / 2 + s f^2 / 2, ln(1 +
+ * f) = f - (f^2 / 2 - s (f^2 / 2 + R)): the greatest term of this sum is exact. */
 static double ln_of_parts(double f, int k, double more) {
   static const double series[] = {2.0 / 3,  2.0 / 5,  2.0 / 7,  2.0 / 9,  2.0 / 11, 2.0 / 13,
                                   2.0 / 15, 2.0 / 17, 2.0 / 19, 2.0 / 21, 2.0 / 23};
@@ -131,7 +131,7 @@ double hl_log1p(double x) {
   int k;
   if (!has_logarithm(sum, &value)) return value;
   if (fabs(x) < 0.25) return x == 0 ? x : ln_of_parts(x, 0, 0);
-  /* the sum is rounded; what it lacks is part of the argument */
+  /* the sum is rounded; its rounding error becomes part of the argument */
   double lacking = x > 1 ? 1 - (sum - x) : x - (sum - 1), f = centred_mantissa(sum, &k);
   return ln_of_parts(f, k, lacking / sum);
 }
@@ -247,8 +247,8 @@ static double small_sine(double r) {
   return r + r * square * polynomial(series, 8, square);
 }
 
-/* The cosine of abs(r) <= pi / 4. Derived: 1 - r^2 / 2 is rounded; what it lacks is added to the small terms.
- */
+/* The cosine of abs(r) <= pi / 4. Derived: 1 - r^2 / 2 is rounded, and the rounding error is added to the
+ * small terms. */
 static double small_cosine(double r) {
   /* (-1)^i / (2 i + 4)!, for i from 0 */
   static const double series[] = {1.0 / 24,
@@ -280,7 +280,8 @@ static void sine_and_cosine(double x, double *sine, double *cosine) {
     return;
   }
   double quarters = floor(x * (2 / HL_PI) + 0.5);
-  /* the first two products and the first difference are exact; what the second difference lacks is added */
+  /* the first two products and the first difference are exact; the rounding error of the second difference is
+   * added */
   double first = x - quarters * RIGHT_ANGLE[0], second = quarters * RIGHT_ANGLE[1], rest = first - second;
   rest += ((first - rest) - second) - quarters * RIGHT_ANGLE[2];
   turned(rest, (int64_t)quarters, sine, cosine);

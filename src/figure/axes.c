@@ -98,8 +98,8 @@ static void name_direction(const hl_overlay_place *place, const axis_names *name
   (void)place;
 }
 
-/* Moves a text along the picture's edge, from its middle to the nearest place that keeps clear of what is
- * taken. Where there is none, the text stays. along_x: the edge is the upper or the lower one. */
+/* Moves a text along the picture's edge, from its middle to the nearest place that keeps clear of other
+ * drawings. If there is no such place, the text stays. along_x: the edge is the upper or the lower one. */
 static void slide_clear(const hl_ink *ink, const hl_overlay_place *place, bool along_x,
                         hl_line_of_text *line) {
   const double length = along_x ? place->picture.width : place->picture.height;

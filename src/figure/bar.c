@@ -64,7 +64,7 @@ static hl_status add_volume(const hl_scene_volume *volume, const char *name, bar
 static hl_status find_unit(const hl_overlay_place *place, bar_unit *unit, hl_error *error) {
   const char *world_unit = place->overlay->world_unit;
   const hl_scene_volume *silent = NULL; /* a visible volume without a unit */
-  bar_unit stated = {0};                /* that of volumes whose files tell none */
+  bar_unit stated = {0};                /* the unit of volumes whose files state none */
   hl_status status = HL_OK;
   for (size_t v = 0; status == HL_OK && v < place->scene->volume_count; v++) {
     const hl_scene_volume *volume = &place->scene->volumes[v];

@@ -124,8 +124,8 @@ static void draw_row(legend *made, double left, const double color[3], const cha
   made->y += height;
 }
 
-/* Finds the colour and the name that the n-th row of a volume shows. Solid labels come before translucent
- * ones, which are often what lies around them. Returns false if the volume has fewer rows. */
+/* Finds the colour and the name of the n-th row of a volume. Solid labels come before translucent labels,
+ * since translucent labels often surround them. Returns false if the volume has fewer rows. */
 static bool row_of(const hl_scene_volume *volume, size_t n, const double **color,
                    char text[NUMBER_BYTES * 4]) {
   const size_t counts[2] = {volume->label_count, volume->mask.label_count};
@@ -173,8 +173,8 @@ static bool rows_fit(const legend *made, const hl_scene_volume *volume, double w
   return true;
 }
 
-/* The width of a volume's rows; 0 if it has none. It is at most the width that the legend's shape states, but
- * for words and rows that need more. */
+/* The width of a volume's rows; 0 if it has none. It is at most the width that the legend's shape states,
+ * unless words and rows need more. */
 static double width_of_rows(const legend *made, const hl_scene_volume *volume) {
   const double size = made->ink->size, beside = (swatch + gap) * size;
   double widest = 0, word = 0;
@@ -191,7 +191,8 @@ static double width_of_rows(const legend *made, const hl_scene_volume *volume) {
   return n > 0 ? fmin(most_wide(made), width) : 0;
 }
 
-/* In columns, begins the next column if something so high finds no room below what was drawn. */
+/* If the legend has columns, and the thing of this height finds no room in the current column, begins the
+ * next column. */
 static void make_room(legend *made, double height) {
   if (!made->place->legend.in_columns || made->y <= made->top || made->y + height <= made->bottom) return;
   made->right += made->body + column_gap * made->ink->size;
@@ -224,7 +225,7 @@ static void draw_rows(legend *made, const hl_scene_volume *volume) {
 
 /* ---- the strip ---- */
 
-/* Finds the values along a volume's strip: those that are visible, or those over which the colours go. */
+/* Finds the range of values along a volume's strip: the visible values, or the values of its colours. */
 static hl_status find_scale(const legend *made, const hl_scene_volume *volume, hl_strip_scale *scale,
                             hl_error *error) {
   const double *stated = made->place->overlay->legend_range;

@@ -101,8 +101,8 @@ static hl_status lay_annotation(const hl_overlay_place *place, const hl_annotati
   return HL_OK;
 }
 
-/* Finds the texts of all annotations: of those that state places in the picture first. The others keep clear
- * of them. lines: [annotation_count]. */
+/* Finds the texts of all annotations, first of annotations with a stated place in the picture. The others
+ * keep clear of them. lines: [annotation_count]. */
 static hl_status place_annotations(const hl_ink *ink, hl_overlay_place *place, hl_line_of_text *lines,
                                    hl_error *error) {
   const hl_overlay *overlay = place->overlay;
@@ -164,7 +164,7 @@ typedef struct corner_part {
   bool is_placed;
   hl_rectangle box; /* where the part lies before it is moved */
   double x, y;      /* the way that it is moved by, points */
-  double covered;   /* the area of what the picture shows that it covers, points squared */
+  double covered;   /* the area of the picture's matter that the part covers, in points squared */
   size_t left_out;  /* the number of a legend's rows that find no room */
 } corner_part;
 
@@ -304,8 +304,8 @@ static hl_status place_part(const hl_ink *ink, hl_overlay_place *place, const hl
 
 enum { PARTS = 3, LEGEND = 2 };
 
-/* Places all parts in one order, those that have asked for corners first. legend_first: whether the legend
- * comes before the others. */
+/* Places all parts in one order, first the parts with a given corner. legend_first: whether the legend comes
+ * before the others. */
 static hl_status place_in_order(const hl_ink *ink, hl_overlay_place *place, const hl_cover *cover,
                                 corner_part parts[PARTS], bool legend_first, hl_error *error) {
   hl_status status = HL_OK;
@@ -481,8 +481,9 @@ hl_status hl_overlay_strip(const hl_ink *ink, const hl_overlay *overlay, const h
       .legend = {.width = column_width * size, .strip_height = column_strip * size, .in_columns = true}};
   hl_rectangle box = {0};
   hl_status status;
-  do { /* higher columns are fewer, until one of them holds all: its highest part leaves at most so much over
-        */
+  do {
+    /* Higher columns are fewer. The height grows by a line until the columns fit into the strip, or until one
+     * column holds all rows. */
     place.legend.height += line;
     status = find_box(ink, &place, hl_overlay_legend, &box, error);
   } while (status == HL_OK && box.left + box.width > strip.left + strip.width - place.margin &&

@@ -49,7 +49,7 @@ hl_status hl_overlay_strip(const hl_ink *ink, const hl_overlay *overlay, const h
                            hl_rectangle strip, bool draws, double *height, hl_error *error);
 
 /* Places a text beside a point on the page: to the right of it (the usual place), to the left, below or
- * above. The first place that keeps clear of what is taken is chosen, or else the usual one. apart: the
+ * above. The first place that keeps clear of other drawings is chosen, or else the usual one. apart: the
  * distance from the point, points. */
 hl_line_of_text hl_overlay_beside(const hl_ink *ink, const hl_taken *taken, hl_line_of_text text,
                                   double apart);

@@ -1,8 +1,7 @@
-/* figure/places.c - finds where the parts of an overlay lie over a picture: the legend, the scale bar, the
- * arrows and the texts.
- *
- * In: what the picture shows, what is taken already, and boxes in which a part could lie. Out: the best of
- * these boxes. All parts follow this one rule, and differ only in the boxes that they try. */
+/* figure/places.c - finds the places of the parts of an overlay on a picture: the legend, the scale bar, the
+ * arrows and the texts. In: the matter that the picture shows, the boxes of other drawings, and boxes in
+ * which a part could lie. Out: the best of these boxes. All parts follow this one rule, and differ only in
+ * the boxes that they try. */
 #include "figure/places.h"
 
 #include <math.h>

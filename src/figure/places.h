@@ -55,13 +55,13 @@ double hl_free_height(const hl_taken *taken, hl_rectangle column);
 
 /* ---- the search ---- */
 
-/* The search for the place of one part. Among the boxes that are tried, those count that lie within the
- * picture and keep clear of what is taken. The best of them covers the least of what the picture shows, and
- * of several such boxes it is the nearest to the part's usual place. */
+/* The search for the place of one part. Boxes that are tried count only if they lie within the picture and
+ * keep clear of other drawings. The best box covers the least of the picture's matter. If several boxes cover
+ * as little, the one nearest to the part's usual place is the best. */
 typedef struct hl_search {
   const hl_taken *taken;
   const hl_cover *cover; /* null if the part may cover anything, as a text beside its point may */
-  double rim;            /* the distance that the part keeps from what is taken, points */
+  double rim;            /* the distance that the part keeps from other drawings, points */
   double unit;           /* the area by which covered areas are counted, points squared, above 0 */
   bool found;            /* whether any box counts */
   hl_rectangle box;      /* the best box */
@@ -73,8 +73,8 @@ typedef struct hl_search {
 bool hl_search_try(hl_search *search, hl_rectangle box, double far);
 
 /* Tries boxes along one edge of the picture, from the usual box to another one at the same edge: at equal
- * steps, and where a box touches something that is taken. step: the greatest distance of neighbouring boxes,
- * points. */
+ * steps, and at the places where a box touches another drawing. step: the greatest distance of neighbouring
+ * boxes, points. */
 void hl_search_edge(hl_search *search, hl_rectangle usual, hl_rectangle other, double step);
 
 /* Tries boxes along all four edges of the picture, in the same way, all as far from the edges as the usual

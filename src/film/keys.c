@@ -163,9 +163,9 @@ static bool find_side(const double from[3], const double to[3], double side[3]) 
   return false;
 }
 
-/* A direction on the great circle from one to another. Its length goes from theirs to theirs. Returns false
- * if the directions are the same, or if one of them is no direction: what lies between them is then on the
- * line. */
+/* Finds a direction on the great circle from one direction to another. Its length is between their lengths.
+ * Returns false if the directions are the same, or if one of them has no length. The result must then be on
+ * the line between them. */
 static bool turn_between(const double a[3], const double b[3], double part, double between[3]) {
   const double lengths[2] = {sqrt(dot(a, a)), sqrt(dot(b, b))};
   double from[3], to[3], side[3];

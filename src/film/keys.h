@@ -30,7 +30,8 @@ typedef struct film_key {
 hl_status film_key_read(const char *text, double frames_per_second, film_key *key, hl_error *error);
 void film_key_release(film_key *key);
 
-/* Finds the value of a key at a frame. value: its components, and 0 for those that it does not have. */
+/* Finds the value of a key at a frame. value: the key's components; components that the key does not have are
+ * 0. */
 void film_key_value(const film_key *key, int frame, double value[3]);
 
 #endif

@@ -285,9 +285,9 @@ static size_t shorter_beginning(const char *list, size_t below) {
   return below;
 }
 
-/* Makes the scene of the channel that a list begins with. A name may hold commas of its own: of all
- * beginnings of the list the longest one that names a channel counts. If none does, the error is that of the
- * shortest one. *length: the length of the name. */
+/* Makes the scene of the channel that a list begins with. The name of a channel may hold commas. The longest
+ * beginning of the list that is a channel's name counts. If there is none, the error is that of the shortest
+ * beginning. *length: the length of the name. */
 static hl_status add_first(channel_scenes *made, const char *list, size_t *length, hl_error *error) {
   hl_status status;
   char name[HL_CHANNEL_NAME_BYTES];

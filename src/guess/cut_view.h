@@ -4,10 +4,10 @@
 
 #include <halflight/scene.h>
 
-/* Turns a view of a volume towards the faces that its clip box and its last `count` cuts leave. The azimuth
- * becomes the one, among those that stand by its own angle beside one of the four axes, at which the eye and
- * the key light see the faces least obliquely. Where the faces look up or down, the eye goes at least 35
- * degrees up or down. */
+/* Turns a view of a volume towards the faces that its clip box and its last `count` cuts leave. The view's
+ * azimuth is an angle beside one of the four axes. Of the four azimuths with this angle, the function chooses
+ * the one at which the eye and the key light see the faces least obliquely. If the faces look up or down, the
+ * eye goes at least 35 degrees up or down. */
 void hl_view_turn_to_cuts(const hl_scene_volume *volume, size_t count, hl_view *view);
 
 #endif

@@ -159,9 +159,9 @@ static const double *channel_window(const hl_volume *volume) {
   return window != NULL && window[0] < window[1] ? window : NULL;
 }
 
-/* Narrows the visible values of a function to the window of a channel: what the file shows black is clear,
- * and what it shows at full brightness is fully opaque. Ends of the window beyond the visible values change
- * nothing, because many files state the whole range of their type. */
+/* Narrows the visible values of a function to the window of a channel. Values that the file shows black
+ * become transparent, and values that it shows at full brightness become opaque. Ends of the window beyond
+ * the visible values change nothing, because many files state the whole range of their type. */
 static hl_status narrow(hl_context *context, const hl_volume *volume, hl_transfer_function *function,
                         hl_error *error) {
   const double *window = channel_window(volume);

@@ -8,8 +8,8 @@
 /* The planes of values by which a field's level is moved. Each plane has one value for each cell of 2x2x2
  * voxels. HL_LEVEL_FACES: the number of the border's faces; each counts twice, once from each side.
  * HL_LEVEL_VALUE: the sum of the field on these faces. HL_LEVEL_FALL: the sum of the field's fall across
- * these faces. HL_LEVEL_VOXELS: the number of the label's voxels. HL_LEVEL_THIN: the number of those that are
- * a part of it that is one voxel thin. */
+ * these faces. HL_LEVEL_VOXELS: the number of the label's voxels. HL_LEVEL_THIN: the number of the label's
+ * voxels in its parts that are one voxel thin. */
 enum { HL_LEVEL_FACES, HL_LEVEL_VALUE, HL_LEVEL_FALL, HL_LEVEL_VOXELS, HL_LEVEL_THIN, HL_LEVEL_PLANES };
 
 /* Working space of hl_label_level(). */

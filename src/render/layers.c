@@ -136,8 +136,8 @@ static float object_at(const layer_grid *grid, const float *pixels, int column, 
                                             : 0;
 }
 
-/* The object that most of the frame's pixels within one pixel of the picture show. Pixels that show no object
- * do not count. If several objects tie, the one with the least number is chosen. */
+/* The object that most pixels of the frame within one pixel of the picture show. Pixels without an object do
+ * not count. If several objects show in equally many pixels, the object with the least number is chosen. */
 static float object_of(const layer_grid *grid, const float *pixels, int column, int row) {
   int side = grid->oversampling, most = 0;
   float object = 0;

@@ -1,9 +1,7 @@
-/* server/matter.c - keeps what the newest picture of a page shows, for the overlays of this page.
- *
- * An overlay keeps clear of the matter in the picture, and therefore needs the opacities of the picture. The
- * page has this picture made before it asks for the overlay. The opacities are kept with the text of the
- * scene, so that the overlay of this scene needs no renderer of its own, which would prepare the volumes once
- * more. */
+/* server/matter.c - keeps the opacities of the newest picture of each page, for the page's overlays. An
+ * overlay keeps clear of the matter in the picture, and therefore needs the opacities. The page has this
+ * picture made before it asks for the overlay. The opacities are kept with the text of the scene, so that the
+ * overlay of this scene needs no renderer of its own, which would prepare the volumes once more. */
 #define _GNU_SOURCE
 #include <stdlib.h>
 #include <string.h>

@@ -288,11 +288,12 @@ bool read_triple(const char *text, double numbers[3]);
 hl_status render_depth(server_page *page, const hl_scene *scene, server_answer *answer, hl_error *error);
 
 /* matter.c */
-/* Keeps what a picture at rest shows. */
+/* Keeps the opacities of a picture at rest. */
 void matter_keep(server *s, server_page *page, const frame_request *request, const hl_image *image);
 void matter_forget(server_page *page); /* the caller must hold server.pages_lock */
-/* Finds what the page whose lane requests an overlay has been shown of the overlay's scene. Returns an image
- * of opacities that the caller owns; null if this scene is not the one of the page's newest picture. */
+/* Finds the opacities that the page, whose lane requests an overlay, has been shown of the overlay's scene.
+ * Returns an image of opacities that the caller owns; null if this scene is not the scene of the page's
+ * newest picture. */
 hl_image *matter_find(server *s, const frame_request *request);
 
 /* pictures.c */

@@ -1,9 +1,8 @@
-/* volume/beyond.h - voxels out of sight, which are interpolated in a coarser resolution of the same data in
- * place of being read.
- *
- * In: a coarser volume, and the planes around what a picture sees. Out: which boxes of voxels are seen, and
- * rows of the other voxels. Voxels that are seen, and those within HL_BEYOND_REACH of them, are never
- * interpolated: no kernel, gradient or smoothing of a seen place takes a voxel that lies out of sight. */
+/* volume/beyond.h - voxels out of sight. They are not read, but interpolated in a coarser resolution of the
+ * same data. In: a coarser volume, and the planes around the part that a picture sees. Out: which boxes of
+ * voxels are seen, and rows of the other voxels. Voxels that are seen, and voxels within HL_BEYOND_REACH of
+ * them, are never interpolated: no kernel, gradient or smoothing of a seen place takes a voxel that lies out
+ * of sight. */
 #ifndef HL_VOLUME_BEYOND_H
 #define HL_VOLUME_BEYOND_H
 
@@ -16,8 +15,9 @@ enum { HL_BEYOND_REACH = 4 }; /* in voxels */
 typedef struct hl_beyond {
   const hl_volume *coarse; /* borrowed; null if everything is seen */
   hl_voxel_type type;      /* of the voxels in the file */
-  double planes[4][4]; /* the planes around what is seen, in indices of the grid; inside where a i + b j + c k
-                        * + d >= 0 */
+  /* the planes around the part that is seen, in indices of the grid; a point is inside if a i + b j + c k + d
+   * >= 0 */
+  double planes[4][4];
   double first[3], step[3]; /* index in `coarse` = first + step * index in the grid, along each axis */
 } hl_beyond;
 

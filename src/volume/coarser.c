@@ -204,8 +204,8 @@ static hl_status make_coarser(const hl_volume *volume, hl_coarser_kind kind, boo
   return status;
 }
 
-/* Makes the walls of a coarser mesh of cells. Matter rises across a wall over the distance of one voxel, and
- * so over twice the distance where the depths that are kept go so far. */
+/* Makes the walls of a coarser mesh of cells. Matter rises across a wall over the distance of one voxel. If
+ * the depths that are kept reach twice as far, it rises over twice the distance. */
 static hl_status coarsen_wall(const hl_volume *volume, hl_volume *made, hl_error *error) {
   const hl_volume *wall = volume->wall;
   if (wall == NULL) return HL_OK;

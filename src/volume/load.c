@@ -339,7 +339,8 @@ static hl_status check_series(const hl_load_request *request, const char *path, 
                  path);
 }
 
-/* Gives the volume what the reader has found, such as the list of arrays, and warns about default choices. */
+/* Gives the volume the facts that the reader has found, such as the list of arrays, and warns about default
+ * choices. */
 static hl_status finish(hl_load_request *request, const char *path, hl_status status, hl_volume **volume,
                         hl_error *error) {
   if (status == HL_OK) {

@@ -98,8 +98,8 @@ static const cli_option animate_options[ANIMATE_OPTION_COUNT] = {
          .help = "keep the pictures, in a folder beside the film, named\nlike it with \"-frames\""},
 };
 
-/* Returns whether this command has an option of `render`. It has the options that decide what is shown, and
- * in which way. */
+/* Returns whether this command has an option of `render`. It has all options of the content and the look of
+ * pictures. */
 static bool has_render_option(size_t row) { return !render_is_of_picture((enum render_option)row); }
 
 /* One run. */

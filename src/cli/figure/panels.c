@@ -115,8 +115,8 @@ static int add_value(const page_reading *reading, figure_panel *panel, int which
               name);
 }
 
-/* Refuses a key of a panel. The words for a panel's data mean "input"; others mean what they mean as
- * options. */
+/* Refuses a key that no panel has. For the words of a panel's data, the message names "input"; for other
+ * words, the option of the same meaning. */
 static int refuse_key(const page_reading *reading, const char *key, const char *name) {
   static const char *const data[] = {"file", "scene", "volume", "data", "path", "source", "render", "image"};
   const char *meant = NULL;

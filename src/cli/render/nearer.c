@@ -47,8 +47,8 @@ static int take_camera(cli_host *host, const hl_scene *first, hl_scene **scene) 
   return EXIT_CODE_OK;
 }
 
-/* Notes what the first scene's camera sees. Label maps are read whole, since numbers between two labels are
- * other labels. */
+/* Notes the part of the scene that the first scene's camera sees. Label maps are read whole, since numbers
+ * between two labels are other labels. */
 static void note_seen_part(cli_host *host, const hl_scene *first) {
   const hl_scene_description *description = hl_scene_describe(first);
   const hl_scene_volume *volume = &description->volumes[0];

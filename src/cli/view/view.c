@@ -38,8 +38,8 @@ static const cli_option view_options[VIEW_OPTION_COUNT] = {
          .help = "print the URL, and open no browser (default: one is\nopened where there is a screen)"},
 };
 
-/* Returns whether this command has an option of `render`. It has the options that decide what is shown, and
- * in which way, except the options that the page sets itself. */
+/* Returns whether this command has an option of `render`. It has all options of the content and the look of
+ * pictures, except the options that the page sets itself. */
 static bool has_render_option(size_t row) {
   switch ((enum render_option)row) {
     case RENDER_SIZE:

@@ -39,9 +39,9 @@ hl_status hl_transfer_function_visible_range(const hl_volume *volume, const hl_t
   return HL_OK;
 }
 
-/* The range of values over which a transfer function grades what it shows. In pictures with light, it is the
- * visible range. In a maximum projection, where opacity only says whether a value counts, it goes from the
- * value of the first colour to the value of the last one; if these are the same, it is the visible range. */
+/* The range of values that a transfer function grades. In pictures with light, it is the visible range. In a
+ * maximum projection, where opacity only says whether a value counts, it goes from the value of the first
+ * colour to the value of the last one; if these are the same, it is the visible range. */
 static hl_status graded_range(const hl_volume *volume, const hl_transfer_function *function, bool projected,
                               double range[2], hl_error *error) {
   const size_t count = function->color_count;

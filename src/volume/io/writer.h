@@ -34,8 +34,9 @@ typedef struct hl_writer {
    * dimensions, type, origin, axes, space. */
   hl_status (*make_header)(const char *path, const hl_volume_description *grid, hl_written_header *header,
                            hl_error *error);
-  const char *loses; /* what the format cannot state of the grid's place: "space"; "origin", with the
-                      * directions and the space; "place", which is all; null if there is nothing */
+  /* the parts of the grid's place that the format cannot state: "space"; "origin", with the directions and
+   * the space; "place", which is everything; null if the format states all */
+  const char *loses;
   const char *units; /* units of length that the format can state, separated by '|'. Lengths in other units
                       * are converted to the first of them. Null if the format states no units; then lengths
                       * are written as they are */
