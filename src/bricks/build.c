@@ -260,7 +260,7 @@ static hl_status make_directory(hl_context *context, const hl_bricks_source *sou
   return HL_OK;
 }
 
-/* ---- the whole ---- */
+/* ---- all steps together ---- */
 
 /* Turns bricks of equal coefficients into constants of the directory, and closes the gaps that they leave in
  * the pool. */

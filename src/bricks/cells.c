@@ -440,7 +440,7 @@ static hl_bricks_choice choose(void *data, int level, const size_t brick[3]) {
                                      : HL_BRICKS_LEAF;
 }
 
-/* ---- the whole ---- */
+/* ---- all steps together ---- */
 
 static hl_status build(cell_field *field, hl_pool *pool, hl_bricks *bricks, hl_cells_wall *wall,
                        hl_error *error) {

@@ -380,7 +380,7 @@ static hl_status find_difference(const hl_patches *patches, hl_pool *pool, const
   return status;
 }
 
-/* ---- the whole ---- */
+/* ---- all steps together ---- */
 
 hl_status hl_patches_build(hl_patches *patches, hl_pool *pool, const char *subject, hl_bricks *bricks,
                            double *difference, hl_error *error) {

@@ -112,7 +112,7 @@ int ranks_begin(cli_host *host, const char *option, hl_ranks **ranks) {
   return EXIT_CODE_OK;
 }
 
-/* ---- whether all make the same picture ---- */
+/* ---- tests that all ranks make the same picture ---- */
 
 /* Adds a scene's text without the names of files, which may differ from machine to machine. */
 static uint64_t add_text(uint64_t hash, const char *text) {

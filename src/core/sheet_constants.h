@@ -96,7 +96,7 @@
 #define SAME_RAMP   1.2f
 #define OTHER_LAYER 1.6f
 
-/* ---- what lies between a face of a box and the slab ---- */
+/* ---- the matter between a face of a box and the slab ---- */
 
 /* The number of pixels of the shadow buffer that lie around a position. A look-up between pixels uses them.
  */

@@ -59,7 +59,7 @@ static FILE *make_list(const curl_transfer *transfers, size_t count, uint64_t mo
   return NULL;
 }
 
-/* ---- what curl says ---- */
+/* ---- curl's reports ---- */
 
 /* Copies a line without its end. Returns false if it is too long or has unprintable bytes. */
 static bool copy_line(const char *line, char *text, size_t size) {

@@ -141,7 +141,7 @@ void hl_surface_links_find(const surfaces *all, const field_lattice *lattice, in
   hl_pool_run(pool, FIELD_LINKS, find_kind, &lines);
 }
 
-/* ---- what is seen ---- */
+/* ---- the part that is seen ---- */
 
 static void mark_point(void *data, const double at[3]) {
   opacity_field *field = data;

@@ -33,7 +33,7 @@ typedef struct legend {
                 * also of a title; points */
 } legend;
 
-/* ---- what a volume has ---- */
+/* ---- a volume's rows in the legend ---- */
 
 static bool has_strip(const hl_scene_volume *volume) {
   const hl_transfer_function *function = &volume->transfer_function;
@@ -254,7 +254,7 @@ static hl_status draw_strip(legend *made, const hl_scene_volume *volume, hl_erro
   return HL_OK;
 }
 
-/* ---- the whole ---- */
+/* ---- all steps together ---- */
 
 /* Widens the legend's body to a volume's strip and rows. */
 static hl_status widen_body(legend *made, const hl_scene_volume *volume, bool first, hl_error *error) {

@@ -8,7 +8,7 @@
 
 #include "core/memory.h"
 
-/* ---- what the picture shows ---- */
+/* ---- the matter in the picture ---- */
 
 enum { MOST_CELLS = 512 }; /* along a side of the grid */
 
@@ -98,7 +98,7 @@ hl_rectangle hl_rectangle_in_corner(hl_rectangle box, hl_rectangle picture, bool
   return box;
 }
 
-/* ---- what is taken ---- */
+/* ---- the places that other drawings take ---- */
 
 void hl_take(hl_taken *taken, hl_rectangle box) {
   if (taken->count < HL_MOST_TAKEN) taken->boxes[taken->count++] = box;

@@ -7,7 +7,7 @@
 
 #include "figure/map.h"
 
-/* ---- what the picture shows ---- */
+/* ---- the matter in the picture ---- */
 
 /* How opaque the picture is, in the cells of a grid over it. */
 typedef struct hl_cover {
@@ -38,7 +38,7 @@ hl_rectangle hl_rectangle_widened(hl_rectangle box, double rim);
  * distance from the right edge. down: the same for the upper and the lower edge. */
 hl_rectangle hl_rectangle_in_corner(hl_rectangle box, hl_rectangle picture, bool across, bool down);
 
-/* ---- what is taken ---- */
+/* ---- the places that other drawings take ---- */
 
 enum { HL_MOST_TAKEN = 128 };
 

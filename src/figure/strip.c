@@ -203,7 +203,7 @@ static double draw_numbers(const hl_ink *ink, const hl_strip_scale *scale, doubl
   return widest + (tick + gap) * ink->size;
 }
 
-/* ---- the whole ---- */
+/* ---- all steps together ---- */
 
 double hl_strip_width(const hl_ink *ink, const hl_strip_scale *scale, double height) {
   return draw_numbers(ink, scale, 0, height, 0, false) +

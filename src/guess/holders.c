@@ -396,7 +396,7 @@ static hl_status find_planes(search *s, double level, hl_error *error) {
   return status;
 }
 
-/* ---- the whole ---- */
+/* ---- all steps together ---- */
 
 static void set_out(search *s, affine3 index_to_world) {
   double step = (double)s->seen->step, middle = (step - 1) / 2;

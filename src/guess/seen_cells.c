@@ -235,7 +235,7 @@ static hl_status forget_specks(hl_seen *seen, hl_error *error) {
   return status;
 }
 
-/* ---- what holds a patient ---- */
+/* ---- things that hold a patient ---- */
 
 /* Returns whether there is one body of a patient, and all other bodies are head rests, straps or a table. */
 static bool has_holder(const hl_bodies *bodies) {
@@ -290,7 +290,7 @@ static void mark_beside(hl_seen *seen) {
         if (seen->kind[cell] == HL_SEEN) mark_neighbours(seen, i, j, k);
 }
 
-/* ---- the whole ---- */
+/* ---- all steps together ---- */
 
 /* Finds the voxels whose centres lie inside the volume's box. */
 static bool find_range(const hl_scene_volume *volume, hl_seen *seen) {

@@ -115,7 +115,7 @@ static void write_obj(const mesh_writing *w) {
   }
 }
 
-/* ---- the whole ---- */
+/* ---- all steps together ---- */
 
 static const struct {
   const char *ending;

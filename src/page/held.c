@@ -165,7 +165,7 @@ static hl_status hold_images(held_scene *held, hl_scene_description *d, hl_error
   return status;
 }
 
-/* ---- the whole ---- */
+/* ---- all steps together ---- */
 
 static hl_status begin(held_scene *held, const hl_scene_description *d, hl_error *error) {
   held->room = 3 * d->volume_count + 2 * d->light_count + 1;

@@ -15,7 +15,7 @@
 
 enum { AROUND = 3 }; /* number of voxels, on each side of the visible voxels, that kernels and normals read */
 
-/* ---- what a value shows ---- */
+/* ---- the opacity of a value ---- */
 
 static bool has_opacity_at(const hl_transfer_function *function, double value) {
   const hl_opacity_point *point = function->opacity;
@@ -109,7 +109,7 @@ static void find_ends(const hl_scene_volume *volume, const plane_range *planes, 
   *end = last + 1 + AROUND < count ? last + 1 + AROUND : count;
 }
 
-/* ---- the whole ---- */
+/* ---- all steps together ---- */
 
 static bool stays_whole(const hl_scene_description *d, const hl_scene_volume *volume) {
   if (d->render.kernel == HL_KERNEL_INTERPOLATING) return true;

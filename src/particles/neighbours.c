@@ -191,7 +191,7 @@ static float search_one(search *s, size_t n, float bound) {
   return sqrtf(s->bound);
 }
 
-/* ---- all of a leaf ---- */
+/* ---- the neighbours of all particles of a leaf ---- */
 
 /* All particles that may be neighbours of a leaf's particles. */
 typedef struct crowd {

@@ -112,7 +112,7 @@ bool hl_layers_measure(const hl_layers *wanted);
  * parts before. */
 hl_status hl_plan_lights(hl_context *context, frame_plan *plan, hl_error *error);
 
-/* ---- what light reaches ---- */
+/* ---- the tiles that light reaches ---- */
 
 /* Returns whether a slab lies beyond a light, on the side to which the light's rays travel in this sweep. */
 static inline bool hl_is_beyond(const sheet_stack *sheets, const light_source *source, int sheet) {

@@ -86,7 +86,8 @@ typedef struct light_image {
 
 static light_image image_of(const view *eye, const light_source *source) {
   double rows[3][4], at[3];
-  if (source == NULL) return (light_image){0, 1, 0}; /* without such a light, the lines are rows of pixels */
+  if (source == NULL)
+    return (light_image){0, 1, 0}; /* without a light, the lines that parts share are rows of pixels */
   vec3 p = source->parallel ? source->direction : source->position;
   hl_view_homogeneous(eye, affine3_identity(), rows);
   for (int i = 0; i < 3; i++)

@@ -261,7 +261,7 @@ void hl_sweep_end(sweep *sweep) {
   hl_release(context, sweep->arrays.memory);
 }
 
-/* ---- what is counted ---- */
+/* ---- the counts of work ---- */
 
 void hl_sweep_count(const sweep *sweep, hl_render_statistics *statistics) {
   double fill = 0, shade = 0, light = 0, composite = 0;

@@ -94,7 +94,7 @@ static void light_task(void *data, size_t index, int worker) {
   stretch_task(data, (size_t)sweep->loop.task_start[1] + index, worker);
 }
 
-/* ---- what all tiles of a slab have in common ---- */
+/* ---- work that all tiles of a slab share ---- */
 
 static void reach_picture(sweep *sweep) {
   const sheet_stack *sheets = &sweep->geometry->sheets;

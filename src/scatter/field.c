@@ -171,7 +171,7 @@ static void write_key(const void *data, hl_key *key) {
     add_light(key, &scene->scene->lights[l], scene->sun_parts[l]);
 }
 
-/* ---- the whole ---- */
+/* ---- all steps together ---- */
 
 /* The arrays of one colour channel. */
 typedef struct channel {

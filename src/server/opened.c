@@ -120,7 +120,7 @@ char *describe_refinement(const server_opened *opened) {
   return NULL;
 }
 
-/* ---- what a thread in the background does for each scene ---- */
+/* ---- the work of the background thread for each scene ---- */
 
 typedef struct preparation {
   server *server;

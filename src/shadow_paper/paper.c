@@ -314,7 +314,7 @@ static void advance_paper(light_shadow *shadow, const occupancy *occupancy, int 
   (void)pass_sheet(shadow->state, shadow->setup.sheets, sheet, shadow);
 }
 
-/* ---- what a part needs ---- */
+/* ---- the pixels that a part of the picture needs ---- */
 
 /* Raises a tile's value to the greatest value of four neighbouring tiles minus the edge of a tile. sign: 1
  * for the neighbours before the tile in the order of rows, -1 for the neighbours after it. */

@@ -5,7 +5,7 @@
 #include "surface/small_batch.h"
 #include "surface/sphere_coverage.h"
 
-/* ---- where it is seen ---- */
+/* ---- the places in a view ---- */
 
 /* a sphere that is seen has a front side, so `fronts` makes no difference */
 static bool see(const seen_surfaces *seen, uint32_t primitive, bool fronts, seen_bounds *bounds) {
@@ -19,7 +19,7 @@ static float lowest(const surfaces *all, const sheet_stack *sheets, uint32_t pri
   return (float)-INFINITY;
 }
 
-/* ---- sixteen at a time ---- */
+/* ---- sixteen spheres at a time ---- */
 
 /* Adds a sphere to a batch. Returns false if the scene's cuts may cut it, if it lets light pass, or if its
  * fragments may fill several slabs. */

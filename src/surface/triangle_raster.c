@@ -5,7 +5,7 @@
 #include "surface/small_batch.h"
 #include "surface/triangle.h"
 
-/* ---- where it is seen ---- */
+/* ---- the places in a view ---- */
 
 static bool see(const seen_surfaces *seen, uint32_t primitive, bool fronts, seen_bounds *bounds) {
   seen_polygon polygon;
@@ -32,7 +32,7 @@ static float lowest(const surfaces *all, const sheet_stack *sheets, uint32_t pri
   return (float)(height - sheets->first);
 }
 
-/* ---- sixteen at a time ---- */
+/* ---- sixteen triangles at a time ---- */
 
 /* Adds a triangle to a batch. Returns false if the view or the scene's cuts cut it. */
 static bool collect(const fragment_work *work, const tile_part *part, small_batch *batch,
@@ -66,7 +66,7 @@ static uint32_t cover_small(const surface_functions *functions, small_batch *bat
   return functions->cover_small(&batch->view, &batch->triangles, &batch->cover);
 }
 
-/* ---- one at a time ---- */
+/* ---- one triangle at a time ---- */
 
 /* A triangle's plane as a view sees it. */
 typedef struct seen_plane {

@@ -417,7 +417,7 @@ static hl_status save(saving *s, const char *path, hl_error *error) {
   return status;
 }
 
-/* ---- the whole ---- */
+/* ---- all steps together ---- */
 
 /* Checks the name of a file of bare voxels. It must state the size and type, as the file itself does not. */
 static hl_status check_raw_name(const saving *s, const char *path, hl_error *error) {

@@ -108,7 +108,7 @@ void web_release(void *room) { free(room); }
 
 double web_memory_held(void) { return (double)hl_context_memory_held(web.context); }
 
-/* ---- what is open ---- */
+/* ---- the open scene and its objects ---- */
 
 static void forget_renderers(void) {
   hl_renderer_destroy(web.renderer);

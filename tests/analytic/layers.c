@@ -385,7 +385,7 @@ static void test_sheets_against_reference(void **state) {
   stage_close(&set);
 }
 
-/* ---- what must not matter ---- */
+/* ---- changes that must not change the picture ---- */
 
 static void test_picture_stays(void **state) {
   (void)state;

@@ -287,7 +287,7 @@ static void test_light_of_fields(void **state) {
   }
 }
 
-/* ---- what stays whole ---- */
+/* ---- scenes that cuts leave whole ---- */
 
 /* One plane cuts two boards over a floor into halves. The first board and the floor are set not to be cut.
  * The eye sees the floor everywhere and the boards nowhere. By the sheets and by the reference, one board

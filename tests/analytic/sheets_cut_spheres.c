@@ -157,7 +157,7 @@ static void test_moved_cut(void **state) {
   mesh_stage_choose_shadows(&all, stage_add_directional(&all.set, vec3_scale(direction(30, 110), -1)), 0, 3);
   assert_int_equal(hl_renderer_create(all.set.context, &renderer, NULL), HL_OK);
   for (int step = 0; step < 4; step++) {
-    ball.cut.point[0] = step == 2 ? 40 : 0.3 + 3 * step; /* with 40 it cuts nothing */
+    ball.cut.point[0] = step == 2 ? 40 : 0.3 + 3 * step; /* a cut at 40 removes nothing */
     stage_render_sheets(&all.set, fresh);
     stage_render_with(&all.set, renderer, kept);
     assert_memory_equal(fresh, kept, sizeof fresh);

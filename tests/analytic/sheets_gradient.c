@@ -177,7 +177,7 @@ static double difference_inside(const float *a, const float *b) {
   return sqrt(sum);
 }
 
-/* ---- what the gradient hides casts no shadow within the matter either ---- */
+/* ---- matter that the gradient opacity hides casts no shadow within the matter ---- */
 
 /* A ramp with half of its extinction by gradient opacity and a ramp of half of the extinction give the same
  * picture, as a medium and as a surface, with light by every method. */

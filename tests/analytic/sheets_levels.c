@@ -371,7 +371,7 @@ static void test_holes(void **state) {
   stage_close(&set);
 }
 
-/* ---- what is refused ---- */
+/* ---- inputs that are refused ---- */
 
 static void assert_refused(const stage *set, const char *message) {
   hl_scene *scene = NULL;

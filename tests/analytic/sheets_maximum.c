@@ -136,7 +136,7 @@ static void test_blob(void **state) {
   }
 }
 
-/* ---- what the transfer function shows ---- */
+/* ---- the values that the transfer function shows ---- */
 
 /* If only a range of values is shown, the pixel has exactly the colour of the greatest value in the range,
  * whatever greater values the ray meets. */
@@ -279,7 +279,7 @@ static void test_noise_against_the_reference(void **state) {
   }
 }
 
-/* ---- what must not matter ---- */
+/* ---- changes that must not change the picture ---- */
 
 static double ridge_height, beside_ridge;
 

@@ -370,7 +370,7 @@ static void test_refused(void **state) {
   stage_close(&set);
 }
 
-/* ---- what does not depend on the second number ---- */
+/* ---- functions that do not depend on the second number ---- */
 
 static classifier classifier_of(stage *set, const hl_scene_volume *volume) {
   const grid grid = {.value_scale = 1, .empty = -36};

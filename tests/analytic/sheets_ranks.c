@@ -378,7 +378,7 @@ static void test_other_values(void **state) {
   }
 }
 
-/* ---- what is refused, on all ranks ---- */
+/* ---- calls that are refused on all ranks ---- */
 
 static void test_coefficients_refused(void **state) {
   (void)state;

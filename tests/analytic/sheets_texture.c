@@ -245,7 +245,7 @@ static void test_screen_edge_of_extended_lights(void **state) {
   stage_close(&set);
 }
 
-/* ---- what is not lit costs nothing ---- */
+/* ---- unlit matter costs no work ---- */
 
 static uint64_t tiles_filled_for_light(stage *set) {
   static float pixels[SIDE * SIDE * 4];

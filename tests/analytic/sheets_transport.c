@@ -269,7 +269,7 @@ static void test_lit_in_perspective(void **state) {
   stage_close(&set);
 }
 
-/* ---- what is not there, and what only some see ---- */
+/* ---- transparent volumes, and volumes that block some channels alone ---- */
 
 static void test_empty_function_gives_zero(void **state) {
   (void)state;

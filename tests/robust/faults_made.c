@@ -160,7 +160,7 @@ static hl_status make_adaptive(faulty *f, void *data, hl_error *error) {
   return status;
 }
 
-/* ---- what is made of volumes ---- */
+/* ---- things that are made of volumes ---- */
 
 /* A cube of voxels. labels: whether they are labels of three numbers; else they are a ball that fades out. */
 static hl_status cube(hl_context *context, size_t side, bool labels, hl_volume **volume, hl_error *error) {

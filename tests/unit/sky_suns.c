@@ -123,7 +123,7 @@ static void test_several(void **state) {
   }
 }
 
-/* ---- what is not a sun ---- */
+/* ---- bright spots that are no suns ---- */
 
 static void expect_none(hl_context *context, const hl_sky *sky) {
   sky_suns found = find(context, sky);

@@ -148,7 +148,7 @@ static void test_other_blocks_are_left_alone(void **state) {
   bench_close(&bench);
 }
 
-/* ---- what cells can reach, and which blocks matter ---- */
+/* ---- the values that cells can reach, and the blocks that matter ---- */
 
 enum { NOISE_SIDE = 14 };
 

@@ -158,7 +158,7 @@ int render_overlay_read(const cli_value *values, cli_overlay *overlay) {
   return exit_code;
 }
 
-/* ---- what goes together ---- */
+/* ---- options that go together ---- */
 
 int render_overlay_check_options(const cli_value *values, const char *path) {
   static const int drawn[] = {RENDER_SCALE_BAR, RENDER_LEGEND, RENDER_AXES, RENDER_MARKS, RENDER_ANNOTATE};

@@ -150,7 +150,7 @@ void series_release_files(series_job *job) {
   free(job->files.bad);
 }
 
-/* ---- what a file holds ---- */
+/* ---- a file's content ---- */
 
 /* Finds the options for reading a file. All files are read at the first file's resolution. They must have the
  * first file's anatomical space (check_space()). */

@@ -130,7 +130,7 @@ DEVICE float faded(GLOBAL const plan_light *light, const shadow_taps *taps, int 
   return younger;
 }
 
-/* ---- what the slab's own matter absorbs ---- */
+/* ---- the light that the slab's own matter absorbs ---- */
 
 /* exp(-x), also of negative x. */
 DEVICE float exp_of_depth(float x) { return exp_negative(greater(x, -40.0f)); }

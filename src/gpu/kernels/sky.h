@@ -197,7 +197,7 @@ DEVICE float light_of_medium(const sky_data *sky, const sky_place *place, int hi
   return greater(mean * (float)HARMONIC_0, 0.0f);
 }
 
-/* ---- what a sample sends on ---- */
+/* ---- the light that a sample scatters ---- */
 
 /* The length of the way along the normal from a sample to the outside of its surface, as way_to_outside() in
  * render/sky_lanes.h. */

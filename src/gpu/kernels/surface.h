@@ -110,7 +110,7 @@ DEVICE void find_cut_face(const volume_data *volume, slab_sample *s) {
   }
 }
 
-/* ---- where light comes from one surface into another ---- */
+/* ---- light that passes from one surface into another ---- */
 
 DEVICE float integral_to(GLOBAL const float *tables, float x) {
   float values[4];

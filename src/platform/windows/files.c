@@ -199,7 +199,7 @@ int hl_posix_isatty(int descriptor) {
   return GetConsoleMode(handle_of(descriptor), &mode);
 }
 
-/* ---- what is known of a file ---- */
+/* ---- the attributes of a file ---- */
 
 static struct timespec time_of(FILETIME time) {
   static const long long TICKS_TO_1970 = 116444736000000000, TICKS = 10000000; /* ticks: 100 ns since 1601 */

@@ -135,7 +135,7 @@ static vec3 point(const light_shape *shape, vec3 facing, double a, double b) {
   return vec3_add(vec3_scale(polygon.u, low), vec3_scale(polygon.v, y));
 }
 
-/* ---- the whole ---- */
+/* ---- all steps together ---- */
 
 static light_shape shape_of(const hl_light *light) {
   return (light_shape){.centre = hl_polygon_shape(light->vertices, light->vertex_count).centre,

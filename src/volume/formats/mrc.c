@@ -254,7 +254,7 @@ static hl_status push_nibbles(hl_stream **stream, const mrc_header *header, hl_e
   return HL_OK;
 }
 
-/* ---- the whole ---- */
+/* ---- all steps together ---- */
 
 static hl_status skip_extended_header(hl_stream *stream, const mrc_header *header, hl_error *error) {
   int64_t bytes = load_integer(header, AT_EXTENDED);

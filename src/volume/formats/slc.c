@@ -186,7 +186,7 @@ static hl_status push_runs(hl_stream **stream, const slc_header *header, hl_erro
   return HL_OK;
 }
 
-/* ---- the whole ---- */
+/* ---- all steps together ---- */
 
 static hl_status load(hl_stream **stream, hl_load_request *request, hl_volume **volume, hl_error *error) {
   slc_header header = {.bits = 0};

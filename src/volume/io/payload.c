@@ -408,7 +408,7 @@ static hl_status read_components(hl_stream *stream, const hl_payload *payload, h
   return HL_OK;
 }
 
-/* ---- the whole ---- */
+/* ---- all steps together ---- */
 
 /* Checks that the stream ends after the voxels. Trying to read one more byte also makes a decompressor verify
  * its checksum. */

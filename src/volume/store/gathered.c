@@ -147,7 +147,7 @@ static hl_status spread_once(hl_volume *map, hl_error *error) {
   return status;
 }
 
-/* ---- the whole ---- */
+/* ---- all steps together ---- */
 
 bool hl_volume_is_in_memory(const hl_volume *volume) {
   return volume->voxels != NULL || (volume->pages != NULL && hl_pages_are_sparse(volume->pages));

@@ -445,7 +445,7 @@ void hl_pages_spread(hl_pages *pages, void *voxels) {
   }
 }
 
-/* ---- what was stored ---- */
+/* ---- the stored voxels ---- */
 
 bool hl_pages_take_counts(hl_pages *pages, uint64_t *counts) {
   const size_t *n = pages->dimension;

@@ -387,7 +387,7 @@ static hl_status read_level(plotfile *file, int level, hl_error *error) {
   return status;
 }
 
-/* ---- the whole ---- */
+/* ---- all steps together ---- */
 
 /* Returns whether the folder has a Header of a plotfile. */
 static hl_status recognise(hl_bundle *bundle, bool *claimed, hl_error *error) {

@@ -326,7 +326,7 @@ static hl_status take(hl_dicom_reader *reader, const hl_dicom_element *element, 
   return status;
 }
 
-/* ---- what they come to ---- */
+/* ---- the results of reading a header ---- */
 
 static hl_status refuse(const hl_source *source, const char *what, hl_error *error) {
   return hl_fail(error, HL_ERROR_UNSUPPORTED, "%s: %s: convert it with gdcmconv or dcm2niix",

@@ -152,7 +152,7 @@ static hl_status read_one(void *data, size_t index, int worker, hl_error *error)
   return status;
 }
 
-/* ---- the whole ---- */
+/* ---- all steps together ---- */
 
 hl_status hl_dicom_name_segments(const hl_dicom_segments *segments, const int *layers, hl_volume *volume,
                                  hl_error *error) {

@@ -15,7 +15,7 @@
 
 static const char *const types[] = {"PolyData"};
 
-/* ---- what is particles ---- */
+/* ---- data sets that hold particles ---- */
 
 static bool are_particles(const hl_vtk_pieces *pieces) {
   bool found = false;
@@ -125,7 +125,7 @@ static hl_status read_pieces(hl_stream **stream, hl_vtk_pieces *pieces, hl_parti
   return status;
 }
 
-/* ---- the whole ---- */
+/* ---- all steps together ---- */
 
 static hl_status load(hl_stream **stream, hl_load_request *request, hl_volume **volume, hl_error *error) {
   hl_vtk_pieces pieces = {.context = request->context, .types = types, .type_count = 1};

@@ -198,7 +198,7 @@ hl_status hl_cell_mesh_set_values(hl_cell_mesh *mesh, const double *values, size
   return HL_OK;
 }
 
-/* ---- the whole ---- */
+/* ---- all steps together ---- */
 
 /* The fraction of matter rises from 0 to 1 over this distance across a wall; voxels. */
 static const double WALL_WIDTH = 1;

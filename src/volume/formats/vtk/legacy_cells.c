@@ -222,7 +222,7 @@ static hl_status make_volume(cells_file *cells, hl_volume **volume, hl_error *er
   return status;
 }
 
-/* ---- the whole ---- */
+/* ---- all steps together ---- */
 
 /* Reads the file from its start. lists: whether this is the first pass, which lists the arrays. */
 static hl_status read_pass(hl_stream **stream, cells_file *cells, bool lists, hl_error *error) {

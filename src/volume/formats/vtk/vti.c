@@ -435,7 +435,7 @@ static hl_status read_parts(const vti_header *header, hl_volume **volume, hl_err
   return status;
 }
 
-/* ---- the whole ---- */
+/* ---- all steps together ---- */
 
 /* Completes the list of pieces. A file without any Piece gets one, which has the whole extent. If there is
  * one piece, the whole extent becomes that of the piece, unless further pieces may have been cut off. */

@@ -114,7 +114,7 @@ static hl_status read_values(hl_stream **stream, grid_file *file, const hl_vtk_p
   return status;
 }
 
-/* ---- the whole ---- */
+/* ---- all steps together ---- */
 
 static hl_status choose(grid_file *file, hl_error *error) {
   hl_load_request *request = file->request;

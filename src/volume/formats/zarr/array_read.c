@@ -162,7 +162,7 @@ static hl_status read_version_3(const hl_zarr_reading *r, const json_t *node) {
   return status;
 }
 
-/* ---- the whole ---- */
+/* ---- all steps together ---- */
 
 /* Reads the names of the axes from the attribute into which xarray writes them in version 2. */
 static hl_status read_attributed_names(const hl_zarr_reading *r) {

@@ -240,7 +240,7 @@ static hl_status undo_filters(hl_zarr_unpacker *u, const unsigned char **voxels,
   return HL_OK;
 }
 
-/* ---- the whole ---- */
+/* ---- all steps together ---- */
 
 static hl_status read_packed(hl_zarr_unpacker *u, hl_source *source, uint64_t offset, size_t length,
                              hl_error *error) {

@@ -473,7 +473,7 @@ static hl_status read_from_server(reading *r, hl_pool *pool, hl_error *error) {
   return status;
 }
 
-/* ---- the whole ---- */
+/* ---- all steps together ---- */
 
 static void prepare(reading *r) {
   const hl_zarr_array *array = r->array;

@@ -261,7 +261,7 @@ static hl_status load_group(const hl_bundle *bundle, const char *folder, hl_load
   return status == HL_OK ? load_array(bundle, &array, request, volume, error) : status;
 }
 
-/* ---- the whole ---- */
+/* ---- all steps together ---- */
 
 static hl_status load_described(const hl_bundle *bundle, const char *folder, const json_t *ome,
                                 hl_load_request *request, hl_volume **volume, hl_error *error) {
