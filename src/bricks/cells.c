@@ -39,7 +39,7 @@ typedef struct cell_field {
   float *edges;          /* owned; [cell_count]; for each cell, the edge of a tetrahedron or cube with the
                           * same volume, in the world; 0 if the cell is left out */
   hl_cell_tree tree;
-  const hl_bricks *bricks; /* the field, once it is made */
+  const hl_bricks *bricks; /* the field, once its bricks are made */
   hl_cell_walls walls;
   hl_bricks_source source;
 } cell_field;

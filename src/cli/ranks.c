@@ -62,7 +62,7 @@ static bool limit_wait(void) {
 
 static void *stop_waiting(void *unused) {
   struct timespec left = {.tv_sec = join_wait.seconds};
-  while (nanosleep(&left, &left) != 0) continue; /* signals wake it early */
+  while (nanosleep(&left, &left) != 0) continue; /* a signal ends the sleep early */
   if (atomic_load(&join_wait.over)) return unused;
   if (join_wait.option != NULL)
     fail(join_wait.exit_code, "--%s: not all processes have joined within %ld seconds: give all of them --%s",

@@ -163,7 +163,7 @@ typedef struct corner_part {
   hl_corner usual, asked;
   bool is_placed;
   hl_rectangle box; /* where the part lies before it is moved */
-  double x, y;      /* the way that it is moved by, points */
+  double x, y;      /* the way by which the part is moved, in points */
   double covered;   /* the area of the picture's matter that the part covers, in points squared */
   size_t left_out;  /* the number of a legend's rows that find no room */
 } corner_part;
@@ -488,7 +488,7 @@ hl_status hl_overlay_strip(const hl_ink *ink, const hl_overlay *overlay, const h
     status = find_box(ink, &place, hl_overlay_legend, &box, error);
   } while (status == HL_OK && box.left + box.width > strip.left + strip.width - place.margin &&
            place.legend.height < box.height + 2 * place.legend.strip_height);
-  place.legend.height = fmax(place.legend.height, box.height); /* no column is lower than it may be */
+  place.legend.height = fmax(place.legend.height, box.height); /* no column is lower than the least height */
   if (status == HL_OK) status = find_box(ink, &place, hl_overlay_legend, &box, error);
   *height = box.height + 2 * place.margin;
   return status == HL_OK && draws ? hl_overlay_legend(ink, &place, error) : status;

@@ -65,7 +65,7 @@ typedef struct hl_search {
   double unit;           /* the area by which covered areas are counted, points squared, above 0 */
   bool found;            /* whether any box counts */
   hl_rectangle box;      /* the best box */
-  double covered;        /* the area that it covers, with the rim, in units */
+  double covered;        /* the area that the box covers, with its rim, in units */
   double far;            /* its distance from the usual place */
 } hl_search;
 

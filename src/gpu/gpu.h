@@ -64,7 +64,7 @@ typedef struct gpu_volume {
   const float *sums, *color, *shown;       /* [PLAN_TABLE_ROWS][4] */
   const float *outside, *bent, *steepness; /* [PLAN_TABLE_ROWS]; bent and steepness are null if there is no
                                             * such table */
-  gpu_mask mask;                           /* it belongs to tables_version */
+  gpu_mask mask;                           /* the mask; tables_version changes with it */
   const float *plane_sums, *plane_color;   /* [PLAN_PLANE_FLOATS]; null if the function is not one of two
                                             * numbers */
 } gpu_volume;

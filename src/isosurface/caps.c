@@ -313,7 +313,7 @@ static hl_status cap_cut(hl_pool *pool, const lattice *lattice, size_t cut, iso_
   cap_face face = {.cut = cut, .from_index = shape->to_shape, .sphere = shape->type == HL_CUT_SPHERE};
   hl_status status = HL_OK;
   if (shape->type == HL_CUT_PLANE) {
-    face.outward = -away; /* a plane's inside lies above it */
+    face.outward = -away; /* the inside of a plane lies above the plane */
     return place_plane(lattice->grid, shape, &face) ? cap_face_of(pool, lattice, &face, made, error) : HL_OK;
   }
   if (!affine3_invert(shape->to_shape, &face.to_index)) return HL_OK;

@@ -124,7 +124,7 @@ static hl_status read_curves(hl_json_reader *reader, const json_t *value, hl_fun
   return status;
 }
 
-/* ---- all of it ---- */
+/* ---- all steps together ---- */
 
 typedef hl_status read_shape(hl_json_reader *reader, const json_t *value, void *shape);
 

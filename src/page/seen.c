@@ -28,7 +28,7 @@ static bool has_opacity_at(const hl_transfer_function *function, double value) {
 
 static bool label_shows(const hl_scene_volume *volume, int64_t value) {
   size_t low = 0, high = volume->label_count;
-  while (low < high) { /* they rise by value */
+  while (low < high) { /* the labels are sorted by value */
     size_t middle = (low + high) / 2;
     if (volume->labels[middle].value < value) low = middle + 1;
     else high = middle;

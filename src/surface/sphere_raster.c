@@ -54,7 +54,7 @@ static bool has_dark_inside(const fragment_work *work, const float sphere[4], co
 /* One of the two sides of a sphere as a view sees it. */
 typedef struct seen_side {
   const sphere_rays *rays;
-  bool leaving; /* whether it is the side where rays leave the sphere */
+  bool leaving; /* whether this side is the one where rays leave the sphere */
 } seen_side;
 
 static vec3 point_of(const void *shape, double u, double v) {

@@ -151,7 +151,7 @@ bool hl_surface_tree_count(const surfaces *all, double distance, hl_layout *layo
   return true;
 }
 
-/* ---- making it ---- */
+/* ---- making the tree ---- */
 
 /* Stores the scene's cuts in the tree, because the tree's content depends on them. */
 static void keep_cuts(surface_tree *tree) {

@@ -39,7 +39,7 @@ static void range_of(size_t brick, size_t dimension, size_t *first, size_t *last
 #define BOUNDS_MOST       INFINITY
 #include "volume/brick_bounds_of.h"
 
-/* ---- for all of them ---- */
+/* ---- the bounds of all bricks ---- */
 
 bool hl_brick_bounds_create(hl_context *context, const size_t dimension[3], hl_storage storage,
                             hl_brick_bounds **bounds) {

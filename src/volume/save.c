@@ -47,7 +47,7 @@ typedef struct saving {
     unsigned char *row;    /* [grid.dimensions[0]] voxels of the written type */
     void *source_row;      /* a row of the volume's stored values, for volumes with pages */
     unsigned char *packed; /* [OUT_BYTES] */
-  } memory;                /* all of it is owned */
+  } memory;                /* all arrays are owned */
   uint64_t clamped, holes; /* number of voxels that lay beyond the type's range; number of voxels that are not
                             * finite and became 0 */
   z_stream stream;

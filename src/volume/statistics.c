@@ -72,7 +72,7 @@ typedef struct walk {
   size_t count, first, piece; /* number of all voxels; number of the current piece's first voxel; number of
                                * voxels in this piece */
   const void *voxels;         /* voxels of the current piece */
-  bool has_one_value;         /* whether all of them have one value */
+  bool has_one_value;         /* whether all voxels of the piece have one value */
   bool cancelled;
 } walk;
 

@@ -79,7 +79,7 @@ static hl_status save_path(faulty *f, void *path, hl_error *error) {
   if (status == HL_OK) status = hl_volume_save(f->context, volume, path, error);
   hl_volume_release(volume);
   if (status == HL_OK) assert_int_equal(unlink(path), 0);
-  assert_int_not_equal(access(path, F_OK), 0); /* the file is whole, or it is not there */
+  assert_int_not_equal(access(path, F_OK), 0); /* the file is whole, or there is no file */
   return status;
 }
 

@@ -198,7 +198,7 @@ static hl_status keep_mesh(faulty *f, hl_mesh *mesh, hl_error *error) {
   for (int n = 0; status == HL_OK && n < 3; n++) {
     snprintf(path, sizeof path, "%s/mesh.%s", folder, endings[n]);
     status = hl_mesh_save(f->context, mesh, path, error);
-    assert_int_equal(access(path, F_OK) == 0, status == HL_OK); /* the file is whole, or it is not there */
+    assert_int_equal(access(path, F_OK) == 0, status == HL_OK); /* the file is whole, or there is no file */
     unlink(path);
   }
   return status;

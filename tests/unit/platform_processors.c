@@ -64,7 +64,8 @@ static void test_version_2(void **state) {
   expect(INFINITY);
   write_file("/sys/fs/cgroup/kubepods/pod7/box/cpu.max", "250000 100000\n");
   expect(2.5);
-  write_file("/sys/fs/cgroup/kubepods/cpu.max", "80000 50000\n"); /* a group above it allows less */
+  /* a group above the process's group allows less */
+  write_file("/sys/fs/cgroup/kubepods/cpu.max", "80000 50000\n");
   expect(1.6);
   write_file("/sys/fs/cgroup/kubepods/pod7/box/cpu.max", "");
   expect(1.6);

@@ -425,7 +425,7 @@ static void looks_by_name(void **state) {
                        HL_OK);
       assert_int_equal(shading, shown->shading);
       const bool labelled = (kinds[n] == regions || kinds[n] == mask) &&
-                            l == 0; /* "auto" draws them by their labels, without a function */
+                            l == 0; /* "auto" draws a label map by its labels, without a function */
       assert_true((shown->label_count > 0) == labelled);
       if (!labelled) {
         assert_int_equal(f.opacity_count, shown->transfer_function.opacity_count);

@@ -158,7 +158,7 @@ static void clear_surroundings_stay_clear(void **state) {
   } cases[] = {
       {{100, 1000}, HL_SPREAD_ALONE, 100, 300},    /* a lower end shows fainter matter */
       {{100, 1000}, HL_SPREAD_COLORMAP, 300, 300}, /* a colormap begins there */
-      {{0, 1000}, HL_SPREAD_ALONE, 300, 300},      /* the range of all values chooses none of them */
+      {{0, 1000}, HL_SPREAD_ALONE, 300, 300},      /* the range of all values chooses no values */
       {{-1000, 1000}, HL_SPREAD_ALONE, -400, 300}, /* values of other files are less */
       {{0, 4000}, HL_SPREAD_COLORMAP, 1200, 300},  /* values of other files are greater */
       {{600, 1000}, HL_SPREAD_COLORMAP, 600, 300}, /* a higher end hides matter */

@@ -472,7 +472,7 @@ static void test_truncation_at_every_length(void **unused) {
   end_damage(&state);
 }
 
-/* One byte changed, at every place in turn. */
+/* One byte of the file is changed, at every place in turn. */
 static void mutate_sample(const volume_sample *sample, void *data) {
   damage_state *state = data;
   if (sample->type != HL_VOXEL_U16) return;

@@ -228,7 +228,8 @@ static void grain_is_smoothed_and_objects_stay_what_they_are(void **state) {
   assert_true(after.solid == before.solid && after.faint == before.faint);
   hl_volume_release(smoothed);
   hl_volume_release(volume);
-  for (int v = 0; v < COUNT; v++) values[v] = (float)noise(v % N, v / N % N, v / N / N); /* no object in it */
+  /* noise alone, without an object */
+  for (int v = 0; v < COUNT; v++) values[v] = (float)noise(v % N, v / N % N, v / N / N);
   volume = make(1);
   assert_int_equal(hl_data_analyse(volume, &after, NULL), HL_OK);
   assert_true(hl_smoothing_for(volume, NULL, &after) == 0);

@@ -22,7 +22,7 @@ typedef struct render_job {
     char **all; /* [count], null after the last */
     int count;
     char *first;
-    bool bare; /* it is a volume file */
+    bool bare; /* whether the input is a volume file */
   } input;
   char *output;         /* owned */
   bool to_stdout;       /* OUT is "-" */

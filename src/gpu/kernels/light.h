@@ -30,8 +30,9 @@ typedef struct slab_sample {
   float factor; /* the factor (matter_factor) that has multiplied extinction and the sums */
   float row;    /* as in matter_factor */
   float surface;
-  float behind; /* the distance, in voxels, of the matter from a face that cuts it and is shaded as a surface;
-                 * FACE_VOXELS if no such face is near */
+  /* the distance, in voxels, between the matter and a face that cuts the matter and is shaded as a surface;
+   * FACE_VOXELS if no such face is near */
+  float behind;
 } slab_sample;
 
 /* ---- the buffer's pixels around a sample ---- */

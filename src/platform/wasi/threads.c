@@ -94,7 +94,7 @@ int pthread_create(pthread_t *thread, const pthread_attr_t *attributes, void *(*
 int pthread_join(pthread_t thread, void **result) {
   helper *one = (helper *)thread;
   for (int state; (state = atomic_load(&one->state)) != RETURNED;) wait_while(&one->state, state);
-  if (result != NULL) *result = NULL; /* no caller asks for it */
+  if (result != NULL) *result = NULL; /* no caller asks for a thread's result */
   set_state(one, FREE);
   return 0;
 }

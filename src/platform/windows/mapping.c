@@ -16,7 +16,7 @@ static void *map_file(HANDLE file, size_t bytes, DWORD protection, DWORD access)
   if (mapping == NULL) return NULL;
   void *view = MapViewOfFile(mapping, access, 0, 0, bytes);
   DWORD error = GetLastError();
-  CloseHandle(mapping); /* the view keeps it */
+  CloseHandle(mapping); /* the view keeps the mapping open */
   SetLastError(error);
   return view;
 }

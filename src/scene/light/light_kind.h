@@ -16,7 +16,7 @@
 #include "scene/light/light_shape.h"
 
 struct light_kind {
-  /* ---- what it is ---- */
+  /* ---- the kind ---- */
   bool parallel; /* whether the light is infinitely far away, and has a direction instead of a
                   * position */
   bool sphere;   /* whether the light looks like a disk that faces the observer */

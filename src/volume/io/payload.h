@@ -14,7 +14,7 @@ typedef enum hl_trailing {
 /* Whether three or four components of a voxel are a colour. */
 typedef enum hl_payload_colors {
   HL_COLORS_WHERE_ASKED, /* the file does not say; they are colours if the caller asks for colours */
-  HL_COLORS_MEANT,       /* the file says that they are colours */
+  HL_COLORS_MEANT,       /* the file says that the values are colours */
   HL_COLORS_UNREAD       /* the reader cannot collect colours */
 } hl_payload_colors;
 
