@@ -90,14 +90,10 @@ LANES_INLINE lanes_int nears_edge(const run_cut *cut, lanes3 from, lanes3 to, fl
          (second > -FACE_VOXELS);
 }
 
-LANES_INLINE int hollows_out(const run_cut *cut) {
-  return cut->shape->type == HL_CUT_BOX && !cut->shape->keep_inside;
-}
-
 /* Returns whether a cut's box leaves inner corners in the matter. */
 LANES_INLINE int has_inner_corners(const slab_run *run) {
   int has = 0;
-  for (int i = 0; i < run->cut_count; i++) has |= hollows_out(&run->cuts[i]);
+  for (int i = 0; i < run->cut_count; i++) has |= hl_cut_hollows_out(run->cuts[i].shape);
   return has;
 }
 
@@ -107,7 +103,7 @@ static __attribute__((noinline, unused)) lanes_int nears_inner_corner(const slab
                                                                       lanes v) {
   lanes_int near = lanes_set_int(0);
   for (int i = 0; i < run->cut_count; i++)
-    if (hollows_out(&run->cuts[i]))
+    if (hl_cut_hollows_out(run->cuts[i].shape))
       near |= nears_edge(&run->cuts[i], rays_positions(&run->rays[slab], u, v),
                          rays_positions(&run->rays[slab + 1], u, v), run->voxel);
   return near;

@@ -95,6 +95,16 @@ static bool has_surfaces(const plan_volumes *volumes) {
   return false;
 }
 
+/* Returns whether boxes cut inner corners into some volume, where two faces of a cut meet. */
+static bool has_inner_corners(const plan_volumes *volumes) {
+  for (int v = 0; v < volumes->count; v++) {
+    const grid *grid = &volumes->grids[v];
+    for (size_t i = 0; i < grid->cut_count; i++)
+      if (hl_cut_hollows_out(&grid->cuts[i])) return true;
+  }
+  return false;
+}
+
 static shadow_setup setup_of_light(hl_context *context, const frame_plan *plan, const sweep_plan *sweep,
                                    const light_plan *light) {
   const frame *frame = &plan->frame;
@@ -106,6 +116,7 @@ static shadow_setup setup_of_light(hl_context *context, const frame_plan *plan, 
                         .eye = &frame->eye,
                         .exchange = plan->picture.share.exchange,
                         .surfaces = has_surfaces(&plan->volumes),
+                        .inner_corners = has_inner_corners(&plan->volumes),
                         .channels = plan->channels,
                         .voxel = frame->content.voxel,
                         .pixel = frame->pixel,

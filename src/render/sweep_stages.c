@@ -163,6 +163,7 @@ static void composite_light_tile(sweep *sweep, light_shadow *shadow, attenuate_j
     if (buffer->has_outside)
       job.outside[c] = hl_shadow_plane_at(buffer, job.sheet, SHADOW_OUTSIDE, c) + first;
   }
+  job.left = job.transmittance[0];
   if (method->before_tile != NULL) method->before_tile(shadow, tile, &job);
   uint32_t worked = 0;
   for (int i = 0; i < job.volume_count; i++) worked |= job.volumes[i].blocks;

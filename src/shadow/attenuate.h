@@ -50,6 +50,9 @@ typedef struct attenuate_job {
                                       * apart */
   float *older[HL_CHANNELS];         /* a second transmittance, laid out as `transmittance` and multiplied by
                                       * the same factors; null if there is none */
+  const float *left; /* laid out as `transmittance`: the light of the first channel that is left of all the
+                      * light that the lamp sends. It is the transmittance, or `older` where the transmittance
+                      * is the slab's alone */
   /* the light at the outside of surfaces, laid out as `transmittance`; null if the buffer does not keep it */
   float *outside[HL_CHANNELS];
   size_t stride;

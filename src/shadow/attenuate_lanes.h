@@ -135,7 +135,7 @@ LANES_INLINE kept_light kept_by_face(const attenuate_volume *volume, kept_light 
  * block's first pixel. at: its offset. */
 LANES_INLINE kept_light kept_by_inner_corner(const attenuate_job *job, const attenuate_volume *volume,
                                              kept_light kept, const int corner[2], size_t at) {
-  lanes_int dark = lanes_load_block(job->transmittance[0] + at, job->stride) < DARK;
+  lanes_int dark = lanes_load_block(job->left + at, job->stride) < DARK;
   if (lanes_bits(dark) == 0) return kept;
   lanes_int ends = dark &
                    nears_inner_corner(volume->faces, volume->slab, block_u(corner[0]), block_v(corner[1]));

@@ -65,6 +65,7 @@ typedef struct shadow_setup {
                                    * nothing */
   bool surfaces;                  /* whether some volume has surfaces; surfaces are lit by the light that
                                    * arrives at their outside */
+  bool inner_corners;             /* whether boxes cut inner corners into some volume */
   int channels;                   /* number of channels of attenuation: 1 (grey) or 3 (R, G, B) */
   double voxel;                   /* the shortest edge of a voxel, frame units */
   double pixel;                   /* the edge of a picture's pixel, projected to the nearest content; frame

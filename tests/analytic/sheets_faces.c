@@ -213,14 +213,21 @@ static void open_cut_matter(stage *set, int layer, const hl_cut *cut, vec3 light
 }
 
 /* A corner of the ball is cut away, from five voxels below its surface on. For the light, the corner's floor
- * lies behind five voxels of opaque matter. So the floor is dark, up to the wall. */
-static void test_inner_corner(void **state) {
-  (void)state;
+ * lies behind five voxels of opaque matter. The function returns the greatest light on this floor, which should
+ * be dark up to the wall. sublights: whether the light is 4 degrees wide, and its shadows are made by
+ * sub-lights. */
+static double light_in_corner(bool sublights) {
   static float pixels[SIDE * SIDE * 4];
   static const hl_cut corner = {
       .type = HL_CUT_BOX, .min = {-RADIUS + 5, 0, 0}, .max = {40, 40, 40}, .keep = HL_CUT_KEEP_OUTSIDE};
   stage set;
   open_cut_matter(&set, 0, &corner, (vec3){1, 0.15, -0.5});
+  if (sublights) {
+    set.lights[0].angular_diameter_deg = 4;
+    set.scene.render.shadows = HL_SHADOWS_SOFT;
+    set.scene.render.soft_method = HL_SOFT_SUBLIGHTS;
+    set.scene.render.light_samples = 4;
+  }
   set.scene.camera.height = 10;
   stage_look(&set, (vec3){60, 48, 54}, (vec3){-RADIUS + 5, 0, 0}, (vec3){0, 0, 1});
   stage_render_sheets(&set, pixels);
@@ -235,10 +242,17 @@ static void test_inner_corner(void **state) {
     greatest = fmax(greatest, (double)pixels[4 * p]);
     count++;
   }
-  print_message("# inner corner: greatest light %.4f\n", greatest);
   stage_close(&set);
   assert_true(count > 100);
-  assert_true(greatest < 0.01);
+  return greatest;
+}
+
+static void test_inner_corner(void **state) {
+  (void)state;
+  const double hard = light_in_corner(false), sublights = light_in_corner(true);
+  print_message("# inner corner: greatest light %.4f, with sub-lights %.4f\n", hard, sublights);
+  assert_true(hard < 0.01);
+  assert_true(sublights < 0.02);
 }
 
 /* Beside a cut through which light leaves, the ball's own surface is as bright as without the cut. The light

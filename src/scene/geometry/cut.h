@@ -18,6 +18,11 @@ typedef struct cut_shape {
   affine3 to_shape; /* maps index space, or a mesh's world, to the shape's own space */
 } cut_shape;
 
+/* Returns whether a cut removes a box, which leaves inner corners in the matter. */
+static inline bool hl_cut_hollows_out(const cut_shape *cut) {
+  return cut->type == HL_CUT_BOX && !cut->keep_inside;
+}
+
 /* The shape of a cut, in the world in which the cut's own numbers are given. */
 cut_shape hl_cut_shape_in_world(const hl_cut *cut);
 
