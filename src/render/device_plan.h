@@ -7,10 +7,8 @@
 #include "plan/frame_plan.h"
 #include "render/device_cascade.h"
 #include "render/device_paper.h"
+#include "render/device_volume.h"
 #include "render/sweep_constants.h"
-
-/* The volume that the frame shows. */
-gpu_volume hl_volume_for_device(const frame_plan *plan);
 
 /* A sweep for a device. */
 typedef struct planned_sweep {
