@@ -10,8 +10,8 @@ enum { BLOCK_SPARE = 2 };
 
 /* Divides a line of pixels into `count` segments of `length` pixels. Returns the number of the segment that
  * holds a position; -1 before the first segment, `count` after the last one. */
-static int segment_of(double position, int length, int count) {
-  return position < 0 ? -1 : position >= (double)length * count ? count : (int)position / length;
+static int segment_of(float position, int length, int count) {
+  return position < 0 ? -1 : position >= (float)(length * count) ? count : (int)position / length;
 }
 
 blocks_under hl_sublight_blocks(const sublight_maps *maps, int axis, int tile, int tiles) {
@@ -19,12 +19,12 @@ blocks_under hl_sublight_blocks(const sublight_maps *maps, int axis, int tile, i
   int end = tiles * (TILE / BLOCK);
   blocks_under under;
   for (int i = 0; i < TILE / BLOCK; i++) {
-    double from = tile * TILE + i * BLOCK - BLOCK_SPARE, to = from + BLOCK + 2 * BLOCK_SPARE;
+    float from = (float)(tile * TILE + i * BLOCK - BLOCK_SPARE), to = from + BLOCK + 2 * BLOCK_SPARE;
     int first = segment_of(
-        fmin(near->scale[axis] * (from - near->shift[axis]), far->scale[axis] * (from - far->shift[axis])),
+        fminf(near->scale[axis] * (from - near->shift[axis]), far->scale[axis] * (from - far->shift[axis])),
         BLOCK, end);
     int last = segment_of(
-        fmax(near->scale[axis] * (to - near->shift[axis]), far->scale[axis] * (to - far->shift[axis])), BLOCK,
+        fmaxf(near->scale[axis] * (to - near->shift[axis]), far->scale[axis] * (to - far->shift[axis])), BLOCK,
         end);
     under.first[i] = first < 0 ? 0 : first;
     under.last[i] = last < end ? last : end - 1;
@@ -86,7 +86,7 @@ void hl_sublights_find_lit(const sublights *sublights, shadow_buffer *slab, size
   uint32_t lit = sublights->slabs == 0 ? ALL_BLOCKS : 0;
   for (int i = 0; i < sublights->count && lit != ALL_BLOCKS; i++) {
     const sublight *sublight = &sublights->sublight[i];
-    if (sublight->reaches) lit |= lit_by_sublight(sublights, sublight, x, y);
+    if (sublight->maps.reaches) lit |= lit_by_sublight(sublights, sublight, x, y);
     else if (sublight->maps.comes) lit = ALL_BLOCKS;
   }
   slab->tile_lit[tile] = (uint16_t)lit;

@@ -405,19 +405,19 @@ static void clear_row(void *data, size_t index, int worker) {
 }
 
 static sublight_map map_of_place(const sublight_place *place) {
-  return (sublight_map){{1 / (double)place->scale[0], 1 / (double)place->scale[1]},
-                        {(double)place->shift[0], (double)place->shift[1]}};
+  return (sublight_map){{1 / place->scale[0], 1 / place->scale[1]}, {place->shift[0], place->shift[1]}};
 }
 
-bool hl_sublight_maps(const view *sublight, const view *slab, vec3 normal, double height, double spacing,
-                      sublight_maps *maps) {
+sublight_maps hl_sublight_maps(const view *sublight, const view *slab, vec3 normal, double height,
+                               double spacing) {
+  sublight_maps maps = {0};
   sublight_place place;
   const bool far = hl_sublight_place(sublight, slab, normal, height + (LIT_SLABS - 0.5) * spacing, &place);
-  maps->far = map_of_place(&place);
-  const bool near = hl_sublight_place(sublight, slab, normal, height + 0.5 * spacing, &place);
-  maps->near = map_of_place(&place);
-  maps->comes = far && !near;
-  return near;
+  if (far) maps.far = map_of_place(&place);
+  maps.reaches = hl_sublight_place(sublight, slab, normal, height + 0.5 * spacing, &place);
+  if (maps.reaches) maps.near = map_of_place(&place);
+  maps.comes = far && !maps.reaches;
+  return maps;
 }
 
 /* Sets the sub-lights' maps for the first and the last slab of the next run. height: the height at which the
@@ -426,8 +426,7 @@ static void map_run(sublights *sublights, const shadow_buffer *slab, vec3 normal
                     double spacing) {
   for (int i = 0; i < sublights->count; i++) {
     sublight *sublight = &sublights->sublight[i];
-    sublight->reaches = hl_sublight_maps(&sublight->view, &slab->view, normal, height, spacing,
-                                         &sublight->maps);
+    sublight->maps = hl_sublight_maps(&sublight->view, &slab->view, normal, height, spacing);
   }
 }
 

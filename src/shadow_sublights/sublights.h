@@ -15,16 +15,18 @@
 enum { SUBLIGHT_REACH = 31 /* number of pixels beyond a tile of the slab's buffer that may be read */ };
 
 /* Maps positions on the slab, in pixels along u and v, to positions in a sub-light's buffer: scale *
- * (position - shift). */
+ * (position - shift). The numbers are floats, so that any device finds the same blocks. */
 typedef struct sublight_map {
-  double scale[2], shift[2];
+  float scale[2], shift[2];
 } sublight_map;
 
 /* The maps of a sub-light for a run of slabs. */
 typedef struct sublight_maps {
   sublight_map near, far; /* near: the map for the first slab of the run; far: the map for the last slab */
-  bool comes; /* whether the sub-light lies within the run: its rays reach the last slab of the run, but not
-               * the first slab */
+  bool reaches; /* whether the sub-light's rays reach the first slab of the run, so that the maps are
+                 * set */
+  bool comes;   /* whether the sub-light lies within the run: its rays reach the last slab of the run, but not
+                 * the first slab */
 } sublight_maps;
 
 /* One sub-light with its buffer. */
@@ -84,10 +86,9 @@ bool hl_sublight_place(const view *sublight, const view *slab, vec3 normal, doub
  * between 0 and 1. slabs: the number of slabs before the slab. i: the sub-light's number among `count`. */
 float hl_sublight_carry(int slabs, int i, int count);
 
-/* Finds a sub-light's maps for the run of slabs that begins at a height. Returns whether the sub-light's rays
- * reach the run's first slab. */
-bool hl_sublight_maps(const view *sublight, const view *slab, vec3 normal, double height, double spacing,
-                      sublight_maps *maps);
+/* Finds a sub-light's maps for the run of slabs that begins at a height. */
+sublight_maps hl_sublight_maps(const view *sublight, const view *slab, vec3 normal, double height,
+                               double spacing);
 
 /* The sub-light's blocks that lie under a tile of the slab: for each of the tile's four rows (or columns) of
  * blocks, the first and the last row (or column) of the sub-light's blocks. */

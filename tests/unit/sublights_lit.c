@@ -44,13 +44,15 @@ static void make_case(lit_case *c, uint32_t *seed) {
   c->slab.tile_lit = c->tile_lit;
   for (int i = 0; i < SUBLIGHTS; i++) {
     sublight *sublight = &c->sublight[i];
-    sublight->reaches = i < 2;
+    sublight->maps.reaches = i < 2;
     sublight->lit = c->flags[i];
     for (int axis = 0; axis < 2; axis++) {
-      sublight->maps.near.scale[axis] = random_between(seed, 0, 1) < 0.5 ? 1 : random_between(seed, 0.8, 1.3);
+      sublight->maps.near.scale[axis] = random_between(seed, 0, 1) < 0.5
+                                            ? 1
+                                            : (float)random_between(seed, 0.8, 1.3);
       sublight->maps.far.scale[axis] = sublight->maps.near.scale[axis];
-      sublight->maps.near.shift[axis] = random_between(seed, -30, 20);
-      sublight->maps.far.shift[axis] = sublight->maps.near.shift[axis] + random_between(seed, -3, 3);
+      sublight->maps.near.shift[axis] = (float)random_between(seed, -30, 20);
+      sublight->maps.far.shift[axis] = sublight->maps.near.shift[axis] + (float)random_between(seed, -3, 3);
     }
     for (int tile = 0; tile < SUBLIGHT_TILES * SUBLIGHT_TILES; tile++)
       c->flags[i][tile] = random_between(seed, 0, 1) < 0.7
@@ -68,8 +70,9 @@ static bool is_under(const sublight *sublight, const sublight_map *map, int x, i
       bool apart = (sublight->lit[row / 4 * SUBLIGHT_TILES + column / 4] >> (row % 4 * 4 + column % 4) & 1) ==
                    0;
       for (int axis = 0; axis < 2; axis++) {
-        double low = map->scale[axis] * (block[axis] * BLOCK - around - map->shift[axis]);
-        double high = map->scale[axis] * ((block[axis] + 1) * BLOCK + around - map->shift[axis]);
+        double low = (double)map->scale[axis] * (block[axis] * BLOCK - around - (double)map->shift[axis]);
+        double high = (double)map->scale[axis] *
+                      ((block[axis] + 1) * BLOCK + around - (double)map->shift[axis]);
         apart = apart || high < sublight_block[axis] * BLOCK || low > (sublight_block[axis] + 1) * BLOCK;
       }
       if (!apart) return true;
@@ -79,8 +82,8 @@ static bool is_under(const sublight *sublight, const sublight_map *map, int x, i
 
 static bool is_lit(const lit_case *c, int x, int y, double around) {
   for (int i = 0; i < SUBLIGHTS; i++)
-    if (c->sublight[i].reaches && (is_under(&c->sublight[i], &c->sublight[i].maps.near, x, y, around) ||
-                                   is_under(&c->sublight[i], &c->sublight[i].maps.far, x, y, around)))
+    if (c->sublight[i].maps.reaches && (is_under(&c->sublight[i], &c->sublight[i].maps.near, x, y, around) ||
+                                        is_under(&c->sublight[i], &c->sublight[i].maps.far, x, y, around)))
       return true;
   return false;
 }
@@ -115,7 +118,7 @@ static void test_when_it_is_found(void **state) {
   c.sublights.slabs = 0; /* nothing was absorbed so far */
   hl_sublights_find_lit(&c.sublights, &c.slab, 0);
   assert_int_equal(c.tile_lit[0], ALL_BLOCKS);
-  for (int i = 0; i < SUBLIGHTS; i++) c.sublight[i].reaches = false;
+  for (int i = 0; i < SUBLIGHTS; i++) c.sublight[i].maps.reaches = false;
   c.sublights.slabs = 1;
   hl_sublights_find_lit(&c.sublights, &c.slab, 0);
   assert_int_equal(c.tile_lit[0], 0);
