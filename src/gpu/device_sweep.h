@@ -88,11 +88,42 @@ typedef struct plan_light {
   float map[3][4]; /* maps frame space to (w, w u, w v), where (u, v) is the position in the buffer */
   float slab_path; /* the member `path` of attenuate_job (shadow/attenuate.h) */
   plan_box box, content;
+  /* Members of lights with sub-lights (gpu/kernels/sublights.h); `sublights` is 0 for other lights. */
+  int sublights, first_sublight; /* the number of sub-lights, and the number of the first one among those of
+                                  * all lights */
+  int sublight_tiles_x, sublight_tiles_y; /* the tiles of one sub-light */
+  int sublight_stride, sublight_plane;    /* the number of pixels from one row of a sub-light's plane to the
+                                           * next, and of the whole plane */
+  /* The beginnings of the sub-lights' planes, in units of 16 pixels, [ring][sublights][planes of a
+   * sheet][sublight_plane]; of the slabs' copies, in units of 16 floats, [ring][planes of a sheet][3][plane];
+   * and of the light's marks. */
+  unsigned sublight_planes, halves, sublight_marks;
   float margin[3]; /* a distance along each axis, in voxels. If a sample is farther than this from the faces
                     * of the box, light that passes beside the faces does not reach the buffer's pixels around
                     * the sample */
   int first_cut, cut_count; /* the range, among the sweep's cuts, of the cuts that count for the light */
 } plan_light;
+
+/* A sub-light: how samples look up its buffer. The members of sublight_lookup (shadow/shadow_buffer.h). */
+typedef struct plan_sublight {
+  float map[3][4];
+  int width, height;
+} plan_sublight;
+
+/* A slab's place in a sub-light's view: the members of sublight_place (shadow_sublights/sublight_field.h),
+ * and members of sublight and sublight_job. */
+typedef struct plan_sublight_place {
+  int reaches, shifted;
+  float scale[2], shift[2];
+  int halves[2];
+  float carry;
+} plan_sublight_place;
+
+/* The members of sublight_maps (shadow_sublights/sublights.h). */
+typedef struct plan_sublight_maps {
+  int reaches, comes;
+  float near_scale[2], near_shift[2], far_scale[2], far_shift[2];
+} plan_sublight_maps;
 
 /* The brick of a field that covers a block of cells of level 0: the members of hl_brick_entry
  * (bricks/bricks.h). */
@@ -177,7 +208,7 @@ typedef struct device_sweep {
   int sheets, ring;                  /* sheets: number of sheets; ring: number of sheets whose planes a shadow
                                       * buffer keeps. The planes of sheet k are number k % ring */
   int width, height, tiles_x, tiles; /* size of the picture */
-  int light_count, light_tiles;
+  int light_count, light_tiles, sublight_count;
   float spacing, path;
   float through[3], towards_eye[3], normal[3];
   float ambient[3], emission;
@@ -203,6 +234,11 @@ typedef struct device_sweep {
 #define PASS_WANTED  8
 #define PASS_ROWS    9
 #define PASS_COLUMNS 10
+/* Passes of sub-lights (gpu/kernels/sublights.h). */
+#define PASS_HALVES    11
+#define PASS_SUBLIGHTS 12
+#define PASS_DARK      13
+#define PASS_REACHED   14
 
 /* Stands for a field of zeros. */
 #define PASS_NOTHING 0xffffffffu
@@ -230,12 +266,15 @@ typedef struct plan_pass {
   int light;      /* of PASS_ABSORB, and of the kinds that follow it */
   int channel;    /* PASS_ABSORB, PASS_REFILL. PASS_ROWS, PASS_COLUMNS: the first of the planes of
                    * a sheet that are convolved */
-  int chunk;      /* PASS_ABSORB, PASS_REFILL: number of the chunk that ends */
+  int chunk;      /* PASS_ABSORB, PASS_REFILL: number of the chunk that ends. PASS_REACHED: number of
+                   * the sub-lights' run of slabs that begins */
   int sheet;      /* PASS_REFILL, and the kinds that follow it: the sheet at which the buffer
                    * changes as a whole */
   int reach;      /* PASS_BELOW, PASS_WANTED: the number of pixels beyond a tile that a convolution
                    * reads */
   unsigned marks; /* PASS_REFILL: the number of the first mark of the tiles */
+  int first, run; /* of sub-lights: the first slab of the device's run of slabs, which ends with `sheet`, and
+                   * the run's number */
 } plan_pass;
 
 /* As blur_box (shadow/blur.h). */
@@ -257,17 +296,18 @@ typedef struct plan_variant {
   int bspline; /* 1: the kernel is the cubic B-spline; else it is any polynomial of degree 5 */
   int eye_perspective;
   int phong, lit, shadowed;
-  int outside; /* whether the lights' buffers also keep the light at the outside of surfaces */
-  int boxed;   /* whether the volume's box or a cut cuts visible matter */
-  int cuts;    /* the volume has cuts */
-  int steep;   /* the volume has gradient opacity */
-  int masked;  /* the volume has a mask */
-  int plane;   /* whether the transfer function depends on value and gradient */
-  int colored; /* whether the voxels have colours of their own */
-  int soft;    /* some lights are soft */
-  int paper;   /* some lights are convolved by the paper's method */
-  int sky;     /* whether the sky's light is added in this sweep */
-  int maximum; /* whether the picture is a maximum projection */
+  int outside;   /* whether the lights' buffers also keep the light at the outside of surfaces */
+  int boxed;     /* whether the volume's box or a cut cuts visible matter */
+  int cuts;      /* the volume has cuts */
+  int steep;     /* the volume has gradient opacity */
+  int masked;    /* the volume has a mask */
+  int plane;     /* whether the transfer function depends on value and gradient */
+  int colored;   /* whether the voxels have colours of their own */
+  int soft;      /* some lights are soft */
+  int paper;     /* some lights are convolved by the paper's method */
+  int sublights; /* some lights have sub-lights */
+  int sky;       /* whether the sky's light is added in this sweep */
+  int maximum;   /* whether the picture is a maximum projection */
   int back_to_front;
   int channels; /* number of channels of light attenuation: 1 or 3 */
 } plan_variant;

@@ -98,6 +98,16 @@ typedef struct gpu_passes {
   size_t mark_count;
 } gpu_passes;
 
+/* The sub-lights of all lights; borrowed. */
+typedef struct gpu_sublights {
+  const plan_sublight *list;         /* [count]; null if there are none */
+  const plan_sublight_place *places; /* [sheets][count] */
+  const plan_sublight_maps *maps;    /* [runs][count]; runs of LIT_SLABS slabs */
+  size_t count, runs;
+  size_t pixels, half_floats, marks; /* numbers of pixels of all planes, of floats of the slabs' copies, and
+                                      * of marks */
+} gpu_sublights;
+
 /* A sweep as plain data; borrowed until hl_gpu_read(). */
 typedef struct gpu_sweep gpu_sweep;
 struct gpu_sweep {
@@ -109,6 +119,7 @@ struct gpu_sweep {
   const int32_t *shown_from; /* [tiles][16 blocks]; the first visible slab of each block, if slabs are
                               * composited from back to front; null stands for slab 1 for all blocks */
   gpu_sky sky;
+  gpu_sublights sublights;
   const float *shown_values; /* [PLAN_TABLE_ROWS][4]; the table of shown values of a maximum projection; null
                               * for other pictures */
   size_t plane_floats;       /* number of floats of the planes of all lights together */

@@ -21,12 +21,31 @@ static const int kernels_of_passes[] = {[PASS_ADD] = KERNEL_FIELDS,
                                         [PASS_BELOW] = KERNEL_BELOW,
                                         [PASS_WANTED] = KERNEL_WANTED,
                                         [PASS_ROWS] = KERNEL_CONVOLVE_ROWS,
-                                        [PASS_COLUMNS] = KERNEL_CONVOLVE_COLUMNS};
+                                        [PASS_COLUMNS] = KERNEL_CONVOLVE_COLUMNS,
+                                        [PASS_HALVES] = KERNEL_HALVES,
+                                        [PASS_SUBLIGHTS] = KERNEL_SUBLIGHTS,
+                                        [PASS_DARK] = KERNEL_DARK,
+                                        [PASS_REACHED] = KERNEL_REACHED};
 
 /* The number of members that make a pass: one for each pixel of the output, or for each tile. */
 static size_t members_of_pass(const plan_pass *pass) {
   const size_t tiles = (size_t)pass->tiles_x * (size_t)pass->tiles_y;
-  return pass->kind == PASS_WANTED ? tiles : tiles * 256;
+  const bool of_tiles = pass->kind == PASS_WANTED || pass->kind == PASS_DARK || pass->kind == PASS_REACHED;
+  return of_tiles ? tiles : tiles * 256;
+}
+
+static bool launch_sublights(hl_gpu *gpu, const gpu_program *program, int kernel, size_t members, int index) {
+  const gpu_argument arguments[] = {hl_gpu_memory(gpu, BUFFER_PLAN),
+                                    hl_gpu_memory(gpu, BUFFER_PASSES),
+                                    hl_gpu_memory(gpu, BUFFER_PLACES),
+                                    hl_gpu_memory(gpu, BUFFER_MAPS),
+                                    hl_gpu_memory(gpu, BUFFER_PLANES),
+                                    hl_gpu_memory(gpu, BUFFER_HALVES),
+                                    hl_gpu_memory(gpu, BUFFER_OF_SUBLIGHTS),
+                                    hl_gpu_memory(gpu, BUFFER_SUBLIGHT_MARKS),
+                                    hl_gpu_number(index)};
+  return hl_gpu_launch(gpu, program, kernel, LINE_AHEAD, hl_gpu_groups(members), arguments,
+                       (int)(sizeof arguments / sizeof *arguments));
 }
 
 static bool launch_pass(hl_gpu *gpu, const gpu_program *program, int kernel, size_t members, int index) {
@@ -48,7 +67,8 @@ bool hl_gpu_launch_passes(hl_gpu *gpu, const gpu_program *program, const gpu_pas
     if (pass->kind == PASS_BLUR)
       done = launch_pass(gpu, program, KERNEL_ROWS,
                          members_of_pass(pass) + (size_t)pass->tiles_x * TILE_SIDE * 2 * PASS_MARGIN, (int)i);
-    done = done && launch_pass(gpu, program, kernels_of_passes[pass->kind], members_of_pass(pass), (int)i);
+    done = done && (pass->kind >= PASS_HALVES ? launch_sublights : launch_pass)(
+                       gpu, program, kernels_of_passes[pass->kind], members_of_pass(pass), (int)i);
   }
   return done;
 }

@@ -14,8 +14,10 @@ static const char *const common_kernels[KERNEL_PASSES] = {
 
 static const char *const soft_kernels[] = {"pass_rows", "pass_fields", "pass_absorbed", "pass_refill"};
 static const char *const paper_kernels[] = {"pass_below", "pass_wanted", "convolve_rows", "convolve_columns"};
+static const char *const sublight_kernels[] = {"slab_halves", "run_sublights", "dark_sublights",
+                                               "reached_blocks"};
 
-enum { VARIANT_DEFINES = 20 };
+enum { VARIANT_DEFINES = 21 };
 
 static void define_variant(const plan_variant *v, char defines[VARIANT_DEFINES][40]) {
   const struct {
@@ -28,7 +30,7 @@ static void define_variant(const plan_variant *v, char defines[VARIANT_DEFINES][
       {"CHANNELS", v->channels}, {"CUTS", v->cuts},       {"BRICKS", v->bricks},
       {"STEEP", v->steep},       {"MASKED", v->masked},   {"PLANE", v->plane},
       {"COLORED", v->colored},   {"SOFT", v->soft},       {"SKY", v->sky},
-      {"MAXIMUM", v->maximum},   {"PAPER", v->paper}};
+      {"MAXIMUM", v->maximum},   {"PAPER", v->paper},     {"SUBLIGHTS", v->sublights}};
   for (int i = 0; i < VARIANT_DEFINES; i++)
     snprintf(defines[i], sizeof defines[i], "%s=%d", all[i].name, all[i].value);
 }
@@ -36,8 +38,12 @@ static void define_variant(const plan_variant *v, char defines[VARIANT_DEFINES][
 /* Finds the names of a variant's kernels. Returns the number of kernels. */
 static int names_of_kernels(const plan_variant *variant, const char *names[KERNELS]) {
   memcpy(names, common_kernels, sizeof common_kernels);
-  if (!variant->soft && !variant->paper) return KERNEL_PASSES;
-  memcpy(names + KERNEL_PASSES, variant->soft ? soft_kernels : paper_kernels, sizeof soft_kernels);
+  const char *const *of_passes = variant->soft        ? soft_kernels
+                                 : variant->paper     ? paper_kernels
+                                 : variant->sublights ? sublight_kernels
+                                                      : NULL;
+  if (of_passes == NULL) return KERNEL_PASSES;
+  memcpy(names + KERNEL_PASSES, of_passes, sizeof soft_kernels);
   return KERNELS;
 }
 

@@ -1,4 +1,6 @@
 /* gpu/gpu_run.c - runs sweeps on an open device. */
+#include <string.h>
+
 #include "gpu/gpu_state.h"
 
 enum { SAMPLE_COUNTERS = 256 };
@@ -70,6 +72,31 @@ static bool reset_soft(hl_gpu *gpu, const gpu_sweep *sweep, const gpu_program *p
          fill(gpu, program, BUFFER_ROWS, sweep->variant.paper ? sweep->row_floats : 0, 1);
 }
 
+/* The numbers of floats that hold the pixels of sub-lights, the slabs' copies, and the marks. */
+static size_t sublight_floats(const gpu_sweep *sweep) { return (sweep->sublights.pixels + 7) / 8 * 4; }
+static size_t half_floats(const gpu_sweep *sweep) { return sweep->sublights.half_floats; }
+static size_t mark_floats(const gpu_sweep *sweep) { return (sweep->sublights.marks + 3) / 4 * 4; }
+
+static bool make_sublight_room(hl_gpu *gpu, const gpu_sweep *sweep) {
+  const gpu_sublights *of = &sweep->sublights;
+  const size_t sheets = (size_t)sweep->plan->sheets;
+  return hl_gpu_reserve_and_upload(gpu, BUFFER_SUBLIGHTS, of->list, of->count * sizeof *of->list) &&
+         hl_gpu_reserve_and_upload(gpu, BUFFER_PLACES, of->places, sheets * of->count * sizeof *of->places) &&
+         hl_gpu_reserve_and_upload(gpu, BUFFER_MAPS, of->maps, of->runs * of->count * sizeof *of->maps) &&
+         hl_gpu_reserve(gpu, BUFFER_OF_SUBLIGHTS, sublight_floats(sweep) * sizeof(float)) &&
+         hl_gpu_reserve(gpu, BUFFER_HALVES, half_floats(sweep) * sizeof(float)) &&
+         hl_gpu_reserve(gpu, BUFFER_SUBLIGHT_MARKS, mark_floats(sweep) * sizeof(float));
+}
+
+/* Full light is a number whose bits are all set. */
+static bool reset_sublights(hl_gpu *gpu, const gpu_sweep *sweep, const gpu_program *program) {
+  const uint32_t all_bits = 0xffffffff;
+  float full;
+  memcpy(&full, &all_bits, sizeof full);
+  return fill(gpu, program, BUFFER_OF_SUBLIGHTS, sublight_floats(sweep), full) &&
+         fill(gpu, program, BUFFER_SUBLIGHT_MARKS, mark_floats(sweep), 0);
+}
+
 /* Brings the cells of the sky's field to the device, unless the device has them already. */
 static bool prepare_sky(hl_gpu *gpu, const gpu_sky *sky) {
   if (sky->cells == NULL || sky->version == gpu->sky_version) return hl_gpu_reserve(gpu, BUFFER_SKY, 0);
@@ -96,7 +123,7 @@ static bool make_room(hl_gpu *gpu, const gpu_sweep *sweep) {
               hl_gpu_reserve(gpu, BUFFER_LIST, slots * sizeof(uint32_t)) &&
               hl_gpu_reserve(gpu, BUFFER_MASKS, 2 * tiles * 256 * sizeof(uint32_t)) &&
               hl_gpu_reserve(gpu, BUFFER_CUTS, sweep->cut_count * sizeof *sweep->cuts) &&
-              make_soft_room(gpu, sweep) && prepare_sky(gpu, &sweep->sky) &&
+              make_soft_room(gpu, sweep) && make_sublight_room(gpu, sweep) && prepare_sky(gpu, &sweep->sky) &&
               (sweep->passes == NULL || hl_gpu_upload_passes(gpu, sweep->passes));
   if (done && sweep->shown_from != NULL)
     done = hl_gpu_upload(gpu, BUFFER_SHOWN_FROM, 0, sweep->shown_from, tiles * 16 * sizeof(int32_t));
@@ -118,7 +145,7 @@ static bool reset(hl_gpu *gpu, const gpu_sweep *sweep, const gpu_program *progra
               fill(gpu, program, BUFFER_PLANES, sweep->plane_floats, 1) &&
               fill(gpu, program, BUFFER_LIGHT, light_floats(sweep), 1) &&
               fill(gpu, program, BUFFER_CHANGED, (size_t)plan->light_tiles * 256, 0) &&
-              reset_soft(gpu, sweep, program);
+              reset_soft(gpu, sweep, program) && reset_sublights(gpu, sweep, program);
   if (done && sweep->shown_from == NULL)
     done = fill(gpu, program, BUFFER_SHOWN_FROM, (size_t)plan->tiles * 16, 0);
   return done;
@@ -158,6 +185,9 @@ static bool launch_kernel(hl_gpu *gpu, const gpu_program *program, int kernel, s
                                     hl_gpu_memory(gpu, BUFFER_TOUCHED),
                                     hl_gpu_memory(gpu, BUFFER_SKY),
                                     hl_gpu_memory(gpu, BUFFER_MASK),
+                                    hl_gpu_memory(gpu, BUFFER_SUBLIGHTS),
+                                    hl_gpu_memory(gpu, BUFFER_OF_SUBLIGHTS),
+                                    hl_gpu_memory(gpu, BUFFER_SUBLIGHT_MARKS),
                                     hl_gpu_number(run.first),
                                     hl_gpu_number(run.end),
                                     hl_gpu_number(run.number)};

@@ -20,9 +20,11 @@ enum {
 };
 _Static_assert(KERNELS <= (int)GPU_KERNELS, "a program holds all kernels of a variant");
 
-/* The kernels of the passes of soft lights, and of lights that are convolved by the paper's method. */
+/* The kernels of the passes of soft lights, of lights that are convolved by the paper's method, and of
+ * sub-lights. */
 enum { KERNEL_ROWS = KERNEL_PASSES, KERNEL_FIELDS, KERNEL_ABSORBED, KERNEL_REFILL };
 enum { KERNEL_BELOW = KERNEL_PASSES, KERNEL_WANTED, KERNEL_CONVOLVE_ROWS, KERNEL_CONVOLVE_COLUMNS };
+enum { KERNEL_HALVES = KERNEL_PASSES, KERNEL_SUBLIGHTS, KERNEL_DARK, KERNEL_REACHED };
 
 /* The two lines of launches. LINE_AHEAD finds the samples of a run, and composites the run's slabs into the
  * lights' buffers. LINE_PICTURE lights the samples and composites them into the picture. */
@@ -59,6 +61,12 @@ enum buffer_use {
   BUFFER_PASSES,
   BUFFER_BOXES,
   BUFFER_MARKS,
+  BUFFER_SUBLIGHTS,
+  BUFFER_PLACES,
+  BUFFER_MAPS,
+  BUFFER_OF_SUBLIGHTS,
+  BUFFER_HALVES,
+  BUFFER_SUBLIGHT_MARKS,
   BUFFERS
 };
 

@@ -119,7 +119,10 @@ static float margin_along(const sweep_task *task, int index, double way, vec3 ro
   const sheet_stack *sheets = &task->plan->geometry->sheets;
   const light_source *source = task->plan->lights[index].source;
   double rows[3][4];
-  hl_view_homogeneous(&task->plan->lights[index].shadow.plan.view, affine3_identity(), rows);
+  const light_shadow *shadow = &task->plan->lights[index].shadow;
+  view view = shadow->plan.view;
+  if (hl_has_sublights(shadow)) hl_sublight_view(shadow, 0, &view);
+  hl_view_homogeneous(&view, affine3_identity(), rows);
   const vec3 u = {rows[1][0], rows[1][1], rows[1][2]}, v = {rows[2][0], rows[2][1], rows[2][2]};
   vec3 along_u = vec3_cross(v, sheets->normal), along_v = vec3_cross(sheets->normal, u);
   double rise = vec3_dot(u, along_u), pixels = fabs(vec3_dot(row, along_u)) + fabs(vec3_dot(row, along_v));
@@ -236,22 +239,25 @@ static void plan_buffer(const sweep_task *task, int index, int ring, size_t *flo
 static const size_t PLANES_BYTES = (size_t)1 << 30, SLOTS_BYTES = (size_t)1 << 30;
 enum { SLABS_OF_RUN = 32 /* one bit for each slab */, SLOT_BYTES = 40 };
 
-static size_t floats_of_sheet(const sweep_task *task) {
-  size_t floats = 0;
+static size_t bytes_of_sheet(const sweep_task *task) {
+  size_t bytes = 0;
   for (int i = 0; i < task->plan->geometry->light_count; i++) {
     const light_shadow *shadow = &task->plan->lights[i].shadow;
-    if (shadow->method != NULL)
-      floats += planes_of_sheet(task, shadow) * hl_shadow_plane(&shadow->plan.view, shadow->plan.reach);
+    if (shadow->method == NULL) continue;
+    const size_t planes = planes_of_sheet(task, shadow);
+    bytes += planes * hl_shadow_plane(&shadow->plan.view, shadow->plan.reach) * sizeof(float);
+    if (hl_has_sublights(shadow)) bytes += hl_device_sublight_bytes(shadow, planes);
   }
-  return floats;
+  return bytes;
 }
 
 static int slabs_of_run(const sweep_task *task) {
   const int wanted = task->frame_plan->settings.slabs_at_once;
   int slabs = wanted > 0 ? wanted : SLABS_OF_RUN;
-  const size_t sheet = floats_of_sheet(task) * sizeof(float),
+  const size_t sheet = bytes_of_sheet(task),
                slots = task->frame_plan->picture.tiles * TILE_PIXELS * SLOT_BYTES;
   if (slabs > SLABS_OF_RUN) slabs = SLABS_OF_RUN;
+  if (slabs > LIT_SLABS && any_light(task, hl_has_sublights)) slabs = LIT_SLABS;
   while (slabs > 1 && (size_t)slabs * slots > SLOTS_BYTES) slabs--;
   while (slabs > 1 && (2 * (size_t)slabs + 1) * sheet > PLANES_BYTES) slabs--;
   return slabs;
@@ -321,6 +327,7 @@ static plan_variant variant_of(const sweep_task *task, const device_sweep *plan)
                         .cuts = shade->cut_count > 0,
                         .soft = has_soft_lights(task),
                         .paper = any_light(task, hl_is_convolved),
+                        .sublights = any_light(task, hl_has_sublights),
                         .sky = task->constants->shade.sky != NULL,
                         .maximum = shade->shown != NULL,
                         .colored = shade->colors.voxels != NULL,
@@ -391,6 +398,9 @@ hl_status hl_plan_sweep(const sweep_means *means, const frame_plan *frame_plan, 
                                       &planned->sweep, error);
   if (status == HL_OK && planned->sweep.variant.paper)
     status = hl_device_paper_begin(context, of, plan, &planned->passes, &planned->sweep, error);
+  if (status == HL_OK && planned->sweep.variant.sublights)
+    status = hl_device_sublights_begin(context, of, plan, planned->rays, &planned->sublights,
+                                       &planned->passes, &planned->sweep, error);
   return status == HL_OK ? plan_cuts(context, task, planned, error) : status;
 }
 
@@ -400,6 +410,7 @@ void hl_plan_release(hl_context *context, planned_sweep *planned) {
   hl_release(context, planned->cuts);
   hl_device_cascades_release(&planned->cascades);
   hl_known_passes_release(&planned->passes);
+  hl_device_sublights_release(context, &planned->sublights);
   planned->memory = NULL;
   planned->rays = NULL;
   planned->cuts = NULL;

@@ -7,6 +7,7 @@
 #include "plan/frame_plan.h"
 #include "render/device_cascade.h"
 #include "render/device_paper.h"
+#include "render/device_sublights.h"
 #include "render/device_volume.h"
 #include "render/sweep_constants.h"
 
@@ -20,6 +21,7 @@ typedef struct planned_sweep {
   plan_cut *cuts;  /* owned; null if the volume has no cuts */
   device_cascades cascades;
   known_passes passes;
+  device_sublights sublights;
 } planned_sweep;
 
 /* Describes a sweep of a plan by the numbers that a device reads. shown_from: the first visible slab of each

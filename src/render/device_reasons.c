@@ -28,9 +28,14 @@ static bool has_second_volume(const frame_plan *plan) {
   const plane_table *plane = &volume_of(plan)->classifier->plane;
   return plane->sums != NULL && plane->axis != HL_SECOND_GRADIENT;
 }
-static bool has_sublights(const frame_plan *plan) {
+/* Sums of more numbers of 16 bits are rounded. Their mean may exceed 1, and the processors limit it only
+ * where some pixel of a block is near a face. */
+enum { MOST_SUBLIGHTS = 16 };
+static bool has_many_sublights(const frame_plan *plan) {
   for (int i = 0; i < plan->frame.light_count; i++)
-    if (hl_shadow_method(&plan->frame.lights[i]) == &hl_shadow_sublights) return true;
+    if (hl_shadow_method(&plan->frame.lights[i]) == &hl_shadow_sublights &&
+        plan->settings.light_samples > MOST_SUBLIGHTS)
+      return true;
   return false;
 }
 
@@ -73,7 +78,7 @@ static const struct {
     {is_thin, "a volume less than four voxels thick"},
     {has_second_volume, "a function of two volumes' values"},
     {masks_thick_slabs, "a mask with sheets more than 1.5 voxels apart"},
-    {has_sublights, "sub-lights"},
+    {has_many_sublights, "more than 16 x 16 sub-lights"},
     {has_images, "lights with images"},
     {has_phase_tables, "wide lights in media that scatter unevenly"},
 };

@@ -50,12 +50,15 @@ def plane(*normal):
 
 
 PAPER = {"soft_method": "paper"}
+SUBLIGHTS = {"soft_method": "sublights"}
 CLIP = {"min": [5, 3, 4], "max": [24, 20, 15]}
 BALL = {"type": "sphere", "center": [4, 2, -6], "radius": 9}
 BLOCK = {"type": "box", "min": [-9, -5, -13], "max": [7, 9, 3]}
 STEEP = {"gradient_opacity": [[0.02, 0], [0.12, 1]]}
 SUN = {"type": "directional", "direction": [0.4, -0.7, 0.5], "angular_diameter_deg": 7}
 LAMP = {"type": "point", "position": [40, 50, -50], "radius": 9}
+TILTED = {"type": "rect", "position": [30, 40, -40], "edge1": [14, 0, 6], "edge2": [0, 12, 16]}
+WITHIN = {"type": "point", "position": [4, 3, -5], "radius": 3}
 BEHIND = {**SUN, "direction": [0.2, -0.3, -0.9]}
 EVEN_SKY = {"type": "uniform", "color": [0.6, 0.8, 1], "strength": 0.8}
 SKY = {"type": "gradient", "zenith": [0.36, 0.4, 0.5], "horizon": [0.32, 0.33, 0.36], "ground": [0.16, 0.14, 0.12]}
@@ -175,6 +178,21 @@ MADE = {
         volume={"cuts": [BALL, plane(1, 0.4, -0.2)]}, render={**PAPER, "slabs_at_once": 3}),
     "the paper's soft shadows of an inner corner, a mask": scene(
         shadows="soft", shading="phong", opacity=DENSE, light=SUN, volume={"mask": {**ORGANS, "rest": 0}, "cuts": [BLOCK]}, render=PAPER),
+    "sub-lights": scene(shadows="soft", light=SUN, render=SUBLIGHTS),
+    "sub-lights of surfaces in layers, colours, near light": scene(
+        shadows="soft", shading="phong", opacity=LAYERS, light=LAMP, volume={"attenuation_color": [1, 0.5, 0.2]}, render=SUBLIGHTS),
+    "sub-lights of a tilted light, dense": scene(shadows="soft", shading="phong", opacity=DENSE, light=TILTED,
+                                                 render={**SUBLIGHTS, "light_samples": 3, "slabs_at_once": 3}),
+    "sub-lights of a light within": scene(shadows="soft", shading="phong", opacity=AROUND, light=WITHIN, render=SUBLIGHTS),
+    "sub-lights of a wide light from behind, cuts": scene(
+        shadows="soft", shading="phong", opacity=DENSE, light={**BEHIND, "angular_diameter_deg": 40},
+        volume={"cuts": [BALL, plane(1, 0.4, -0.2)]}, render={**SUBLIGHTS, "light_samples": 5}),
+    "sub-lights, a clip box, flat view, a slab at once": scene(shadows="soft", opacity=AROUND, camera=FLAT, light=SUN, volume={"clip": CLIP},
+                                                               render={**SUBLIGHTS, "slabs_at_once": 1}),
+    "sub-lights of an inner corner, a mask, a sky": scene(
+        sky=SKY, shadows="soft", shading="phong", opacity=DENSE, light=SUN, volume={"mask": {**ORGANS, "rest": 0}, "cuts": [BLOCK]},
+        render=SUBLIGHTS),
+    "sub-lights beside hard ones": scene(shadows="soft", shading="phong", opacity=LAYERS, light=TILTED, render=SUBLIGHTS),
     "an even sky": scene(sky=EVEN_SKY),
     "a sky, surfaces": scene(sky=SKY, shading="phong", opacity=DENSE),
     "a sky, soft shadows of surfaces, colours": scene(sky=SKY, shadows="soft", shading="phong", opacity=LAYERS, light=SUN,
@@ -208,14 +226,17 @@ LABELS = scene(shading="phong")
 LABELS["volumes"] = [{"file": "labels.nrrd", "labels": [{"value": 1, "color": [0.8, 0.2, 0.1]}, {"value": 2, "color": [0.1, 0.4, 0.8]}]}]
 MADE["labels"] = LABELS
 MADE["soft shadows beside hard ones"]["lights"].append({"type": "directional", "direction": [-0.5, -0.5, 0.5], "shadows": "hard"})
+MADE["sub-lights beside hard ones"]["lights"] += [{"type": "directional", "direction": [-0.5, -0.5, 0.5], "shadows": "hard"},
+                                                   {**LAMP, "shadows": "soft"}]
 LARGE = scene(volume={"file": "large.nrrd"}, render={"sheet_spacing": 4},
               camera={"type": "perspective", "position": [380, 250, -680], "target": [0, 0, 0], "up": [0, 1, 0], "fovy_deg": 30})
 # One scene of each feature.
 FEW = ("medium", "a field at levels, surfaces", "gradient opacity, cuts, light from behind", "coloured voxels", "labels", "a projection of cuts",
        "the paper's soft shadows of surfaces, colours, near light", "a sky, soft shadows of surfaces, colours",
+       "sub-lights of a tilted light, dense",
        "soft shadows of surfaces in layers, a mask, cuts, light from behind")
 LEFT = {
-    "sub-lights": scene(shadows="soft", light=SUN, render={"soft_method": "sublights"}),
+    "more than 16 x 16 sub-lights": scene(shadows="soft", light=SUN, render={**SUBLIGHTS, "light_samples": 17}),
     "meshes or isosurfaces": {**scene(), "meshes": [{"spheres": [[0, -12, 0, 3]]}]},
     "a mask with sheets more than 1.5 voxels apart": scene(volume={"mask": ORGANS}, render={"sheet_spacing": 1.6}),
     "splatting in place of gathering": scene(render={"reconstruction": "splat"}),
@@ -236,7 +257,7 @@ def drawn(seed, compositing):
     light = {**SUN, "direction": [draw.uniform(-1, 1), draw.uniform(-1, 1), draw.uniform(0.1, 1)],
              "angular_diameter_deg": draw.choice((1, 7, 30))}
     opacity, shadows, weighed = draw.choice((AROUND, LAYERS, DENSE)), draw.choice(("hard", "soft")), draw.random() < 0.7
-    method = draw.choice(("cascade", "paper"))
+    method = draw.choice(("cascade", "paper", "sublights"))
     return scene(opacity=opacity, shading="phong", light=light, shadows=shadows, sky=draw.choice((None, EVEN_SKY, SKY)),
                  function=STEEP if weighed and draw.random() < 0.4 else None,
                  volume={**({"mask": {**ORGANS, "rest": draw.choice((0, 0.3, 1))}} if weighed else {}), "cuts": cuts,

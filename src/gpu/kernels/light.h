@@ -35,6 +35,16 @@ typedef struct slab_sample {
   float behind;
 } slab_sample;
 
+/* The buffers of a light that a slab's samples look up. */
+typedef struct light_buffers {
+  GLOBAL const float *planes; /* the planes of the sheet before the slab */
+  float young;                /* as in plan_rays */
+#if SUBLIGHTS
+  GLOBAL const plan_sublight *sublights; /* [sublights] */
+  GLOBAL const word16 *of_sublights;     /* the sub-lights' planes of the sheet before the slab */
+#endif
+} light_buffers;
+
 /* ---- the buffer's pixels around a sample ---- */
 
 typedef struct shadow_taps {
@@ -42,17 +52,18 @@ typedef struct shadow_taps {
   float fx, fy;
 } shadow_taps;
 
-DEVICE shadow_taps taps_of_position(GLOBAL const plan_light *light, vector position) {
-  float u = row_of_point(light->map[1], position), v = row_of_point(light->map[2], position);
+/* map: the map of the light's buffer, or of a sub-light's; width, height: the buffer's size. */
+DEVICE shadow_taps taps_in_map(GLOBAL const plan_light *light, GLOBAL const float map[3][4], int width,
+                               int height, vector position) {
+  float u = row_of_point(map[1], position), v = row_of_point(map[2], position);
   if (!light->parallel) {
-    float ahead = row_of_point(light->map[0], position);
+    float ahead = row_of_point(map[0], position);
     u = ahead > 0.0f ? divided(u, ahead) : -1.0f;
     v = ahead > 0.0f ? divided(v, ahead) : -1.0f;
   }
   shadow_taps taps;
-  taps.inside = u > 0.0f && v > 0.0f && u < (float)light->width && v < (float)light->height;
-  float x = limited(u - 0.5f, 0.0f, (float)(light->width - 1)),
-        y = limited(v - 0.5f, 0.0f, (float)(light->height - 1));
+  taps.inside = u > 0.0f && v > 0.0f && u < (float)width && v < (float)height;
+  float x = limited(u - 0.5f, 0.0f, (float)(width - 1)), y = limited(v - 0.5f, 0.0f, (float)(height - 1));
   if (light->nearest) {
     x = (float)(int)(x + 0.5f);
     y = (float)(int)(y + 0.5f);
@@ -62,6 +73,10 @@ DEVICE shadow_taps taps_of_position(GLOBAL const plan_light *light, vector posit
   taps.fx = x - (float)taps.column;
   taps.fy = y - (float)taps.row;
   return taps;
+}
+
+DEVICE shadow_taps taps_of_position(GLOBAL const plan_light *light, vector position) {
+  return taps_in_map(light, light->map, light->width, light->height, position);
 }
 
 /* Interpolates between four pixels: a and b in one row, c and d below them in the next row. Outside the
@@ -130,6 +145,34 @@ DEVICE float faded(GLOBAL const plan_light *light, const shadow_taps *taps, int 
   (void)young;
   return younger;
 }
+
+#if SUBLIGHTS
+
+/* The square root of 1/6, as SUBLIGHT_SPREAD in render/before_slab_lanes.h. */
+#define SPREAD_OF_SUBLIGHTS 0.408248f
+
+/* The mean over a light's sub-lights. kind: 0 for the transmittance, 1 for the light at the outside of
+ * surfaces. */
+DEVICE void mean_of_sublights(GLOBAL const plan_light *light, const light_buffers *buffers, vector position,
+                              int kind, float mean[CHANNELS]) {
+  for (int c = 0; c < CHANNELS; c++) mean[c] = 0.0f;
+  for (int i = 0; i < light->sublights; i++) {
+    GLOBAL const plan_sublight *sublight = buffers->sublights + i;
+    const shadow_taps taps = taps_in_map(light, sublight->map, sublight->width, sublight->height, position);
+    for (int c = 0; c < CHANNELS; c++) {
+      GLOBAL const word16 *at = buffers->of_sublights +
+                                ((wide)i * PLANES_OF_SHEET + (wide)(kind * CHANNELS + c)) *
+                                    (wide)light->sublight_plane +
+                                taps.row * light->sublight_stride + taps.column;
+      GLOBAL const word16 *below = at + light->sublight_stride;
+      const float between = between_taps(&taps, (float)at[0], (float)at[1], (float)below[0], (float)below[1]);
+      mean[c] = mean[c] + (taps.inside ? between : 65535.0f);
+    }
+  }
+  for (int c = 0; c < CHANNELS; c++) mean[c] = divided(mean[c], 65535.0f * (float)light->sublights);
+}
+
+#endif
 
 /* ---- the light that the slab's own matter absorbs ---- */
 
@@ -243,20 +286,33 @@ typedef struct near_pixels {
   vector along_u, along_v;
 } near_pixels;
 
-DEVICE near_pixels pixels_around(GLOBAL const plan_light *light, const shadow_taps *taps, vector normal,
-                                 vector position) {
+/* Finds the pixels around a sample and the steps to them. Four pixels stand for those of all sub-lights, as
+ * in render/before_slab_lanes.h. */
+DEVICE near_pixels pixels_around(GLOBAL const plan_light *light, const light_buffers *buffers,
+                                 const shadow_taps *taps, vector normal, vector position) {
+  GLOBAL const float(*map)[4] = light->map;
   near_pixels close;
   for (int i = 0; i < NEAR_PIXELS; i++) {
     close.u[i] = (float)(i % 2) - taps->fx;
     close.v[i] = (float)(i / 2) - taps->fy;
   }
-  vector gradient_u = vector_at(light->map[1]), gradient_v = vector_at(light->map[2]);
+#if SUBLIGHTS
+  if (light->sublights > 0) {
+    map = buffers->sublights[0].map;
+    for (int i = 0; i < NEAR_PIXELS; i++) {
+      close.u[i] = i % 2 ? SPREAD_OF_SUBLIGHTS : -SPREAD_OF_SUBLIGHTS;
+      close.v[i] = i / 2 ? SPREAD_OF_SUBLIGHTS : -SPREAD_OF_SUBLIGHTS;
+    }
+  }
+#else
+  (void)buffers;
+#endif
+  vector gradient_u = vector_at(map[1]), gradient_v = vector_at(map[2]);
   if (!light->parallel) {
-    float ahead = row_of_point(light->map[0], position), inverse = divided(1.0f, ahead > 0.0f ? ahead : 1.0f);
-    float u = row_of_point(light->map[1], position) * inverse,
-          v = row_of_point(light->map[2], position) * inverse;
-    gradient_u = scaled(add_scaled(gradient_u, vector_at(light->map[0]), -u), inverse);
-    gradient_v = scaled(add_scaled(gradient_v, vector_at(light->map[0]), -v), inverse);
+    float ahead = row_of_point(map[0], position), inverse = divided(1.0f, ahead > 0.0f ? ahead : 1.0f);
+    float u = row_of_point(map[1], position) * inverse, v = row_of_point(map[2], position) * inverse;
+    gradient_u = scaled(add_scaled(gradient_u, vector_at(map[0]), -u), inverse);
+    gradient_v = scaled(add_scaled(gradient_v, vector_at(map[0]), -v), inverse);
   }
   vector along_u = cross3(gradient_v, normal), along_v = cross3(normal, gradient_u);
   float rise = dot3(gradient_u, along_u), inverse = divided(1.0f, rise == 0.0f ? 1.0f : rise);
@@ -456,14 +512,26 @@ DEVICE float reaching_face(GLOBAL const plan_light *light, const shadow_taps *ta
   return reached;
 }
 
+#if SUBLIGHTS
+
+/* Corrects the mean of sub-lights near a face, as correct_faces() in render/reaching_lanes.h. */
+DEVICE float corrected_at_face(light_depths *depths, int channel, float reached) {
+  float own = 0.0f;
+  for (int i = 0; i < NEAR_PIXELS; i++) own = own + exp_of_depth(depths->close[channel][i]);
+  own = own * (1.0f / NEAR_PIXELS);
+  pass_face(depths, channel, reached, own);
+  return lesser(divided(reached, greater(own, 1e-6f)), 1.0f);
+}
+
+#endif
+
 #endif
 
 /* The light's transmittance to the sample in each channel, as a mean over the slab's matter in which matter
- * counts as much as the eye sees of it. planes: the planes of the sheet before the slab. young: as in
- * plan_rays. */
+ * counts as much as the eye sees of it. */
 DEVICE void passing_light(const volume_data *volume, vector normal, GLOBAL const plan_light *light,
-                          const slab_sample *s, vector towards, float path, GLOBAL const float *planes,
-                          float young, float passing[CHANNELS]) {
+                          const slab_sample *s, vector towards, float path, const light_buffers *buffers,
+                          float passing[CHANNELS]) {
   shadow_taps taps = taps_of_position(light, s->position);
   light_depths depths;
   light_ways ways;
@@ -487,7 +555,7 @@ DEVICE void passing_light(const volume_data *volume, vector normal, GLOBAL const
   float extinction = extinction_towards(volume, s, towards, fused(length, s->seen, ways.first));
 #if BOXED
   if (!light->nearest && !deep) {
-    near_pixels close_pixels = pixels_around(light, &taps, normal, s->position);
+    near_pixels close_pixels = pixels_around(light, buffers, &taps, normal, s->position);
     add_face(volume, light, s, towards, path, &close_pixels, &depths);
   }
 #endif
@@ -497,13 +565,25 @@ DEVICE void passing_light(const volume_data *volume, vector normal, GLOBAL const
     depths.enter[c] = BACK_TO_FRONT ? last : first;
     depths.more[c] = BACK_TO_FRONT ? first - last : last - first;
   }
+#if SUBLIGHTS
+  float mean[CHANNELS];
+  if (light->sublights > 0) mean_of_sublights(light, buffers, s->position, 0, mean);
+#endif
   for (int c = 0; c < CHANNELS; c++) {
-    GLOBAL const float *plane = planes + c * light->plane + light->origin;
+    GLOBAL const float *plane = buffers->planes + c * light->plane + light->origin;
+    float reached;
+#if SUBLIGHTS && BOXED
+    if (light->sublights > 0) reached = depths.face ? corrected_at_face(&depths, c, mean[c]) : mean[c];
+    else
+#elif SUBLIGHTS
+    if (light->sublights > 0) reached = mean[c];
+    else
+#endif
 #if BOXED
-    float reached = depths.face ? reaching_face(light, &taps, &depths, c, plane, young)
-                                : faded(light, &taps, light->cubic, plane, young);
+      reached = depths.face ? reaching_face(light, &taps, &depths, c, plane, buffers->young)
+                            : faded(light, &taps, light->cubic, plane, buffers->young);
 #else
-    float reached = faded(light, &taps, light->cubic, plane, young);
+      reached = faded(light, &taps, light->cubic, plane, buffers->young);
 #endif
     float own = own_transmittance(s->depth, s->left, depths.enter[c], depths.more[c]);
     passing[c] = lesser(reached * own, 1.0f);

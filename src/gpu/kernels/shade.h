@@ -200,13 +200,13 @@ typedef struct arriving_light {
 } arriving_light;
 
 /* Multiplies a light's `arriving` light by the transmittance of the matter on the light's way to a sample.
- * planes: planes of the light's buffer, at the sheet before the slab. young: as in plan_rays. */
+ */
 DEVICE void shadow_sample(GLOBAL const device_sweep *plan, const volume_data *volume,
-                          GLOBAL const plan_light *light, GLOBAL const float *planes, const slab_sample *s,
-                          vector towards, float path, float young, arriving_light *arriving) {
+                          GLOBAL const plan_light *light, const light_buffers *buffers, const slab_sample *s,
+                          vector towards, float path, arriving_light *arriving) {
   float passing[CHANNELS], transmittance = 1.0f;
   if (s->surface < 1.0f) {
-    passing_light(volume, vector_at(plan->normal), light, s, towards, path, planes, young, passing);
+    passing_light(volume, vector_at(plan->normal), light, s, towards, path, buffers, passing);
     for (int c = 0; c < 3; c++) {
       if (c < CHANNELS) transmittance = passing[c];
       arriving->on_medium[c] = arriving->on_medium[c] * transmittance;
@@ -214,7 +214,7 @@ DEVICE void shadow_sample(GLOBAL const device_sweep *plan, const volume_data *vo
   }
 #if OUTSIDE
   if (!(s->surface > 0.0f)) return;
-  passing_to_surface(volume, light, s, towards, s->place * path, planes, young, passing);
+  passing_to_surface(volume, light, s, towards, s->place * path, buffers, passing);
   for (int c = 0; c < 3; c++) {
     if (c < CHANNELS) transmittance = passing[c];
     arriving->on_surface[c] = arriving->on_surface[c] * transmittance;
@@ -222,11 +222,10 @@ DEVICE void shadow_sample(GLOBAL const device_sweep *plan, const volume_data *vo
 #endif
 }
 
-/* Adds the light that a sample sends on from one light to the eye. planes: planes of the light's buffer, at
- * the sheet before the slab. young: as in plan_rays. */
+/* Adds the light that a sample sends on from one light to the eye. */
 DEVICE void add_light(GLOBAL const device_sweep *plan, const volume_data *volume,
-                      GLOBAL const plan_light *light, GLOBAL const float *planes, const slab_sample *s,
-                      float young, vector color, vector *lit) {
+                      GLOBAL const plan_light *light, const light_buffers *buffers, const slab_sample *s,
+                      vector color, vector *lit) {
   GLOBAL const plan_volume *matter = volume->plan;
   vector towards;
   float strength, path = find_direction(plan, light, s->position, &towards, &strength);
@@ -237,11 +236,10 @@ DEVICE void add_light(GLOBAL const device_sweep *plan, const volume_data *volume
 #if SHADOWED
   if (light->shadowed && matter->receives_shadow &&
       (arriving.on_medium[0] > 0.0f || arriving.on_medium[1] > 0.0f || arriving.on_medium[2] > 0.0f))
-    shadow_sample(plan, volume, light, planes, s, towards, path, young, &arriving);
+    shadow_sample(plan, volume, light, buffers, s, towards, path, &arriving);
 #else
-  (void)planes;
+  (void)buffers;
   (void)path;
-  (void)young;
 #endif
   if (matter->anisotropy != 0) medium = medium * phase_of(matter->anisotropy, dot3(s->towards_eye, towards));
   if (light->of_sky > 0) medium = medium * light->of_sky;
@@ -269,12 +267,12 @@ DEVICE void add_light(GLOBAL const device_sweep *plan, const volume_data *volume
   *lit = vector_of(sum[0], sum[1], sum[2]);
 }
 
-/* The light that a sample sends to the eye. sky: the cells of the sky's field. slot: the slot, in the
- * buffers' rings, of the sheet before the slab. rays: the eye's rays in index space at the slab's second
- * sheet. */
+/* The light that a sample sends to the eye. sky: the cells of the sky's field. buffers: the first of the
+ * buffers of all lights. slot: the slot, in the buffers' rings, of the sheet before the slab. rays: the eye's
+ * rays in index space at the slab's second sheet. */
 DEVICE vector color_of_slab(GLOBAL const device_sweep *plan, const volume_data *volume,
-                            GLOBAL const short *sky, GLOBAL const float *planes, GLOBAL const plan_rays *rays,
-                            int slot, const slab_sample *s) {
+                            GLOBAL const short *sky, const light_buffers *buffers,
+                            GLOBAL const plan_rays *rays, int slot, const slab_sample *s) {
   GLOBAL const plan_volume *matter = volume->plan;
 #if PLANE
   const plane_data plane = plane_of_volume(volume);
@@ -302,13 +300,19 @@ DEVICE vector color_of_slab(GLOBAL const device_sweep *plan, const volume_data *
 #if LIT
   for (int i = 0; i < plan->light_count; i++) {
     GLOBAL const plan_light *light = &plan->lights[i];
-    GLOBAL const float *own_planes = planes + (wide)light->planes * 16 +
-                                     (wide)slot * (wide)(light->plane * PLANES_OF_SHEET);
-    const float young = SOFT ? rays[(3 + 2 * i) * plan->sheets].young : 0.0f;
-    add_light(plan, volume, light, own_planes, s, young, color, &lit);
+    light_buffers own;
+    own.planes = buffers->planes + (wide)light->planes * 16 +
+                 (wide)slot * (wide)(light->plane * PLANES_OF_SHEET);
+    own.young = SOFT ? rays[(3 + 2 * i) * plan->sheets].young : 0.0f;
+#if SUBLIGHTS
+    own.sublights = buffers->sublights + light->first_sublight;
+    own.of_sublights = buffers->of_sublights + (wide)light->sublight_planes * 16 +
+                       (wide)slot * (wide)light->sublights * (PLANES_OF_SHEET * (wide)light->sublight_plane);
+#endif
+    add_light(plan, volume, light, &own, s, color, &lit);
   }
 #else
-  (void)planes;
+  (void)buffers;
   (void)slot;
 #endif
 #if SKY

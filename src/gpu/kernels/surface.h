@@ -278,27 +278,42 @@ DEVICE way_begin find_begin(const volume_data *volume, const slab_sample *s, vec
 }
 
 /* Finds the light at the outside of a sample's surface. way: the light's way from the slab's first sheet to
- * the sample. planes: planes of the sheet before the slab; Y follows T. young: as in plan_rays. */
+ * the sample. In the buffer's planes Y follows T. */
 DEVICE void passing_to_surface(const volume_data *volume, GLOBAL const plan_light *light,
-                               const slab_sample *s, vector towards, float way, GLOBAL const float *planes,
-                               float young, float passing[CHANNELS]) {
+                               const slab_sample *s, vector towards, float way, const light_buffers *buffers,
+                               float passing[CHANNELS]) {
   const shadow_taps taps = taps_of_position(light, s->position);
   float own_kept = 1.0f, own_passing = 1.0f;
+#if SUBLIGHTS
+  float mean_passed[CHANNELS], mean_outside[CHANNELS];
+  for (int c = 0; c < CHANNELS; c++) mean_passed[c] = 0.0f;
+  if (light->sublights > 0) {
+    mean_of_sublights(light, buffers, s->position, 1, mean_outside);
+    if (volume->plan->several_surfaces) mean_of_sublights(light, buffers, s->position, 0, mean_passed);
+  }
+#endif
   for (int c = 0; c < CHANNELS; c++) {
-    GLOBAL const float *plane = planes + c * light->plane + light->origin;
-    float outside = interpolated(light, &taps, light->cubic, plane + CHANNELS * light->plane);
-    float passed = 0.0f;
-    if (volume->plan->several_surfaces || light->soft)
-      passed = interpolated(light, &taps, light->cubic, plane);
+    GLOBAL const float *plane = buffers->planes + c * light->plane + light->origin;
+    float outside = 0.0f, passed = 0.0f;
+#if SUBLIGHTS
+    if (light->sublights > 0) {
+      outside = mean_outside[c];
+      passed = mean_passed[c];
+    } else
+#endif
+    {
+      outside = interpolated(light, &taps, light->cubic, plane + CHANNELS * light->plane);
+      if (volume->plan->several_surfaces || light->soft)
+        passed = interpolated(light, &taps, light->cubic, plane);
+    }
 #if SOFT
     if (light->soft) {
       const float taken = outside - passed;
       passed = between_chunks(interpolated(light, &taps, light->cubic, plane + OLDER_PLANE * light->plane),
-                              passed, young);
+                              passed, buffers->young);
       outside = passed + greater(taken, 0.0f);
     }
 #endif
-    (void)young;
     if (volume->plan->several_surfaces) {
       if (c == 0) {
         const way_begin begin = find_begin(volume, s, towards, way);

@@ -2,6 +2,7 @@
 #include "gpu/kernels/sweep.h"
 #include "gpu/kernels/cascade.h"
 #include "gpu/kernels/paper.h"
+#include "gpu/kernels/sublights.h"
 #include "gpu/kernels/trial.h"
 
 /* Sets all floats of a buffer to a value. Each member of the kernel sets four floats. */
@@ -59,8 +60,9 @@ spread_distances(GLOBAL const byte *from, GLOBAL byte *to, unsigned x, unsigned 
       GLOBAL const int *APART shown_from, GLOBAL unsigned *APART counts, GLOBAL float *APART slots,        \
       GLOBAL unsigned *APART list, GLOBAL unsigned *APART masks, GLOBAL const plan_cut *APART cuts,        \
       GLOBAL const plan_brick *APART directory, GLOBAL const byte *APART colors, GLOBAL float *APART soft, \
-      GLOBAL int *APART touched, GLOBAL const short *APART sky, GLOBAL const byte *APART mask, int first,  \
-      int end, int run
+      GLOBAL int *APART touched, GLOBAL const short *APART sky, GLOBAL const byte *APART mask,             \
+      GLOBAL const plan_sublight *APART sublights, GLOBAL const word16 *APART of_sublights,                \
+      GLOBAL int *APART sublight_marks_of_all, int first, int end, int run
 
 DEVICE sweep_data sweep_of(SWEEP_ARGUMENTS) {
   sweep_data sweep;
@@ -78,6 +80,9 @@ DEVICE sweep_data sweep_of(SWEEP_ARGUMENTS) {
   sweep.pixels = pixels;
   sweep.soft = soft;
   sweep.touched = touched;
+  sweep.sublights = sublights;
+  sweep.of_sublights = of_sublights;
+  (void)sublight_marks_of_all;
   sweep.sky = sky;
   sweep.planes = planes;
   sweep.light = light_state;
@@ -93,10 +98,10 @@ DEVICE sweep_data sweep_of(SWEEP_ARGUMENTS) {
   return sweep;
 }
 
-#define SWEEP_OF_ARGUMENTS                                                                                   \
-  sweep_of(plan, rays, voxels, distances, cell_bits, tables, pixels, planes, light_state, changed,           \
-           shown_from, counts, slots, list, masks, cuts, directory, colors, soft, touched, sky, mask, first, \
-           end, run)
+#define SWEEP_OF_ARGUMENTS                                                                            \
+  sweep_of(plan, rays, voxels, distances, cell_bits, tables, pixels, planes, light_state, changed,    \
+           shown_from, counts, slots, list, masks, cuts, directory, colors, soft, touched, sky, mask, \
+           sublights, of_sublights, sublight_marks_of_all, first, end, run)
 
 /* Lists the samples that the picture's pixels may see in slabs first to end - 1. In a maximum projection,
  * finds the greatest values in these slabs instead; there the next two kernels have nothing to do. */
@@ -147,6 +152,14 @@ KERNEL(12) run_light(SWEEP_ARGUMENTS) {
   int changed_at = changed[(wide)tile * 256 + member];
   const ray_left ray = left_of_ray(&light->box, cuts + light->first_cut, light->cut_count, u, v);
   int lit = block_any(votes, is_lit(&own));
+#if SUBLIGHTS
+  /* the buffer of a light with sub-lights takes each slab for itself, where some sub-light reaches it */
+  const int single = light->sublights > 0;
+  const sublight_marks of_light = marks_of_light(plan, light, sublight_marks_of_all);
+  if (single) lit = in_frame[first].chunk <= 1 || (of_light.lit[own_tile] >> (member >> 4) & 1) != 0;
+#else
+  const int single = 0;
+#endif
   const slab_range slabs = slabs_with_content(&light->content, u, v, plan->spacing, first, end);
   const int own_first = slabs.first > light->first_slab ? slabs.first : light->first_slab;
   const float speed = speed_of_ray(in_index + first - 1, perspective, u, v);
@@ -154,6 +167,7 @@ KERNEL(12) run_light(SWEEP_ARGUMENTS) {
   for (int sheet = first - 1, step; sheet < end; sheet += step) {
     int does = 0;
     step = 1;
+    for (int c = 0; c < PLANES_OF_SHEET && single; c++) own.passing[c] = 1.0f;
     if (lit && sheet >= own_first - 1 && sheet < slabs.end) {
       step = fill_way(&sweep.volume, in_index + sheet, perspective, u, v, speed, sheet == own_first - 1,
                       &way);
@@ -165,6 +179,9 @@ KERNEL(12) run_light(SWEEP_ARGUMENTS) {
       way.after_known = way.after_shows = 0;
     }
     if (does == SLAB_TAKES) changed_at = sheet;
+#if SUBLIGHTS
+    if (does == SLAB_TAKES && single) of_light.touched[sheet % plan->ring * light->tiles + own_tile] = sheet;
+#endif
 #if SOFT || PAPER
     if (does == SLAB_TAKES) touched[tile] = SOFT ? in_frame[sheet].chunk : 1;
 #endif
@@ -178,10 +195,13 @@ KERNEL(12) run_light(SWEEP_ARGUMENTS) {
     if (step > end - sheet) step = end - sheet;
     if (step > 1) way.after_known = way.after_shows = 0;
     for (int k = sheet < first ? first : sheet;
-         k < sheet + step && changed_at > 0 && changed_at > k - plan->ring; k++)
+         k < sheet + step && changed_at > 0 && changed_at + single > k - plan->ring; k++)
       for (int c = 0; c < PLANES_OF_SHEET; c++)
-        pixel[((wide)(k % plan->ring) * PLANES_OF_SHEET + c) * (wide)light->plane] = own.passing[c];
-    lit = block_any(votes, is_lit(&own));
+        pixel[((wide)(k % plan->ring) * PLANES_OF_SHEET + c) * (wide)light->plane] = single && k != sheet
+                                                                                         ? 1.0f
+                                                                                         : own.passing[c];
+    const int goes_on = block_any(votes, is_lit(&own));
+    if (!single) lit = goes_on;
   }
   for (int c = 0; c < PLANES_OF_SHEET; c++) state[c * 256] = own.passing[c];
 #if SOFT
@@ -259,6 +279,42 @@ KERNEL(16) convolve_rows(PASS_ARGUMENTS) {
 KERNEL(16) convolve_columns(PASS_ARGUMENTS) {
   (void)marks, (void)fields, (void)soft;
   convolve_column(plan, passes + number, boxes, rows, planes, light_state, touched, changed, work_number());
+}
+
+#endif
+
+#if SUBLIGHTS
+
+/* ---- passes of sub-lights ---- */
+
+/* The arguments of the kernels that make one pass. number: the number of the pass. */
+#define SUBLIGHT_ARGUMENTS                                                                         \
+  GLOBAL const device_sweep *APART plan, GLOBAL const plan_pass *APART passes,                     \
+      GLOBAL const plan_sublight_place *APART places, GLOBAL const plan_sublight_maps *APART maps, \
+      GLOBAL float *APART planes, GLOBAL float *APART halves, GLOBAL word16 *APART of_sublights,   \
+      GLOBAL int *APART marks, int number
+
+KERNEL(8) slab_halves(SUBLIGHT_ARGUMENTS) {
+  (void)places, (void)maps, (void)of_sublights;
+  make_halves(plan, passes + number, planes, halves, marks, work_number());
+}
+
+KERNEL(12) run_sublights(SUBLIGHT_ARGUMENTS) {
+  (void)maps;
+  composite_sublights(plan, passes + number, places, planes, halves, of_sublights, marks, work_number());
+}
+
+KERNEL(16) dark_sublights(SUBLIGHT_ARGUMENTS) {
+  (void)maps, (void)planes, (void)halves;
+  find_dark(plan, passes + number, places, of_sublights, marks, work_number());
+}
+
+KERNEL(16) reached_blocks(SUBLIGHT_ARGUMENTS) {
+  (void)places, (void)planes, (void)halves, (void)of_sublights;
+  GLOBAL const plan_light *light = &plan->lights[passes[number].light];
+  int tile;
+  const int bits = blocks_reached(plan, passes + number, maps, marks, work_number(), &tile);
+  if (bits != 0) or_to(marks_of_light(plan, light, marks).lit + tile, bits);
 }
 
 #endif

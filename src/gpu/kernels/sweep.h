@@ -110,7 +110,9 @@ typedef struct sweep_data {
   GLOBAL float *soft; /* [light tiles][channels][2][256 pixels]; of soft lights: the sum of the light that the
                        * chunk's slabs absorbed, each times the slab's position, and 1 - the light at the
                        * chunk's beginning */
-  GLOBAL int *touched;     /* [light tiles]; the last chunk whose slabs absorbed light there */
+  GLOBAL const plan_sublight *sublights; /* [sub-lights of all lights] */
+  GLOBAL const word16 *of_sublights;     /* the planes of all sub-lights */
+  GLOBAL int *touched;                   /* [light tiles]; the last chunk whose slabs absorbed light there */
   GLOBAL const short *sky; /* the cells of the sky's field; read only if the variant has a sky */
   GLOBAL int *changed;     /* [light tiles][256 pixels]; the last sheet at which the pixel's light changed */
   GLOBAL const int *shown_from; /* [tiles][16] */
@@ -313,7 +315,14 @@ DEVICE void shade_slot(const sweep_data *sweep, unsigned slot, int run_first) {
   if (!(s.extinction > 0.0f)) return;
 #endif
   find_normal(volume, before + after, &s);
-  vector lit = color_of_slab(plan, volume, sweep->sky, sweep->planes, rays - plan->sheets,
+  light_buffers buffers;
+  buffers.planes = sweep->planes;
+  buffers.young = 0.0f;
+#if SUBLIGHTS
+  buffers.sublights = sweep->sublights;
+  buffers.of_sublights = sweep->of_sublights;
+#endif
+  vector lit = color_of_slab(plan, volume, sweep->sky, &buffers, rays - plan->sheets,
                              (sheet - 1) % plan->ring, &s);
   at[0] = lit.x;
   at[1] = lit.y;
