@@ -160,6 +160,12 @@ typedef struct hl_scene_volume {
   hl_cut_shading cut_shading;
   int cut_casts_shadow; /* non-zero if the matter that `cuts` remove still casts its shadow; default 0 */
   hl_mask mask;         /* the volume's mask; a label map must not have one */
+  /* Small bodies are hidden. Voxels beyond the value scraps_firm that share faces are one body. Bodies with
+   * fewer voxels than the part scraps_least of the largest body's are hidden, and so is matter between
+   * scraps_faint and scraps_firm that is more than four voxels from all others. If scraps_firm is below
+   * scraps_faint, matter has low values. Functions that show values on the other side of scraps_faint show
+   * all. scraps_least: 0, the default, hides nothing */
+  double scraps_faint, scraps_firm, scraps_least;
 } hl_scene_volume;
 
 /* A mesh in a scene. `color` multiplies the colours of the mesh's vertices, faces or spheres, if the mesh has

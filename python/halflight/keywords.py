@@ -40,6 +40,13 @@ class VolumeSettings(TypedDict, total=False):
         medium. "face", "gradient", "none". Default: "face".
     cut_casts_shadow : bool
         What `cuts` remove goes on taking light from what lies behind it. Default: False.
+    scraps_faint : float
+        The value from which on matter is seen; nothing is hidden from functions that show other values. -1e36
+        to 1e36. Default: 0.
+    scraps_firm : float
+        Voxels beyond this value that share faces are one body. -1e36 to 1e36. Default: 0.
+    scraps_least : float
+        Bodies with fewer voxels than this part of the largest body's are hidden; 0: none. 0 to 1. Default: 0.
     """
 
     rotate_axis: Sequence[float]
@@ -55,6 +62,9 @@ class VolumeSettings(TypedDict, total=False):
     receives_shadow: bool
     cut_shading: Literal["face", "gradient", "none"]
     cut_casts_shadow: bool
+    scraps_faint: float
+    scraps_firm: float
+    scraps_least: float
 
 
 class MaterialSettings(TypedDict, total=False):
@@ -258,6 +268,9 @@ class FurtherSettings(TypedDict, total=False):
     receives_shadow: bool
     cut_shading: Literal["face", "gradient", "none"]
     cut_casts_shadow: bool
+    scraps_faint: float
+    scraps_firm: float
+    scraps_least: float
     emission: float
     background_sky: bool
     exposure: float

@@ -88,7 +88,7 @@ static const struct {
     {"shadows off", "no-shadows noshadows without-shadows"},
     {"labels", "overlay atlas segmentation seg parcellation annotation-volume"},
     {"show", "label region regions organ roi-name structure"},
-    {"whole", "keep-table show-table no-cut no-crop uncut"},
+    {"whole", "keep-table show-table no-cut no-crop uncut keep-all keep-specks keep-islands show-all"},
     {"device", "gpu cuda opencl backend use-gpu"},
     {"scattering", "multiple-scattering sss subsurface subsurface-scattering bounces albedo"},
     {"outline", "box bounding-box bounds-box wireframe wire frame-box domain domain-outline show-bounds"},

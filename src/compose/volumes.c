@@ -1,12 +1,14 @@
 /* compose/volumes.c - see volumes.h. */
 #include "compose/volumes.h"
 
+#include <math.h>
 #include <string.h>
 
 #include "compose/looks.h"
 #include "compose/slice.h"
 #include "core/context.h"
 #include "core/memory.h"
+#include "scene/drawn_scene.h"
 #include "scene/function/transfer_function.h"
 
 static bool is_sliced(const hl_composer *composer, const hl_scene_volume *volume) {
@@ -83,18 +85,43 @@ static size_t count_holder_planes(const hl_scene_description *description) {
   return planes;
 }
 
-/* Returns whether "whole" asks to show the parts that hl_scene_for_volume() has cut off. */
-static bool shows_whole(const hl_composer *composer, const hl_scene_description *description) {
-  return composer->bare && composer->asked[HL_ASK_WHOLE].given && count_holder_planes(description) > 0;
+/* Finds the small bodies that hl_scene_for_volume() has hidden in bare volumes. */
+static size_t count_scraps(const hl_scene_description *description, double *share) {
+  size_t bodies = 0;
+  for (size_t v = 0; v < description->volume_count; v++) {
+    const hl_scene_volume *volume = &description->volumes[v];
+    hl_scraps scraps = {0};
+    if (!hl_hides_scraps(volume) || hl_hide_scraps(volume, &scraps, NULL) != HL_OK) continue;
+    hl_volume_release(scraps.volume);
+    bodies += scraps.bodies;
+    *share = fmax(*share, scraps.share);
+  }
+  return bodies;
+}
+
+/* Returns whether "whole" asks to show all matter of a bare volume. */
+static bool shows_whole(const hl_composer *composer) {
+  return composer->bare && composer->asked[HL_ASK_WHOLE].given;
 }
 
 /* Logs that parts of a bare volume are cut off. */
 static void tell_of_holders(const hl_composer *composer, const hl_scene_description *description) {
   size_t planes = count_holder_planes(description);
-  if (composer->bare && planes > 0 && !shows_whole(composer, description))
+  if (composer->bare && planes > 0 && !shows_whole(composer))
     hl_log(composer->context, HL_LOG_INFO,
            "what holds the object is cut away, by %zu plane%s: --whole shows it", planes,
            planes == 1 ? "" : "s");
+}
+
+/* Logs that small bodies of a bare volume are hidden, from the functions that are shown in the end. */
+static void tell_of_scraps(const hl_composer *composer, const hl_scene_description *description) {
+  double share = 0;
+  const size_t bodies = composer->bare ? count_scraps(description, &share) : 0;
+  const bool one = bodies == 1;
+  if (bodies > 0)
+    hl_log(composer->context, HL_LOG_INFO,
+           "%zu small bod%s beside the object, %.2g %% of all voxels of bodies, %s hidden: --whole shows %s",
+           bodies, one ? "y" : "ies", 100 * share, one ? "is" : "are", one ? "it" : "them");
 }
 
 /* Refuses options for the look of volumes in a scene without volumes. */
@@ -153,16 +180,22 @@ static hl_status make_room(const hl_composer *composer, const hl_scene_descripti
 
 hl_status hl_compose_volumes(const hl_composer *composer, hl_scene_description *description,
                              hl_changed_volumes *changed) {
-  bool whole = shows_whole(composer, description), masked = composer->asked[HL_ASK_MASK].given;
+  bool whole = shows_whole(composer), masked = composer->asked[HL_ASK_MASK].given;
   changed->seen = description->volume_count > 0 && (whole || changes_any(composer));
   tell_of_holders(composer, description);
   hl_tell_of_function(composer);
   if (description->volume_count == 0) return refuse_looks(composer, description);
-  if (!changed->seen && !masked && !shows_film(composer, description)) return HL_OK;
+  if (!changed->seen && !masked && !shows_film(composer, description)) {
+    tell_of_scraps(composer, description);
+    return HL_OK;
+  }
   hl_status status = make_room(composer, description, changed);
   if (status != HL_OK) return status;
   description->volumes = changed->volumes;
-  for (size_t v = 0; whole && v < description->volume_count; v++) changed->volumes[v].cut_count = 0;
+  for (size_t v = 0; whole && v < description->volume_count; v++) {
+    changed->volumes[v].cut_count = 0;
+    changed->volumes[v].scraps_least = 0;
+  }
   status = hl_check_volume_names(composer, description);
   if (status == HL_OK) status = hl_check_clip_names(composer, description);
   if (status == HL_OK) status = hl_check_cut_names(composer, description);
@@ -176,6 +209,7 @@ hl_status hl_compose_volumes(const hl_composer *composer, hl_scene_description *
     change_density(composer, &changed->volumes[i]);
   for (size_t i = 0; i < description->volume_count && status == HL_OK && masked; i++)
     hl_compose_rest(&changed->volumes[i]);
+  if (status == HL_OK) tell_of_scraps(composer, description);
   return status;
 }
 

@@ -12,6 +12,7 @@
 #include "guess/exposure.h"
 #include "guess/holders.h"
 #include "guess/looks.h"
+#include "guess/scraps.h"
 #include "guess/smoothing.h"
 #include "guess/styles.h"
 #include "guess/view.h"
@@ -19,6 +20,7 @@
 #include "scene/geometry/cut.h"
 #include "scene/label/draw_labels.h"
 #include "scene/scene.h"
+#include "volume/scraps.h"
 #include "volume/smooth.h"
 #include "volume/store/gathered.h"
 
@@ -209,10 +211,10 @@ static hl_status expose(const hl_look *look, const hl_data_analysis *analysis, h
   return status;
 }
 
-/* Gives a volume cuts that remove the holders of the object. The search always uses the look `base`, which
- * suits the volume, so that the cuts are the same whatever look is shown. planes: memory for the cuts; it
- * must last as long as the volume's description. */
-static hl_status leave_holders_out(hl_context *context, const hl_look *base, const hl_data_analysis *analysis,
+/* Gives a volume cuts that remove the holders of the object, and hides scraps beside the object. The searches
+ * always use the look `base`, which suits the volume, so that they find the same whatever look is shown.
+ * planes: memory for the cuts; it must last as long as the volume's description. */
+static hl_status show_object_alone(hl_context *context, const hl_look *base, const hl_data_analysis *analysis,
                                    hl_cut planes[HL_HOLDER_PLANES], hl_scene_volume *volume,
                                    hl_error *error) {
   hl_scene_volume seen = *volume;
@@ -221,6 +223,8 @@ static hl_status leave_holders_out(hl_context *context, const hl_look *base, con
                                    error);
   if (status != HL_OK) return status;
   status = hl_holders_find(&seen, analysis, planes, &count, error);
+  if (status == HL_OK && has_room(volume->volume, hl_scraps_bytes(volume->volume)))
+    status = hl_scraps_choose(&seen, analysis, volume, error);
   hl_transfer_function_release(context, &seen.transfer_function);
   volume->cuts = planes;
   volume->cut_count = count;
@@ -276,7 +280,7 @@ static hl_status make_scene_of(hl_context *context, hl_volume *volume, const cha
   hl_scene_description_defaults(&description);
   description.volumes = &scene_volume;
   description.volume_count = 1;
-  if (!labelled) status = leave_holders_out(context, base, &analysis, planes, &scene_volume, error);
+  if (!labelled) status = show_object_alone(context, base, &analysis, planes, &scene_volume, error);
   if (status == HL_OK) status = hl_scene_volume_check(&scene_volume, 0, error);
   if (status == HL_OK) status = hl_scene_frame(&description, &description.camera, error);
   if (status == HL_OK) {

@@ -28,6 +28,7 @@ static const char *const volume_keys[] = {"name",
                                           "visible",
                                           "casts_shadow",
                                           "clip",
+                                          "scraps",
                                           "receives_shadow",
                                           "array",
                                           "component",
@@ -111,6 +112,18 @@ static hl_status read_scattering(hl_json_reader *reader, const json_t *value, hl
   static const char *const settings[] = {"scattering/anisotropy", "scattering/albedo", "scattering/multiple"};
   if (value == NULL) return HL_OK;
   size_t mark = hl_json_enter(reader, "scattering");
+  hl_status status = hl_json_object(reader, value, keys);
+  for (size_t k = 0; status == HL_OK && k < sizeof settings / sizeof *settings; k++)
+    status = hl_json_setting(reader, value, HL_SETTINGS_VOLUME, settings[k], volume);
+  if (status == HL_OK) hl_json_leave(reader, mark);
+  return status;
+}
+
+static hl_status read_scraps(hl_json_reader *reader, const json_t *value, hl_scene_volume *volume) {
+  static const char *const keys[] = {"faint", "firm", "least", NULL};
+  static const char *const settings[] = {"scraps/faint", "scraps/firm", "scraps/least"};
+  if (value == NULL) return HL_OK;
+  size_t mark = hl_json_enter(reader, "scraps");
   hl_status status = hl_json_object(reader, value, keys);
   for (size_t k = 0; status == HL_OK && k < sizeof settings / sizeof *settings; k++)
     status = hl_json_setting(reader, value, HL_SETTINGS_VOLUME, settings[k], volume);
@@ -488,6 +501,7 @@ hl_status hl_json_read_volume(hl_json_reader *reader, const json_t *value, hl_vo
   if (status == HL_OK)
     status = hl_json_read_cuts(reader, json_object_get(value, "cuts"), &volume->cuts, &volume->cut_count);
   if (status == HL_OK) status = read_scattering(reader, json_object_get(value, "scattering"), volume);
+  if (status == HL_OK) status = read_scraps(reader, json_object_get(value, "scraps"), volume);
   if (status == HL_OK) status = read_source(reader, value, shelf, NULL, volume);
   if (status == HL_OK) status = hl_json_read_labels(reader, value, volume);
   if (status == HL_OK) status = read_mask(reader, json_object_get(value, "mask"), shelf, volume);

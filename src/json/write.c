@@ -378,6 +378,13 @@ static void write_volume(hl_json_writer *w, const hl_scene_volume *volume) {
     write_key(w, HL_SETTINGS_VOLUME, "clip/max", volume);
     hl_json_close(w, "}");
   }
+  if (volume->scraps_least > 0) {
+    hl_json_open(w, "scraps", "{");
+    write_key(w, HL_SETTINGS_VOLUME, "scraps/faint", volume);
+    write_key(w, HL_SETTINGS_VOLUME, "scraps/firm", volume);
+    write_key(w, HL_SETTINGS_VOLUME, "scraps/least", volume);
+    hl_json_close(w, "}");
+  }
   write_volume_cuts(w, volume);
   hl_json_close(w, "}");
 }

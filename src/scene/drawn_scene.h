@@ -15,6 +15,7 @@
 #include "core/error.h"
 #include "scene/label/draw_labels.h"
 #include "scene/order.h"
+#include "volume/scraps.h"
 
 typedef struct drawn_scene {
   pthread_mutex_t lock; /* held while the other members are made */
@@ -28,12 +29,24 @@ typedef struct drawn_scene {
   /* Owned; [volume_count]. For a transfer function of two numbers: a number that identifies its content, as a
    * part of keys of kept results. For other functions: 0. */
   uint64_t *plane_marks;
+  /* owned; [volume_count of the scene]; the volumes without their scraps, and the copies of the scene's
+   * volumes that have them; null if no volume hides scraps */
+  hl_volume **without_scraps;
+  hl_scene_volume *volumes;
+  size_t volume_count; /* of both arrays */
 } drawn_scene;
 
 /* Makes an empty drawn scene, which hl_drawn_scene_make() fills. The caller owns it (hl_drawn_scene_destroy).
  * Returns null if memory is short. */
 drawn_scene *hl_drawn_scene_create(hl_context *context);
 void hl_drawn_scene_destroy(hl_context *context, drawn_scene *drawn); /* `drawn` may be null */
+
+/* Returns whether frames hide scraps of a volume. They do not if its function or its isosurfaces show values
+ * on the other side of `faint`, where hidden matter would leave a trace. */
+bool hl_hides_scraps(const hl_scene_volume *volume);
+
+/* Finds the scraps of a volume for which hl_hides_scraps() is true; as hl_scraps_hide(). */
+hl_status hl_hide_scraps(const hl_scene_volume *volume, hl_scraps *scraps, hl_error *error);
 
 /* Makes the form of a scene that frames draw, unless it was made before. given: the description of the scene
  * as the program gave it; placed: the same description, with lights converted to the world and the scene's

@@ -237,7 +237,19 @@ static const hl_setting volume_rows[] = {
      .sentence = "The normal of surfaces at the faces of `cuts` and `clip`: the face's, the data's, or none, as in a medium."},
     {.key = "cut_casts_shadow", FIELD(hl_scene_volume, cut_casts_shadow), A_FLAG, .optional = 1,
      .option = "cut-casts-shadow",
-     .sentence = "What `cuts` remove goes on taking light from what lies behind it."}};
+     .sentence = "What `cuts` remove goes on taking light from what lies behind it."},
+    {.key = "scraps/faint", FIELD(hl_scene_volume, scraps_faint), .type = HL_SETTING_NUMBER, .unit = "",
+     .low = -HL_LIMIT_VOXEL_VALUE, .high = HL_LIMIT_VOXEL_VALUE, .optional = 1,
+     .sentence = "The value from which on matter is seen; nothing is hidden from functions that show other values.",
+     .mend = "give a value of the volume"},
+    {.key = "scraps/firm", FIELD(hl_scene_volume, scraps_firm), .type = HL_SETTING_NUMBER, .unit = "",
+     .low = -HL_LIMIT_VOXEL_VALUE, .high = HL_LIMIT_VOXEL_VALUE, .optional = 1,
+     .sentence = "Voxels beyond this value that share faces are one body.",
+     .mend = "give a value of the volume"},
+    {.key = "scraps/least", FIELD(hl_scene_volume, scraps_least), .type = HL_SETTING_NUMBER, .unit = "",
+     .high = 1, .optional = 1,
+     .sentence = "Bodies with fewer voxels than this part of the largest body's are hidden; 0: none.",
+     .mend = "give a fraction from {low} to {high}"}};
 
 static const hl_setting mesh_rows[] = {
     {.key = "transform/scale", FIELD(hl_scene_mesh, scale), .type = HL_SETTING_NUMBER, .unit = "",

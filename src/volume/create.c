@@ -12,6 +12,7 @@
 #include "volume/convert.h"
 #include "volume/exact.h"
 #include "volume/in_bricks.h"
+#include "volume/scraps.h"
 #include "volume/statistics.h"
 #include "volume/store/glimpse.h"
 #include "volume/store/pages.h"
@@ -398,6 +399,7 @@ void hl_volume_release(hl_volume *volume) {
   hl_release(volume->context, volume->segments);
   hl_release(volume->context, volume->channels);
   hl_release(volume->context, volume->label_maps);
+  hl_scraps_release_kept(volume);
   if (volume->shelf != NULL) volume->release_shelf(volume->context, volume->shelf);
   hl_release(volume->context, volume->series);
   hl_release(volume->context, atomic_load(&volume->analysis));

@@ -146,9 +146,11 @@ struct hl_volume {
                                                 * found; null until they are needed */
   /* Data that other parts of the library keep with the volume. The volume owns the data, and releases
    * them. */
-  atomic_flag shelf_lock; /* held while the shelf is accessed */
+  atomic_flag shelf_lock; /* held while `scraps` and the shelf are accessed */
   void *shelf;
   void (*release_shelf)(hl_context *context, void *shelf);
+  struct hl_kept_scraps *scraps; /* owned (scraps.h); the last result of hl_scraps_hide(); null if there is
+                                  * none */
 };
 
 static inline size_t hl_storage_bytes(hl_storage storage) {

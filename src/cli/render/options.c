@@ -315,7 +315,8 @@ const cli_option render_options[RENDER_OPTION_COUNT] = {
     [RENDER_WHOLE] = {.name = "whole",
                       .kind = OPTION_SWITCH,
                       .help = "show a bare volume whole: with tables, head rests and\ntowels beside a "
-                              "scanned object, which are otherwise cut\naway"},
+                              "scanned object, which are otherwise cut\naway, and with the small bodies "
+                              "beside it, which are\notherwise hidden"},
     [RENDER_SHADING] = {.name = "shading",
                         .kind = OPTION_CHOICE,
                         .help = "surfaces, a medium such as smoke, or the\ncolours themselves without light "

@@ -204,7 +204,8 @@ static hl_status check_look(const hl_checker *check, const hl_scene_volume *volu
   snprintf(place, sizeof place, "%s/material", check->place);
   if (status == HL_OK)
     status = hl_settings_check(HL_SETTINGS_MATERIAL, &volume->material, 0, place, check->error);
-  static const char *const keys[] = {"attenuation_color", "scattering/anisotropy", "scattering/albedo"};
+  static const char *const keys[] = {"attenuation_color", "scattering/anisotropy", "scattering/albedo",
+                                     "scraps/faint",      "scraps/firm",           "scraps/least"};
   for (size_t k = 0; status == HL_OK && k < sizeof keys / sizeof *keys; k++)
     status = hl_check_key(check, HL_SETTINGS_VOLUME, keys[k], volume);
   return status;

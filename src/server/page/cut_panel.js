@@ -137,15 +137,17 @@ function panelOf({ title, noun, kind, viewer: { store, current, overlay, report,
   return { element, update, updateView: update }; // the layout says whether there is a crosshair
 }
 
-// The switch for everything that is cut away: the cuts and clip boxes of all volumes, and the scene's cuts.
-// It also says, below the picture, what the program has cut away by itself; one click brings this back.
+// The switch for everything that is cut away or hidden: the cuts, clip boxes and scraps of all volumes, and the
+// scene's cuts. It also says, below the picture, what the program has left out by itself; one click brings this back.
 export function cutSwitch(viewer) {
   const { store, start, find } = viewer;
-  const cutsOf = ({ volumes, cuts }) => ({ volumes: volumes.map(({ cuts: own, clip }) => ({ cuts: own, clip })), cuts });
-  const isCut = ({ volumes, cuts }) => cuts?.length > 0 || volumes.some((volume) => volume.cuts?.length > 0 || volume.clip);
+  const cutsOf = ({ volumes, cuts }) => ({ volumes: volumes.map(({ cuts: own, clip, scraps }) => ({ cuts: own, clip, scraps })), cuts });
+  const isCut = ({ volumes, cuts }) => cuts?.length > 0 || volumes.some((volume) => volume.cuts?.length > 0 || volume.clip || volume.scraps);
   const withCuts = ({ cuts: _, ...scene }, { volumes = [], cuts }) => ({
     ...scene, ...(cuts ? { cuts } : {}),
-    volumes: scene.volumes.map(({ cuts: __, clip: ___, ...volume }, n) => ({ ...volume, ...(volumes[n]?.cuts ? { cuts: volumes[n].cuts } : {}), ...(volumes[n]?.clip ? { clip: volumes[n].clip } : {}) })),
+    volumes: scene.volumes.map(({ cuts: __, clip: ___, scraps: ____, ...volume }, n) => ({
+      ...volume, ...Object.fromEntries(["cuts", "clip", "scraps"].filter((key) => volumes[n]?.[key]).map((key) => [key, volumes[n][key]])),
+    })),
   });
   const chosen = start.volumes.reduce((count, about, n) => count + (about?.chosen_cuts ? start.scene.volumes[n].cuts.length : 0), 0);
   const away = () => store.aside("all cuts");
@@ -154,16 +156,19 @@ export function cutSwitch(viewer) {
     if (!on || away()) store.change("all cuts", (scene) => withCuts(scene, on ? away() : { volumes: [] }));
   }
   const all = toggle({ label: "All cuts", get: () => isCut(store.scene), set });
-  const why = `${chosen} ${chosen === 1 ? "plane takes" : "planes take"} away what holds the object`;
-  const told = make("p", { class: "facts", hidden: chosen === 0 }, `${why}: chosen by the program, as nobody said what to cut.`);
-  const note = make("button", { type: "button", class: "note", hidden: chosen === 0, onclick: () => set(!isCut(store.scene)) });
+  const hidden = start.scene.volumes.some((volume) => volume.scraps), leftOut = chosen > 0 || hidden;
+  const holders = `${chosen} ${chosen === 1 ? "plane" : "planes"}`;
+  const why = [...(chosen > 0 ? [`${holders} ${chosen === 1 ? "takes" : "take"} away what holds the object`] : []), ...(hidden ? ["small bodies beside the object are hidden"] : [])].join(", and ");
+  const told = make("p", { class: "facts", hidden: !leftOut }, `${why}: chosen by the program, as nobody said what to cut.`);
+  const shows = [...(chosen > 0 ? [`show what holds it: ${holders} ${chosen === 1 ? "cuts" : "cut"} it away`] : []), ...(hidden ? [`${chosen > 0 ? "" : "show "}hidden small bodies`] : [])].join("; ");
+  const note = make("button", { type: "button", class: "note", hidden: !leftOut, onclick: () => set(!isCut(store.scene)) });
   find("statistics").before(note);
   viewer.toggleCuts = () => set(!isCut(store.scene));
   const element = make("div", { class: "chooser" }, all.element, told);
   function update() {
     all.update();
     element.hidden = !isCut(store.scene) && !away();
-    note.textContent = isCut(store.scene) ? `show what holds it: ${chosen} ${chosen === 1 ? "plane cuts" : "planes cut"} it away` : "cut away again what holds it";
+    note.textContent = isCut(store.scene) ? shows : chosen > 0 ? "cut away again what holds it" : "hide small bodies again";
   }
   update();
   return { element, update };
