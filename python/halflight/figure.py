@@ -131,6 +131,8 @@ class Figure:
                 made.background[0:3] = linear_color("background", self._background)
         kept.append(ffi.new("char[]", self._font.encode()))
         made.font, made.font_points = kept[-1], self._font_size
+        if self._size is None:
+            call(lib.hl_figure_clear_legend, context, made, panels)
         call(lib.hl_figure_add_strip, context, made)
         return made
 

@@ -76,7 +76,8 @@ static hl_status make_figure(hl_context *context, const cli_overlay *overlay, co
   hl_figure_of_picture(image, scene, width, figure, panel);
   if (overlay->font_points > 0) figure->font_points = overlay->font_points;
   panel->overlay = overlay->overlay;
-  return hl_figure_add_strip(context, figure, error);
+  hl_status status = hl_figure_clear_legend(context, figure, panel, error);
+  return status == HL_OK ? hl_figure_add_strip(context, figure, error) : status;
 }
 
 hl_status overlay_check_scene(hl_context *context, const cli_overlay *overlay, const hl_scene *scene,

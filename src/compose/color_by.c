@@ -110,6 +110,12 @@ static hl_status read_coloring(const hl_composer *composer, const hl_scene_descr
     return hl_fail(composer->error, HL_ERROR_ARGUMENT, "--color-by: '%.200s': LO must be below HI", text);
   take_map(typed);
   if (find_file(composer, typed)) return HL_OK;
+  const char *last = strrchr(typed->text, ':');
+  char *rest = NULL;
+  if (last != NULL && isfinite(hl_plain_number(last + 1, &rest)) && rest > last + 1 && *rest == '\0')
+    return hl_fail(composer->error, HL_ERROR_ARGUMENT,
+                   "--color-by: '%.200s': '%.40s' is half of a range: give LO,HI, as FILE:hot:0,%.40s", text,
+                   last + 1, last + 1);
   find_source(composer, description, typed, names);
   if (typed->source != NULL || names[0] == NULL || names[1] == NULL) return HL_OK;
   char mend[300];

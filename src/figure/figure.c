@@ -8,6 +8,7 @@
 #include <stdio.h>
 #include <string.h>
 
+#include "core/context.h"
 #include "core/door.h"
 #include "core/endings.h"
 #include "core/memory.h"
@@ -122,6 +123,30 @@ hl_status hl_figure_add_strip(hl_context *context, hl_figure *figure, hl_error *
   if (status != HL_OK) return status;
   const double pixel = MILLIMETRES_PER_INCH / figure->pixels_per_inch; /* pictures keep whole pixels */
   figure->height = fmax(figure->height, ceil((bottom + height) / pixel - 1e-6) * pixel);
+  return HL_OK;
+}
+
+hl_status hl_figure_clear_legend(hl_context *context, const hl_figure *figure, hl_figure_panel *panel,
+                                 hl_error *error) {
+  HL_DOOR;
+  if (context == NULL || figure == NULL || panel == NULL || panel < figure->panels ||
+      panel >= figure->panels + figure->panel_count)
+    return hl_fail(
+        error, HL_ERROR_ARGUMENT,
+        "hl_figure_clear_legend: context, figure and panel must not be null, and the panel must be "
+        "the figure's");
+  hl_overlay *overlay = &panel->overlay;
+  if (!overlay->legend || overlay->legend_corner != HL_CORNER_FREE || panel->image == NULL) return HL_OK;
+  hl_status status = check(figure, error);
+  bool covers = false;
+  if (status == HL_OK)
+    status = hl_page_judge_legend(context, figure, (size_t)(panel - figure->panels), &covers, error);
+  if (status != HL_OK || !covers) return status;
+  overlay->legend_corner = HL_CORNER_BELOW;
+  hl_log(
+      context, HL_LOG_INFO,
+      "the legend stands below the picture, where it covers nothing: --place legend=upper-right puts it into "
+      "the picture");
   return HL_OK;
 }
 

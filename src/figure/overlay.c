@@ -437,6 +437,12 @@ static hl_status place_and_draw(const hl_ink *ink, hl_overlay_place *place, cons
   hl_status status = place_annotations(&trial, place, lines, error);
   if (status == HL_OK) status = place_parts(&trial, place, cover, parts, error);
   cairo_destroy(trial.cairo);
+  if (ground->legend_covers != NULL) {
+    const corner_part *legend = &parts[LEGEND];
+    *ground->legend_covers = !legend->is_placed || legend->left_out > 0 ||
+                             legend->covered >= unit_of(legend->box);
+    return status;
+  }
   if (status == HL_OK) tell_left_out(ground, parts);
   if (status == HL_OK) status = draw_all(ink, place, cover, parts, lines, &letter, error);
   return status;

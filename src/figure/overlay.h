@@ -35,8 +35,11 @@ typedef struct hl_overlay_ground {
   hl_rectangle picture;   /* the rectangle of the picture on the page, points */
   const hl_rectangle *insets; /* [inset_count]; rectangles on the page that will lie over the picture */
   size_t inset_count;
-  size_t panel; /* the panel's number, which messages name; 0 if the page has no other panel */
-  bool is_told; /* whether the context's log is told which parts find no room */
+  size_t panel;        /* the panel's number, which messages name; 0 if the page has no other panel */
+  bool is_told;        /* whether the context's log is told which parts find no room */
+  bool *legend_covers; /* if not null, nothing is drawn, and this takes whether the legend finds no place, has
+                        * no room for all its rows, or covers a twentieth of itself of what the picture
+                        * shows */
 } hl_overlay_ground;
 
 /* Draws the whole overlay over a picture. */

@@ -170,9 +170,10 @@ static void draw_frame(const hl_ink *ink, hl_rectangle place) {
   cairo_stroke(ink->cairo);
 }
 
-/* Draws the overlay of a panel, beside the panels that will be drawn over it. */
+/* Draws the overlay of a panel, beside the panels that will be drawn over it. legend_covers: as in
+ * hl_overlay_ground. */
 static hl_status draw_overlay(hl_context *context, const hl_figure *figure, size_t index, const hl_ink *ink,
-                              bool is_told, hl_error *error) {
+                              bool is_told, bool *legend_covers, hl_error *error) {
   const hl_figure_panel *panel = &figure->panels[index];
   const hl_rectangle picture = rectangle_of(panel);
   hl_rectangle insets[HL_MOST_TAKEN];
@@ -188,8 +189,15 @@ static hl_status draw_overlay(hl_context *context, const hl_figure *figure, size
                                     .insets = insets,
                                     .inset_count = count,
                                     .panel = figure->panel_count > 1 ? index + 1 : 0,
-                                    .is_told = is_told};
+                                    .is_told = is_told,
+                                    .legend_covers = legend_covers};
   return hl_overlay_draw(ink, &panel->overlay, &ground, error);
+}
+
+hl_status hl_page_judge_legend(hl_context *context, const hl_figure *figure, size_t index, bool *covers,
+                               hl_error *error) {
+  const hl_ink ink = {.size = figure->font_points, .font = figure->font};
+  return draw_overlay(context, figure, index, &ink, false, covers, error);
 }
 
 /* The strip of the page below all panels. */
@@ -234,7 +242,7 @@ static hl_status draw_panels(hl_context *context, const hl_figure *figure, cairo
     if (panel->image != NULL) status = draw_picture(context, cairo, figure, panel, pixels, error);
     hl_ink ink = ink_for(cairo, figure, panel);
     if (panel->frame) draw_frame(&ink, rectangle_of(panel));
-    if (status == HL_OK) status = draw_overlay(context, figure, p, &ink, is_told, error);
+    if (status == HL_OK) status = draw_overlay(context, figure, p, &ink, is_told, NULL, error);
   }
   if (status == HL_OK) status = draw_strip(figure, cairo, error);
   if (status == HL_OK && cairo_status(cairo) != CAIRO_STATUS_SUCCESS)

@@ -23,6 +23,10 @@ hl_status hl_page_write(const hl_figure *figure, bool pdf, hl_output *output, hl
 hl_status hl_page_measure_strip(const hl_figure *figure, const hl_figure_panel *panel, double *height,
                                 hl_error *error);
 
+/* Finds whether the legend of a panel covers what the picture shows, wherever it lies. */
+hl_status hl_page_judge_legend(hl_context *context, const hl_figure *figure, size_t index, bool *covers,
+                               hl_error *error);
+
 /* The first panel with a legend below all pictures; null if there is none. */
 const hl_figure_panel *hl_panel_of_strip(const hl_figure *figure);
 

@@ -24,4 +24,10 @@ hl_status hl_page_measure_strip(const hl_figure *figure, const hl_figure_panel *
   return refuse(error);
 }
 
+hl_status hl_page_judge_legend(hl_context *context, const hl_figure *figure, size_t index, bool *covers,
+                               hl_error *error) {
+  (void)context, (void)figure, (void)index, (void)covers;
+  return refuse(error);
+}
+
 const char *hl_page_missing(void) { return "cairo and pango"; }

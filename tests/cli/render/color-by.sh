@@ -51,7 +51,7 @@ for by in OHH flame.vti:OHH; do
   halflight render flame.vti --array heat --color-by $by -o no.png 2>message || code=$?
   echo $code "$(cut -c12-200 message)"
 done
-for wrong in "no.nrrd" "heat.nrrd:90,20" "heat.nrrd --look mip" "heat.nrrd --iso 90" "heat.nrrd:infernoo"; do
+for wrong in "no.nrrd" "heat.nrrd:90,20" "heat.nrrd --look mip" "heat.nrrd --iso 90" "heat.nrrd:infernoo" "heat.nrrd:hot:1"; do
   code=0
   ball --color-by $wrong -o no.png 2>message || code=$?
   echo $code "$(cut -c12-180 message)"

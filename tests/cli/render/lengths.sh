@@ -10,7 +10,7 @@ metres --unit m --slice z=200mm -o millimetres.npy
 metres --slice z=0.2u -o own.npy
 cmp millimetres.npy own.npy
 # The world of several volumes has a unit, too.
-halflight render ball_16x16x16_uint8.raw ball_16x16x16_uint8.raw --spacing 0.0625 --unit m --slice z=200mm --print-scene >scene.json
+halflight render ball_16x16x16_uint8.raw ball_16x16x16_uint8.raw --spacing 0.0625 --unit m --slice z=200mm --quiet --print-scene >scene.json
 tool json scene.json "d['cuts'][0]['point'][2]"
 for wrong in "--slice z=200mm" "--slice z=200mm --unit cm" "--slice z=0" "--clip z=200mm:800mm" "--clip z=200mm:" "--clip z=:-2m --unit m"; do
   code=0
@@ -24,4 +24,4 @@ done
 # A face of the box is in the volume.
 halflight render ball_16x16x16_uint8.raw --size 24 --cut-plane z=1 --cut-plane z=:0 --cut-box x=1: --clip y=0:1 -o no.png 2>message
 grep -c warning message || true
-metres --slice z=1 --quiet -o face.png
+halflight render ball_16x16x16_uint8.raw --spacing 0.0625 --size 24 --quiet --slice z=1 -o face.png
