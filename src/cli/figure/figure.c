@@ -223,7 +223,7 @@ static double place_panels(figure_page *page) {
   return top + high;
 }
 
-/* Returns whether a file is a picture that need not be rendered: a PNG without a scene in it, OpenEXR,
+/* Returns whether a file is a picture that need not be rendered: a PNG that carries no scene, OpenEXR,
  * Radiance HDR, or an .npy file of R, G, B and A as `halflight render` writes it. Any other .npy file is a
  * volume. */
 static bool is_plain_picture(const char *path) {
@@ -234,9 +234,9 @@ static bool is_plain_picture(const char *path) {
     return false;
   unsigned char *bytes = frames_read_picture(path, &length);
   bool plain = bytes != NULL && hl_image_get_about(path, bytes, length, &about, NULL) == HL_OK &&
-               !about.has_scene && (!array || about.channels == 4);
+               (!array || about.channels == 4);
   free(bytes);
-  return plain;
+  return plain && (!about.has_scene || figure_is_in_picture(path));
 }
 
 /* Makes the scene of a panel, or reads its picture. */
@@ -340,6 +340,18 @@ static hl_status render_panels(figure_job *job, hl_error *error) {
   return status;
 }
 
+/* Writes the page. A PNG carries the figure. */
+static hl_status write_page(figure_job *job, const hl_figure *figure, hl_error *error) {
+  char *text = figure_page_text(&job->page);
+  hl_image_write_options options;
+  hl_image_write_options_defaults(&options);
+  options.pixels_per_inch = figure->pixels_per_inch;
+  options.scene_json = text;
+  hl_status status = hl_figure_write(job->host.context, figure, job->output, &options, error);
+  free(text);
+  return status;
+}
+
 static int make_and_write(figure_job *job) {
   double started = hl_clock_seconds();
   hl_error error = {0};
@@ -356,7 +368,7 @@ static int make_and_write(figure_job *job) {
     hl_figure_panel panels[FIGURE_MOST_PANELS];
     status = make_figure(job, height, &figure, panels, &error);
     height = figure.height;
-    if (status == HL_OK) status = hl_figure_write(job->host.context, &figure, job->output, NULL, &error);
+    if (status == HL_OK) status = write_page(job, &figure, &error);
   }
   if (status != HL_OK) return host_fail(&job->host, PHASE_RUN, status, &error);
   if (!job->host.quiet)

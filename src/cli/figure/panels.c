@@ -435,24 +435,67 @@ static int read_root(page_reading *reading, const json_t *root) {
   return exit_code == EXIT_CODE_OK ? add_letters(reading, json_object_get(root, "letters")) : exit_code;
 }
 
+/* Replaces the bytes of a PNG by the JSON that it carries; other bytes stay. */
+static int take_from_picture(const char *path, unsigned char **bytes, size_t *length) {
+  hl_context *context = NULL;
+  hl_error error = {0};
+  char *text = NULL, *copy = NULL;
+  if (*length < 8 || memcmp(*bytes, "\x89PNG\r\n\x1a\n", 8) != 0) return EXIT_CODE_OK;
+  hl_status status = hl_context_create(NULL, &context, &error);
+  if (status == HL_OK) status = hl_image_find_scene(context, path, *bytes, *length, &text, &error);
+  free(*bytes);
+  *bytes = NULL;
+  if (status == HL_OK) copy = strdup(text);
+  if (copy != NULL) *length = strlen(copy), *bytes = (unsigned char *)copy;
+  hl_text_release(context, text);
+  hl_context_destroy(context);
+  if (status != HL_OK) return fail(EXIT_CODE_INPUT, "%s", error.message);
+  return copy != NULL ? EXIT_CODE_OK : fail(EXIT_CODE_FAILURE, "out of memory");
+}
+
+bool figure_is_in_picture(const char *path) {
+  size_t length = 0;
+  unsigned char *bytes = frames_read_picture(path, &length);
+  hl_context *context = NULL;
+  char *text = NULL;
+  json_t *json = NULL;
+  if (bytes != NULL && hl_context_create(NULL, &context, NULL) == HL_OK &&
+      hl_image_find_scene(context, path, bytes, length, &text, NULL) == HL_OK)
+    json = hl_plain_json_load_text(text);
+  const bool found = json_object_get(json, "panels") != NULL;
+  json_decref(json);
+  hl_text_release(context, text);
+  hl_context_destroy(context);
+  free(bytes);
+  return found;
+}
+
 int figure_page_read(const char *path, figure_page *page) {
   *page = (figure_page){.panels = calloc(FIGURE_MOST_PANELS, sizeof *page->panels)};
   if (page->panels == NULL) return fail(EXIT_CODE_FAILURE, "out of memory");
   size_t length = 0;
   unsigned char *bytes = frames_read_picture(path, &length);
   if (bytes == NULL) return frames_fail_read(path);
+  int exit_code = take_from_picture(path, &bytes, &length);
+  if (exit_code != EXIT_CODE_OK) return exit_code;
   json_error_t place;
   json_t *root = hl_plain_json_load((const char *)bytes, length, JSON_REJECT_DUPLICATES, &place);
   free(bytes);
   if (root == NULL)
     return fail(EXIT_CODE_INPUT, "%s: line %d, column %d: %s", path, place.line, place.column, place.text);
   page_reading reading = {.path = path, .page = page};
-  int exit_code = read_root(&reading, root);
-  json_decref(root);
+  exit_code = read_root(&reading, root);
+  page->json = root;
   return exit_code;
 }
 
+char *figure_page_text(const figure_page *page) {
+  json_object_set_new(page->json, "dpi", json_real(page->pixels_per_inch));
+  return json_dumps(page->json, JSON_COMPACT);
+}
+
 void figure_page_release(figure_page *page) {
+  json_decref(page->json);
   for (int p = 0; p < page->count; p++) {
     figure_panel *panel = &page->panels[p];
     for (size_t w = 0; w < panel->word_count; w++) free(panel->words[w]);

@@ -40,6 +40,7 @@ typedef struct figure_panel {
 } figure_panel;
 
 typedef struct figure_page {
+  struct json_t *json;  /* owned; the figure as it was read; null after a failure */
   figure_panel *panels; /* owned; [count] */
   int count;
   double width, gap; /* millimetres */
@@ -51,8 +52,16 @@ typedef struct figure_page {
                                                    * panel */
 } figure_page;
 
-/* Reads the file. Call figure_page_release() even after a failure. Returns the exit code. */
+/* Reads the file, or the figure that a PNG of `halflight figure` carries. Call figure_page_release() even
+ * after a failure. Returns the exit code. */
 int figure_page_read(const char *path, figure_page *page);
 void figure_page_release(figure_page *page);
+
+/* The figure as JSON, with the page's pixels per inch, for a picture that carries it; owned by the caller
+ * (free); null if memory is short. */
+char *figure_page_text(const figure_page *page);
+
+/* Returns whether a picture's file carries a figure. */
+bool figure_is_in_picture(const char *path);
 
 #endif
