@@ -50,6 +50,17 @@ static void take_range(char *text, double range[2]) {
   *colon = '\0';
 }
 
+/* Whether a text ends in a colormap and one number. */
+static bool is_half_range(const char *text) {
+  char map[80], *rest;
+  const char *colon = strrchr(text, ':'), *before = colon;
+  if (colon == NULL || !isfinite(hl_plain_number(colon + 1, &rest)) || rest == colon + 1 || *rest != '\0')
+    return false;
+  while (before > text && before[-1] != ':') before--;
+  snprintf(map, sizeof map, "%.*s", (int)fmin((double)(colon - before), sizeof map - 1), before);
+  return hl_find_colormap(map) != NULL;
+}
+
 /* Takes the last part after ':' off the text, if the part is the name of a colormap. */
 static void take_map(typed_coloring *typed) {
   char *colon = strrchr(typed->text, ':');
@@ -108,14 +119,11 @@ static hl_status read_coloring(const hl_composer *composer, const hl_scene_descr
   take_range(typed->text, typed->range);
   if (typed->range[0] > typed->range[1])
     return hl_fail(composer->error, HL_ERROR_ARGUMENT, "--color-by: '%.200s': LO must be below HI", text);
+  if (is_half_range(typed->text))
+    return hl_fail(composer->error, HL_ERROR_ARGUMENT,
+                   "--color-by: '%.200s' ends in half of a range: give LO,HI, as FILE:hot:0,100", text);
   take_map(typed);
   if (find_file(composer, typed)) return HL_OK;
-  const char *last = strrchr(typed->text, ':');
-  char *rest = NULL;
-  if (last != NULL && isfinite(hl_plain_number(last + 1, &rest)) && rest > last + 1 && *rest == '\0')
-    return hl_fail(composer->error, HL_ERROR_ARGUMENT,
-                   "--color-by: '%.200s': '%.40s' is half of a range: give LO,HI, as FILE:hot:0,%.40s", text,
-                   last + 1, last + 1);
   find_source(composer, description, typed, names);
   if (typed->source != NULL || names[0] == NULL || names[1] == NULL) return HL_OK;
   char mend[300];

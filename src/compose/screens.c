@@ -31,7 +31,8 @@ bool hl_is_at_hand(const hl_volume *volume) { return volume->pages == NULL && vo
 bool hl_screen_can_hide(const hl_scene_volume *volume) {
   const hl_transfer_function *function = &volume->transfer_function;
   affine3 to_index;
-  return volume->visible && volume->label_count == 0 && volume->mask.volume == NULL &&
+  return volume->visible && volume->label_count == 0 &&
+         (volume->mask.volume == NULL || hl_is_at_hand(volume->mask.volume)) &&
          hl_is_at_hand(volume->volume) && function->plane.second == HL_SECOND_NONE &&
          function->gradient_opacity_count == 0 && volume->volume->maximum > volume->volume->minimum &&
          affine3_invert(hl_scene_volume_index_to_world(volume), &to_index);
@@ -51,6 +52,9 @@ hl_status hl_screen_begin(hl_context *context, const hl_scene_description *scene
       screen->opacity[n] = 1 - hl_pow(1 - opacity, screen->step / function->unit_distance);
     }
   }
+  affine3 world_to_mask;
+  if (volume->mask.volume != NULL && affine3_invert(hl_scene_mask_index_to_world(volume), &world_to_mask))
+    screen->to_mask = affine3_multiply(world_to_mask, to_world);
   return find_cuts(context, scene, volume, &screen->cuts, &screen->cut_count, error);
 }
 
@@ -63,8 +67,24 @@ static bool is_in_box(const hl_screen *screen, vec3 place) {
   return within;
 }
 
+/* Whether a volume's mask leaves its matter at a place in the volume's index space. */
+static bool is_in_mask(const hl_screen *screen, vec3 place) {
+  const hl_mask *mask = &screen->volume->mask;
+  if (mask->volume == NULL || mask->rest > 0) return true;
+  const vec3 at = affine3_apply(screen->to_mask, place);
+  const long voxel[3] = {lround(at.x), lround(at.y), lround(at.z)};
+  for (int a = 0; a < 3; a++)
+    if (voxel[a] < 0 || voxel[a] >= (long)mask->volume->dimension[a]) return false;
+  const double value = hl_volume_value_within(mask->volume, (size_t)voxel[0], (size_t)voxel[1],
+                                              (size_t)voxel[2]);
+  for (size_t l = 0; l < mask->label_count; l++)
+    if ((double)mask->labels[l].value == value) return mask->labels[l].visible && mask->labels[l].opacity > 0;
+  return false;
+}
+
 bool hl_screen_leaves(const hl_screen *screen, vec3 place) {
-  return is_in_box(screen, place) && hl_cuts_leave(screen->cuts, screen->cut_count, place);
+  return is_in_box(screen, place) && hl_cuts_leave(screen->cuts, screen->cut_count, place) &&
+         is_in_mask(screen, place);
 }
 
 size_t hl_screen_label(const hl_scene_volume *map, double value) {
@@ -107,7 +127,7 @@ double hl_screen_passing(const hl_screen *screen, vec3 point, vec3 towards, doub
     const double opacity = hl_screen_opacity(
         screen,
         hl_volume_value_within(volume, (size_t)lround(at.x), (size_t)lround(at.y), (size_t)lround(at.z)));
-    if (opacity > 0 && hl_cuts_leave(screen->cuts, screen->cut_count, at)) left *= 1 - opacity;
+    if (opacity > 0 && hl_screen_leaves(screen, at)) left *= 1 - opacity;
   }
   return left;
 }

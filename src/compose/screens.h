@@ -21,6 +21,7 @@ typedef struct hl_screen {
   size_t cut_count;
   double low[3], high[3]; /* the volume's box in index space */
   affine3 to_index;
+  affine3 to_mask;                 /* the volume's index space to that of its mask, if it has one */
   double step;                     /* world units */
   double opacity[HL_SCREEN_TABLE]; /* of a step; entries over the volume's range */
 } hl_screen;
@@ -38,7 +39,7 @@ hl_status hl_screen_begin(hl_context *context, const hl_scene_description *scene
                           const hl_scene_volume *volume, hl_screen *screen, hl_error *error);
 void hl_screen_release(hl_context *context, hl_screen *screen);
 
-/* Whether the clip box and the cuts leave a volume's matter at a place in its index space. */
+/* Whether the clip box, the cuts and the mask leave a volume's matter at a place in its index space. */
 bool hl_screen_leaves(const hl_screen *screen, vec3 place);
 
 /* The index of the label of a map that a value is, if the label is visible; the number of labels if there is

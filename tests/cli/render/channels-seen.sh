@@ -22,6 +22,12 @@ write("beside.zarr", left, right)
 with open("map_32x32x32_uint8.raw", "wb") as file:
     file.write(bytes(core[1](x, y, z) > 128 for z in range(32) for y in range(32) for x in range(32)))
 END
+for radius in 7 14; do
+  "$PYTHON" -c "
+import math
+open('mask${radius}_32x32x32_uint8.raw', 'wb').write(bytes(math.dist((x, y, z), (15.5, 15.5, 15.5)) < $radius
+    for z in range(32) for y in range(32) for x in range(32)))"
+done
 told() {
   echo "$*: $(halflight render "$@" --channel all --print-scene 2>&1 >scene.json)"
   tool json scene.json '[(v["name"], "translucent" if v["transfer_function"].get("unit_distance", 1) > 5 else "opaque") for v in d["volumes"] if "labels" not in v]'
@@ -36,6 +42,9 @@ told within.zarr --threshold 100
 told within.zarr --range 1%,99%
 told within.zarr --colormap cyan,magenta
 told within.zarr --cut-box z=0.5: --view top
+# A mask that leaves the skin leaves it translucent, and one that leaves the core alone leaves nothing that hides it.
+told within.zarr --mask mask14_32x32x32_uint8.raw
+told within.zarr --mask mask7_32x32x32_uint8.raw
 # Matter that is clipped away counts no more: the skin hides what is left of the core.
 told within.zarr --clip x=:0.5 --view front
 # Labels beside the channels change nothing; where they are hidden, the line names the channel that hides them.
