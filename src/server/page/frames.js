@@ -13,7 +13,7 @@ const PROCESSOR_BUDGET = 80; // milliseconds of processor time for such a frame,
 const REST_AFTER = 120; // milliseconds without a change, after which the scene is at rest
 // Milliseconds for the first picture of full size, so that it is there half a second after the last change.
 const SETTLED_WITHIN = 350;
-const LEAST_PIXELS = 480 * 320; // least size of a picture while something moves, if the full picture has more
+const LEAST_PIXELS = 480 * 320; // least size of a picture while something moves, if the full picture has more and the channel says no other
 // The most voxels between sheets while something moves: the coarsest volumes have voxels of this length.
 const WIDEST = 8;
 const SOON_PREPARED = 128 ** 3; // number of voxels that are prepared in a few tenths of a second
@@ -41,6 +41,7 @@ export class Frames {
   #generation = 0;
   #timer = 0;
   #work; // number of pixels, with sheets a voxel apart, of a picture while something moves
+  #least; // least size of a picture while something moves
   #timely; // such a number, of pixels that take as long as the budget by the clock
   #voxels;
   #scene = null; // the scene that the newest picture shows, or will show
@@ -52,7 +53,8 @@ export class Frames {
   // and "refining" when the first and the final picture at rest are begun, "settled" and "final" when these are there; "failed".
   constructor({ store, start, channel }, canvas, report) {
     this.#measure(start);
-    this.#work = this.#timely = LEAST_PIXELS / firstSpacing(start.volumes);
+    this.#least = channel.leastPixels ?? LEAST_PIXELS;
+    this.#work = this.#timely = this.#least / firstSpacing(start.volumes);
     this.#store = store;
     this.#channel = channel;
     this.#canvas = canvas;
@@ -164,7 +166,7 @@ export class Frames {
   // Adapts the work that fits into the budgets to the time that the last picture took by the clock, and of the processors; 0: not told.
   #learn(milliseconds, processor) {
     const full = this.#full().pixels, timely = (this.#work * BUDGET) / milliseconds;
-    const adapted = (now, aim) => Math.min(Math.max(now * Math.min(Math.max(aim / now, 0.25), 2) ** ADAPTION, Math.min(LEAST_PIXELS, full) / WIDEST), full);
+    const adapted = (now, aim) => Math.min(Math.max(now * Math.min(Math.max(aim / now, 0.25), 2) ** ADAPTION, Math.min(this.#least, full) / WIDEST), full);
     this.#timely = adapted(this.#timely, timely);
     this.#work = adapted(this.#work, Math.min(timely, (this.#work * PROCESSOR_BUDGET) / processor));
   }
@@ -181,7 +183,7 @@ export class Frames {
   // voxels are smaller than pixels, the renderer averages several samples, and coarser volumes are averaged
   // already.
   #affordable() {
-    const full = this.#full().pixels, pixels = Math.min(Math.max(this.#work, LEAST_PIXELS), full);
+    const full = this.#full().pixels, pixels = Math.min(Math.max(this.#work, this.#least), full);
     const scene = this.#scaled(pixels, Math.min(Math.max(pixels / this.#work, this.#voxelsInPixel(pixels), 1), WIDEST));
     if (scene.render.shadow_resolution !== "auto") return scene;
     const { width, height } = scene.image;
@@ -194,7 +196,7 @@ export class Frames {
     this.statistics.stage = "refining";
     const scene = this.#store.scene, single = (this.#timely * SETTLED_WITHIN) / BUDGET; // number of pixels with sheets a voxel apart
     // The picture gets smaller before its sheets get so wide that they are seen.
-    const pixels = Math.min(Math.max(single * SETTLED_SPACING, LEAST_PIXELS), this.#full().pixels), spacing = Math.min(pixels / single, WIDEST);
+    const pixels = Math.min(Math.max(single * SETTLED_SPACING, this.#least), this.#full().pixels), spacing = Math.min(pixels / single, WIDEST);
     try {
       if (spacing > scene.render.sheet_spacing * 1.2 || pixels < this.#full().pixels)
         await this.#step(generation, this.#scaled(pixels, spacing), "settled", "settling");

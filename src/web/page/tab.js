@@ -37,7 +37,10 @@ async function begin() {
 }
 
 // Makes the channel to the open scene. The viewer's panel with the files of a server has no use here.
-const viewerChannel = () => Object.fromEntries(["completeScene", "fetchFrame", "slice", "depth"].map((name) => [name, (...values) => channel[name](...values)]));
+const viewerChannel = () => ({
+  leastPixels: channel.leastPixels,
+  ...Object.fromEntries(["completeScene", "fetchFrame", "slice", "depth"].map((name) => [name, (...values) => channel[name](...values)])),
+});
 
 function say(text) {
   if (globalThis.halflight) globalThis.halflight.report(text);

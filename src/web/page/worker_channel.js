@@ -2,6 +2,9 @@
 // server.
 
 export class WorkerChannel {
+  // The least size of a picture while something moves: a quarter of what a viewer with a server shows, because WebAssembly takes several
+  // times as long, often on one thread.
+  leastPixels = 240 * 160;
   #worker;
   #number = 0;
   #waiting = new Map(); // for each request's number, { resolve, reject }
