@@ -128,7 +128,7 @@ def write_dropped(folder, program):
         subprocess.run([program, "convert", folder / "rings.nrrd", folder / name, "--quiet"], check=True)
     write_particles(folder / "particles.csv")
     (folder / "tetrahedron.obj").write_text("v 0 0 0\nv 9 0 1\nv 2 8 0\nv 3 2 7\nf 1 3 2\nf 1 2 4\nf 2 3 4\nf 3 1 4\n")
-    (folder / "series").mkdir()
+    (folder / "series").mkdir(exist_ok=True)
     for place in range(9):
         (folder / "series" / f"{place}.dcm").write_bytes(dicom_slice(place))
     multiscales = [{"version": "0.4", "axes": [{"name": axis, "type": "space"} for axis in "zyx"], "datasets": [

@@ -25,7 +25,7 @@ ROOT = pathlib.Path(__file__).resolve().parents[2]
 sys.path[:0] = [str(ROOT / "tests"), str(ROOT / "tests" / "viewer"), str(ROOT / "tests" / "budgets")]
 from browser import Browser  # noqa: E402
 from dicom_files import dicom_slice  # noqa: E402
-from equal_scenes import render_with, write_scenes  # noqa: E402
+from equal_scenes import render_with, write_dropped, write_scenes  # noqa: E402
 from firefox import Firefox  # noqa: E402
 from scenes import SCENES, balls, write_volumes  # noqa: E402
 
@@ -61,6 +61,19 @@ def try_chosen(browser, url, what, program, folder):
     browser.wait("globalThis.halflight?.frames.statistics.finals > 0")
     saved_scene(browser, folder, "saved.json")
     check(same_pixels(program, folder, final_picture(browser), "saved.json"), f"{what}: the final picture is the program's")
+
+
+def try_kinds(browser, url, what, program, folder):
+    """A file of each kind is shown."""
+    for name, files in write_dropped(folder, program):
+        if name == "series":
+            continue  # try_folder
+        browser.open(url)
+        browser.wait("globalThis.halflight === undefined && document.querySelector('.tab-welcome') !== null")
+        choose_files(browser, [folder / file for file in files])
+        browser.wait("globalThis.halflight?.frames.statistics.finals > 0")
+        saved_scene(browser, folder, "saved.json")
+        check(same_pixels(program, folder, final_picture(browser), "saved.json"), f"{what}: {name} is shown")
 
 
 def try_folder(browser, url, what, program, folder):
@@ -207,6 +220,7 @@ def try_chromium(url, what, program, folder):
         try_reload(browser, folder, what)
         try_added(browser, program, folder, what)
         try_folder(browser, url, what, program, folder)
+        try_kinds(browser, url, what, program, folder)
         check(browser.problems == [], f"{what}: no problem in the console: {browser.problems}")
 
 
@@ -214,6 +228,7 @@ def try_firefox(firefox, url, what, program, folder):
     with Firefox(firefox, size=(900, 500)) as browser:
         try_chosen(browser, url, what, program, folder)
         try_added(browser, program, folder, what)
+        try_kinds(browser, url, what, program, folder)
         check(browser.problems == [], f"{what}: no problem in the console: {browser.problems}")
 
 
