@@ -1,5 +1,5 @@
 # shellcheck shell=sh
-# Sourced by the scripts that try programs in other systems: make_tree.
+# Sourced by the scripts that try programs in other systems, and by scripts/test_python: make_tree, place_tests.
 
 # make_tree FOLDER SUITE ARCHITECTURE PACKAGE ...: packages of a release of Debian with all that they need, unpacked and not configured.
 # apt keeps its lists in the folder: nothing is installed on this machine.
@@ -26,4 +26,12 @@ apt_in_tree() {
   apt-get -q -o APT::Architecture="$architecture" -o APT::Architectures="$architecture" -o Dir::Etc::sourcelist="$tree/apt/sources.list" \
     -o Dir::Etc::sourceparts=/dev/null -o Dir::State="$tree/apt" -o Dir::State::status=/dev/null -o Dir::Cache="$tree/apt" \
     -o Debug::NoLocking=true -o APT::Sandbox::User=root "$@"
+}
+
+# place_tests FOLDER: the Python package's tests with all that they take from elsewhere in the sources, in FOLDER/python. What they write stays there.
+place_tests() {
+  rm -rf "$1/python" "$1/cli"
+  mkdir -p "$1/python" "$1/cli"
+  cp tests/python/*.* "$1/python"
+  cp tests/cli/servers.py "$1/cli"
 }
