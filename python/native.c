@@ -1,5 +1,6 @@
 /* python/native.c - implements the callbacks of the Python package's context. They call Python only if they
  * must (python/native.h). */
+#include <stdbool.h>
 #include <string.h>
 #include <time.h>
 
@@ -24,8 +25,8 @@ typedef struct native_call {
   double asked, told; /* the times, in seconds, at which Python was last asked whether to stop, and at which
                        * it was last told the progress */
   int listening, stopped;
-  const char *url; /* the URL of the store whose files the call may fetch from a server; null if there is
-                    * none */
+  const char *const *urls; /* the URLs of the stores whose files the call may fetch from a server; null if
+                            * there is none */
 } native_call;
 static _Thread_local native_call call;
 
@@ -39,7 +40,14 @@ void python_call_begin(int listening) { call = (native_call){.asked = now(), .li
 
 void python_call_end(void) { call = (native_call){.asked = now()}; }
 
-void python_call_may_ask(const char *url) { call.url = url; }
+void python_call_may_ask(const char *const *urls) { call.urls = urls; }
+
+/* Returns whether the call may ask for the store at a URL. */
+static bool may_ask(const char *url) {
+  for (const char *const *one = call.urls; one != NULL && *one != NULL; one++)
+    if (strcmp(*one, url) == 0) return true;
+  return false;
+}
 
 static int on_cancelled(void *user_data) {
   (void)user_data;
@@ -80,7 +88,7 @@ static void on_converted(void *user_data, const void *bytes, size_t byte_count) 
 static hl_status on_fetch(void *user_data, const char *url, const char *const *names,
                           const hl_fetch_range *ranges, size_t count, uint64_t most, hl_fetched_file *files,
                           hl_error *error) {
-  const fetch_permission permission = {.named = call.url != NULL && strcmp(call.url, url) == 0,
+  const fetch_permission permission = {.named = may_ask(url),
                                        .instead = "stores that a program names: give it to Volume()",
                                        .cancelled = on_cancelled,
                                        .user_data = user_data};

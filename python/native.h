@@ -12,9 +12,9 @@ hl_status python_context_create(hl_context **context, hl_error *error);
 void python_call_begin(int listening);
 void python_call_end(void);
 
-/* Lets the thread's call ask a web server for the files of the store at a URL, and for no others. url:
- * borrowed until the call ends. */
-void python_call_may_ask(const char *url);
+/* Lets the thread's call ask web servers for the files of the stores at URLs, and for no others. urls:
+ * ended by null, borrowed until the call ends. */
+void python_call_may_ask(const char *const *urls);
 
 /* Sets a description of borrowed voxels so that the library calls python_array_released() when it no longer
  * needs the voxels. */

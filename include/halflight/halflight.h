@@ -23,6 +23,7 @@
 #include "ranks.h"
 #include "render.h"
 #include "reslice.h"
+#include "resolutions.h"
 #include "scene.h"
 #include "settings.h"
 #include "shape.h"

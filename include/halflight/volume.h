@@ -165,11 +165,14 @@ typedef struct hl_volume_load_options {
    * channels apart. Default null. */
   const char *channel_name;
   /* A coarser resolution of the same data, borrowed during the call. If it is given, chunks of a store that
-   * lie outside of `seen` are not read: their voxels are interpolated linearly in `coarse`. Default null: all
-   * chunks are read. */
+   * none of the parts in `seen` touches are not read: their voxels are interpolated linearly in `coarse`.
+   * Default null: all chunks are read. */
   const hl_volume *coarse;
-  double seen[4][4]; /* with `coarse`: the planes around what a picture sees (hl_scene_seen_part()). A point p
-                      * of the world lies inside if a x + b y + c z + d >= 0 for each plane a, b, c, d */
+  /* [seen_count], borrowed during the call; with `coarse`: what pictures see, each part as four planes
+   * (hl_scene_seen_part()). A point p of the world lies inside of a part if a x + b y + c z + d >= 0 for each
+   * of its planes a, b, c, d. */
+  const double (*seen)[4][4];
+  size_t seen_count;
 } hl_volume_load_options;
 
 HL_API void hl_volume_load_options_defaults(hl_volume_load_options *options);

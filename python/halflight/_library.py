@@ -11,7 +11,7 @@ import os
 import sys
 import threading
 import warnings
-from collections.abc import Callable, Iterator, Mapping
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from contextlib import contextmanager
 from typing import Any
 
@@ -162,7 +162,7 @@ def listening(report: Report | None) -> Iterator[None]:
         _calls.reports.pop()
 
 
-def call(function: Any, *arguments: Any, path: str | None = None, warns: bool = True) -> None:
+def call(function: Any, *arguments: Any, path: str | None = None, urls: Sequence[str] = (), warns: bool = True) -> None:
     """Call `function(*arguments, error)`, and raise the error that it reports.
 
     Parameters
@@ -172,14 +172,16 @@ def call(function: Any, *arguments: Any, path: str | None = None, warns: bool = 
     path : str, optional
         The file that is read: where it is missing, the exception is FileNotFoundError. Or the URL of a store, for whose
         files the server is asked.
+    urls : sequence of str
+        URLs of further stores for whose files servers are asked.
     warns : bool
         Whether the library's warnings are passed on: not where they would be about a file that the caller does not know of.
     """
     error = ffi.new("hl_error *")
     lib.python_call_begin(bool(_calls.reports) and _calls.reports[-1] is not None)
-    if path is not None and is_url(path):
-        url = ffi.new("char[]", os.fsencode(path))  # borrowed until the call ends
-        lib.python_call_may_ask(url)
+    texts = [ffi.new("char[]", os.fsencode(url)) for url in ([*urls] if path is None else [path, *urls]) if is_url(url)]
+    named = ffi.new("char *[]", [*texts, ffi.NULL])  # borrowed until the call ends, as the texts are
+    lib.python_call_may_ask(named)
     try:
         status = function(*arguments, error)
     finally:
@@ -195,10 +197,10 @@ def call(function: Any, *arguments: Any, path: str | None = None, warns: bool = 
         raise failure
 
 
-def made(function: Any, type_name: str, release: Any, *arguments: Any, path: str | None = None) -> Any:
+def made(function: Any, type_name: str, release: Any, *arguments: Any, path: str | None = None, urls: Sequence[str] = ()) -> Any:
     """The object that `function(*arguments, &object, error)` makes; `release` ends it."""
     place = ffi.new(f"{type_name} **")
-    call(function, *arguments, place, path=path)
+    call(function, *arguments, place, path=path, urls=urls)
     return ffi.gc(place[0], release)
 
 

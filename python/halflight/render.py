@@ -1,6 +1,7 @@
 """Renders scenes to pictures."""
 from __future__ import annotations
 
+import math
 import os
 import threading
 from collections.abc import Mapping, Sequence
@@ -10,6 +11,7 @@ import numpy as np
 
 from . import arrays
 from ._library import call, context, ffi, lib, made, text_of
+from ._settings import number, size_of
 from ._words import check_keywords, suggests, suggests_also
 from .camera import Camera
 from .image import Image, Pixels
@@ -19,7 +21,7 @@ from .mesh import Mesh
 from .progress import Progress, told
 from .scene import Scene, Settings, Side
 from .values import VALUES, function_for, range_of_slice
-from .volume import Look, Source, Volume, as_volume, volume_from
+from .volume import Look, Picture, Source, Volume, as_volume, volume_from
 
 __all__ = ["Renderer", "reference", "render"]
 
@@ -200,9 +202,35 @@ def _look(volume: Volume, projected: bool, words: Mapping[str, Any]) -> Volume:
     return volume if function is None else volume.replace(transfer_function=function)
 
 
-def _read(source: Any, place: Mapping[str, Any], is_slice: bool) -> Volume:
+def _picture_of(place: Mapping[str, Any], settings: Mapping[str, Any], read_whole: bool) -> Picture | None:
+    """The picture for which the resolution of a file is chosen, as by the program. A picture that is zoomed in reads the
+    resolution of one that is not first, which then shows where the camera looks; read_whole: whether it does not.
+    """
+    if place.get("level") is not None:
+        return None
+    plain = ffi.new("hl_scene_description *")
+    lib.hl_scene_description_defaults(plain)
+    size, camera = settings.get("size"), settings.get("camera")
+    side = max((plain.width, plain.height) if size is None else size_of("size", size))
+    zoom = number("camera: zoom", camera.get("zoom") or 1) if isinstance(camera, Mapping) else 1
+    once = zoom <= 1 or read_whole or place.get("spacing") is not None or place.get("smooth") is not None
+    return Picture(min(math.ceil(side * max(zoom, 1)), 2**31 - 1), 0 if once else side)
+
+
+def _nearer(scene: Scene, sources: Sequence[Any]) -> Scene:
+    """The scene with volumes that are as fine as its picture shows them, where its camera sees them. sources: of these volumes."""
+    struct = lib.hl_scene_describe(scene._handle)
+    if not lib.hl_scene_is_coarse(struct):
+        return scene
+    return Scene._of(made(lib.hl_scene_read_finer, "hl_scene", lib.hl_scene_release, context, scene._handle,
+                          ffi.addressof(struct, "camera"), 1, urls=[os.fspath(one) for one in sources if isinstance(one, (str, os.PathLike))]))
+
+
+def _read(source: Any, place: Mapping[str, Any], is_slice: bool, picture: Picture | None) -> Volume:
     """The volume of a source. A slice shows the voxels as they are; a Volume keeps what it has."""
     words: dict[str, Any] = dict(place)
+    if isinstance(source, (str, os.PathLike)):
+        words["_picture"] = picture
     if is_slice and not isinstance(source, Volume):
         words.setdefault("smooth", 0.0)
     return Volume(source, **words)
@@ -471,31 +499,32 @@ def _scene_of(volume: Any, place: Mapping[str, Any], material: dict[str, Any], s
         changed = [_look(one.replace(**named), projected, _look_for(at_once, n, count)).replace(**material) for n, one in enumerate(scene.volumes)]
         made = scene.replace(changed if labels is None else [*changed, _label_volume(labels)], **settings)
         return _sliced(made, count, look) if is_slice else made
+    picture = _picture_of(place, settings, is_slice or labels is not None or any(material.get(word) is not None for word in ("labels", "mask")))
     channels = place.get("channel")
     if channels == "all" or isinstance(channels, Sequence) and not isinstance(channels, str):
-        return _scene_of_channels(volume, channels, place, material, settings, look, labels)
+        return _nearer(_scene_of_channels(volume, channels, place, material, settings, look, labels, picture), [volume])
     given = volume if isinstance(volume, list) else [volume] if volume is not None or not settings.get("meshes") else []
     sources = [one for one in given if not isinstance(one, Mesh)]
     projected = named.get("look") == "mip"
-    volumes = [_look(_read(one, place, is_slice).replace(**named), projected, _look_for(at_once, n, len(sources))).replace(**material)
+    volumes = [_look(_read(one, place, is_slice, picture).replace(**named), projected, _look_for(at_once, n, len(sources))).replace(**material)
                for n, one in enumerate(sources)]
     if not volumes:
         for word in (*place, *look, *material):
             raise TypeError(f"{word} is for volumes: the picture has none")
     others = [one for one in given if isinstance(one, Mesh)] + ([] if labels is None else [_label_volume(labels)])
-    made = Scene([*volumes, *others], **settings)
-    return _sliced(made, len(sources), look) if is_slice else made
+    whole = Scene([*volumes, *others], **settings)
+    return _sliced(whole, len(sources), look) if is_slice else _nearer(whole, sources)
 
 
 def _scene_of_channels(path: Any, channels: str | Sequence[int | str], place: Mapping[str, Any], material: Mapping[str, Any],
-                       settings: dict[str, Any], look: Mapping[str, Any], labels: Any) -> Scene:
+                       settings: dict[str, Any], look: Mapping[str, Any], labels: Any, picture: Picture | None) -> Scene:
     if not isinstance(path, (str, os.PathLike)):
         raise TypeError("channel is for files that hold several: choose by an index")
     for word in place:
         if word in ("origin", "direction", "affine", "axes", "component", "smooth"):
             raise TypeError(f"{word} is not for several channels of a file")
     reading = {word: value for word, value in place.items() if word != "channel"}
-    scene = Scene.of_channels(path, channels, look=material.get("look", "auto"), **reading)
+    scene = Scene.of_channels(path, channels, look=material.get("look", "auto"), _picture=picture, **reading)
     shown = {word: value for word, value in material.items() if word != "look"}
     count = len(scene.volumes)
     projected = material.get("look") == "mip"

@@ -16,7 +16,7 @@ from .composing import build_scene, scene_for_meshes
 from .keywords import PictureSettings, RenderSettings
 from .lights import Light, images_are_same, light_from
 from .mesh import Mesh, mesh_from
-from .volume import Volume, as_volume, index_of, load_options, volume_from
+from .volume import Picture, Volume, as_volume, index_of, load_options, volume_from
 
 __all__ = ["Scene", "Settings"]
 
@@ -138,7 +138,7 @@ class Scene:
     @classmethod
     def of_channels(cls, path: str | os.PathLike[str], channels: str | Sequence[int | str] = "all", *, look: str = "auto",
                     array: str | None = None, series: str | None = None, time: int | None = None, level: int | None = None,
-                    spacing: Any = None) -> Scene:
+                    spacing: Any = None, _picture: Picture | None = None) -> Scene:
         """A scene of several channels of a file, such as a microscope's. Each channel is a volume in a colour of its
         own. The file may state this colour (OME, ImageJ, omero). If it does not, the colours are green and magenta,
         cyan, yellow, ...
@@ -152,7 +152,7 @@ class Scene:
         """
         file = os.fspath(path)
         options, keep = load_options({word: value for word, value in (
-            ("array", array), ("series", series), ("time", time), ("level", level)) if value is not None}, spacing, "zyx")
+            ("array", array), ("series", series), ("time", time), ("level", level)) if value is not None}, spacing, "zyx", _picture)
         listed = [channels] if isinstance(channels, str) else [one if isinstance(one, str) else str(index_of("channel", one)) for one in channels]
         if not listed:
             raise ValueError("channel: [] names none: give a number or a name, several as [0, 2], or 'all'")

@@ -3,7 +3,7 @@ from __future__ import annotations
 
 import os
 from collections.abc import Mapping, Sequence
-from typing import Any, Unpack
+from typing import Any, NamedTuple, Unpack
 
 import numpy as np
 
@@ -75,7 +75,7 @@ class Volume:
                  direction: Any = None, affine: Any = None, axes: str | None = None, array: str | None = None,
                  component: int | str | None = None, series: str | None = None, time: int | None = None,
                  channel: int | str | None = None, level: int | None = None, copy: bool = False,
-                 smooth: float | None = None, **look: Unpack[Look]) -> None:
+                 smooth: float | None = None, _picture: Picture | None = None, **look: Unpack[Look]) -> None:
         check_keywords("Volume()", look, [*Look.__annotations__, "spacing", "origin", "direction", "affine", "axes", "copy", "smooth", *_OF_FILES])
         self._sharp: Any = None  # the handle of the voxels before they were smoothed
         self._handle: Any = None
@@ -101,7 +101,7 @@ class Volume:
         else:
             if axes is not None:
                 arrays.check_axes(axes)
-            self._read(source, axes, place, {word: value for word, value in chosen.items() if value is not None}, copy)
+            self._read(source, axes, place, {word: value for word, value in chosen.items() if value is not None}, copy, _picture)
         if smooth is not None:
             self._smooth(smooth)
         values: Any = {word: look[word] for word in VALUES if word in look}  # type: ignore[literal-required]
@@ -116,12 +116,13 @@ class Volume:
         if self._base is not None:
             raise TypeError("smooth is for volumes of files and arrays: a scene says it itself")
 
-    def _read(self, source: Source, axes: str | None, place: dict[str, Any], chosen: dict[str, Any], copy: bool) -> None:
+    def _read(self, source: Source, axes: str | None, place: dict[str, Any], chosen: dict[str, Any], copy: bool,
+              picture: Picture | None) -> None:
         if isinstance(source, (str, os.PathLike)):
             for word in ("origin", "direction", "affine"):
                 if place[word] is not None:
                     raise TypeError(f"{word} is for arrays: a file says it itself")
-            self._load(os.fspath(source), place["spacing"], axes or "zyx", chosen)
+            self._load(os.fspath(source), place["spacing"], axes or "zyx", chosen, picture)
             return
         is_grid = not isinstance(source, np.ndarray) and vtk_grids.is_grid(source)
         name = chosen.pop("array", None) if hasattr(source, "data_vars") or is_grid else None
@@ -171,16 +172,20 @@ class Volume:
         same = (self._changes.get("look"), self._is_of_values()) == (other._changes.get("look"), other._is_of_values())
         self._automatic = other._automatic if same else None
 
-    def _load(self, path: str, spacing: arrays.Spacing | None, axes: str, chosen: dict[str, Any]) -> None:
-        options, keep = load_options(chosen, spacing, axes)
+    def _load(self, path: str, spacing: arrays.Spacing | None, axes: str, chosen: dict[str, Any], picture: Picture | None) -> None:
+        options, keep = load_options(chosen, spacing, axes, picture)
         self._file = path
         self._loading = (options, keep)
         self._handle = made(lib.hl_volume_load_with, "hl_volume", lib.hl_volume_release, context, os.fsencode(path),
                             options, path=path)
-        if options.channel_name != ffi.NULL:  # a scene, and a restored volume, read the channel by its number
-            read = ffi.new("hl_volume_selection *", {"struct_size": ffi.sizeof("hl_volume_selection")})
-            if lib.hl_volume_get_selection(self._handle, read) == lib.HL_OK:
+        # A scene, and a restored volume, read the channel by its number, and the resolution that suits the picture.
+        read = ffi.new("hl_volume_selection *", {"struct_size": ffi.sizeof("hl_volume_selection")})
+        if lib.hl_volume_get_selection(self._handle, read) == lib.HL_OK:
+            if options.channel_name != ffi.NULL:
                 options.channel, options.channel_name = read.channel, ffi.NULL
+            if picture is not None and read.levels > 1:
+                options.level = read.aim
+        options.pixels = options.preview_pixels = 0
 
     @classmethod
     def from_cells(cls, points: Any, cells: Any, types: Any, values: Any, **look: Unpack[Look]) -> Volume:
@@ -464,10 +469,20 @@ def index_of(word: str, value: Any) -> int:
     return int(value)
 
 
-def load_options(chosen: Mapping[str, Any], spacing: arrays.Spacing | None, axes: str) -> tuple[Any, list[Any]]:
+class Picture(NamedTuple):
+    """The picture for which one of several resolutions is read: the members of hl_volume_load_options."""
+
+    pixels: int
+    preview_pixels: int
+
+
+def load_options(chosen: Mapping[str, Any], spacing: arrays.Spacing | None, axes: str,
+                 picture: Picture | None = None) -> tuple[Any, list[Any]]:
     """An hl_volume_load_options, which is valid as long as the list."""
     options, keep = ffi.new("hl_volume_load_options *"), list[Any]()
     lib.hl_volume_load_options_defaults(options)
+    if picture is not None:
+        options.pixels, options.preview_pixels = picture
     for word, value in chosen.items():
         if word in ("array", "series"):
             keep.append(value := ffi.new("char[]", str(value).encode()))

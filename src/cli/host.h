@@ -34,16 +34,11 @@ typedef struct cli_host {
   void (*progressed)(const char *stage, double fraction); /* or null */
   void (*warned)(const char *message);                    /* or null */
   uint64_t memory_limit;                                  /* bytes; 0 if it is unknown */
-  int preview_pixels; /* the value of hl_volume_load_options.preview_pixels for the volumes of the command
-                       * line */
-  struct {
-    const hl_volume *coarse; /* borrowed; null if all of a volume is read */
-    double planes[4][4];
-    int level, time, channel; /* the values of settings that the options leave open */
-  } seen;                     /* for a volume that is read where it is seen (hl_volume_load_options) */
-  cli_read_files read;        /* the files that the context has read */
-  char *const *operands;      /* see cli_host_options */
-  char subject[32];           /* the input's name beside the bar, cut to keep the line short */
+  int preview_pixels;    /* the value of hl_volume_load_options.preview_pixels for the volumes of the command
+                          * line */
+  cli_read_files read;   /* the files that the context has read */
+  char *const *operands; /* see cli_host_options */
+  char subject[32];      /* the input's name beside the bar, cut to keep the line short */
 } cli_host;
 
 typedef struct cli_host_options {

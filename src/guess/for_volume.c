@@ -298,16 +298,20 @@ static hl_status make_scene_of(hl_context *context, hl_volume *volume, const cha
   return status;
 }
 
-/* Makes the scene of the volume. If the volume's voxels would show as stairs, terraces or grain, the scene is
- * made of a smoothed volume (smoothing.h), provided that there is memory for this. */
+hl_status hl_smooth_where_needed(hl_volume *volume, const char *file, hl_volume **smoothed, hl_error *error) {
+  hl_data_analysis analysis;
+  *smoothed = NULL;
+  hl_status status = hl_data_analyse(volume, &analysis, error);
+  if (status != HL_OK || !has_room_to_smooth(volume)) return status;
+  const double sigma = hl_smoothing_for(volume, file, &analysis);
+  return sigma > 0 ? hl_volume_smooth(volume, sigma, smoothed, error) : HL_OK;
+}
+
+/* Makes the scene of the volume, or of a smoothed volume where the voxels need it. */
 static hl_status make_scene(hl_context *context, hl_volume *volume, const char *file, const hl_look *style,
                             hl_scene **scene, hl_error *error) {
-  hl_data_analysis analysis;
-  double sigma = 0;
   hl_volume *smoothed = NULL;
-  hl_status status = hl_data_analyse(volume, &analysis, error);
-  if (status == HL_OK && has_room_to_smooth(volume)) sigma = hl_smoothing_for(volume, file, &analysis);
-  if (status == HL_OK && sigma > 0) status = hl_volume_smooth(volume, sigma, &smoothed, error);
+  hl_status status = hl_smooth_where_needed(volume, file, &smoothed, error);
   if (status == HL_OK)
     status = make_scene_of(context, smoothed != NULL ? smoothed : volume, file, style, scene, error);
   hl_volume_release(smoothed);

@@ -8,6 +8,10 @@
  * are kept. */
 hl_status hl_scene_frame(const hl_scene_description *description, hl_camera *camera, hl_error *error);
 
+/* Smooths a bare volume if its voxels would show as stairs, terraces or grain (smoothing.h), provided that
+ * there is memory for this. *smoothed: owned by the caller; null if the volume is not smoothed. */
+hl_status hl_smooth_where_needed(hl_volume *volume, const char *file, hl_volume **smoothed, hl_error *error);
+
 /* The light of a scene that gives no light: a soft light from the camera's upper left, which moves with the
  * camera. */
 void hl_scene_key_light(hl_light *light);

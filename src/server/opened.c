@@ -76,21 +76,11 @@ void opened_close(server *s, long long number) {
 
 /* ---- states ---- */
 
-/* Returns whether a volume was read at a coarser resolution than the wanted one. */
-static bool is_coarse(const hl_scene *scene) {
-  const hl_scene_description *d = hl_scene_describe(scene);
-  for (size_t v = 0; v < d->volume_count; v++) {
-    hl_volume_selection read = {.struct_size = sizeof read};
-    if (hl_volume_get_selection(d->volumes[v].volume, &read) == HL_OK && read.level > read.aim) return true;
-  }
-  return false;
-}
-
 /* Makes a state of a scene, which is retained; null if there is no memory. */
 static opened_state *make_state(const server *s, hl_scene *scene, const char *title, long long number,
                                 int refined) {
   const start_about about = {title, number, s->below != NULL, refined,
-                             s->options.refine != NULL && is_coarse(scene)};
+                             s->options.refine != NULL && hl_scene_is_coarse(hl_scene_describe(scene))};
   opened_state *state = calloc(1, sizeof *state);
   char *start = state != NULL ? describe_start(s->options.context, scene, &about) : NULL;
   if (start == NULL) {
@@ -158,7 +148,8 @@ static hl_status refine_once(server *s, server_opened *opened, hl_error *error) 
 static void refine(server *s, server_opened *opened) {
   hl_error error = {0};
   hl_status status = HL_OK;
-  while (status == HL_OK && is_coarse(opened_now(opened)->scene)) status = refine_once(s, opened, &error);
+  while (status == HL_OK && hl_scene_is_coarse(hl_scene_describe(opened_now(opened)->scene)))
+    status = refine_once(s, opened, &error);
   if (status != HL_OK) snprintf(opened->problem, sizeof opened->problem, "%s", error.message);
   atomic_store(&opened->refining, false);
 }
@@ -231,12 +222,13 @@ server_opened *opened_add(server *s, hl_scene *scene, const char *title) {
   pthread_mutex_lock(&s->pages_lock);
   server_opened *opened = make_room(s);
   if (opened != NULL)
-    *opened = (server_opened){.number = number,
-                              .state = state,
-                              .title = own_title,
-                              .refining = s->options.refine != NULL && is_coarse(scene),
-                              .users = 1,
-                              .last_use = ++s->uses};
+    *opened = (server_opened){
+        .number = number,
+        .state = state,
+        .title = own_title,
+        .refining = s->options.refine != NULL && hl_scene_is_coarse(hl_scene_describe(scene)),
+        .users = 1,
+        .last_use = ++s->uses};
   pthread_mutex_unlock(&s->pages_lock);
   if (opened == NULL) {
     release_states(state);

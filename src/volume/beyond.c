@@ -23,35 +23,44 @@ static bool find_places(const hl_volume_description *grid, hl_beyond *beyond) {
   return true;
 }
 
-void hl_beyond_prepare(const hl_volume *coarse, const double seen[4][4], const hl_volume_description *grid,
-                       hl_beyond *beyond) {
-  *beyond = (hl_beyond){.coarse = coarse, .type = grid->type};
+void hl_beyond_prepare(const hl_volume *coarse, const double (*seen)[4][4], size_t count,
+                       const hl_volume_description *grid, hl_beyond *beyond) {
+  *beyond = (hl_beyond){.coarse = coarse, .type = grid->type, .seen = seen, .seen_count = count};
   if (coarse == NULL) return;
   if (coarse->says_labels || coarse->segment_count > 0 || coarse->colors != NULL ||
       !find_places(grid, beyond)) {
     beyond->coarse = NULL;
     return;
   }
-  for (int n = 0; n < 4; n++) {
-    const vec3 normal = vec3_of(seen[n]);
-    for (int a = 0; a < 3; a++) beyond->planes[n][a] = vec3_dot(normal, vec3_of(grid->axis[a]));
-    beyond->planes[n][3] = vec3_dot(normal, vec3_of(grid->origin)) + seen[n][3];
-  }
+  beyond->grid.linear = mat3_from_columns(vec3_of(grid->axis[0]), vec3_of(grid->axis[1]),
+                                          vec3_of(grid->axis[2]));
+  beyond->grid.offset = vec3_of(grid->origin);
 }
 
-/* A box lies out of sight if all of it lies outside of one plane. */
-bool hl_beyond_is_seen(const hl_beyond *beyond, const uint64_t begin[3], const uint64_t count[3]) {
-  if (beyond->coarse == NULL) return true;
+/* A box touches a part unless all of it lies outside of one plane. */
+static bool touches(const double planes[4][4], const vec3 corners[8]) {
   for (int n = 0; n < 4; n++) {
-    double most = beyond->planes[n][3];
-    for (int a = 0; a < 3; a++) {
-      const double low = (double)begin[a] - HL_BEYOND_REACH,
-                   high = (double)(begin[a] + count[a]) - 1 + HL_BEYOND_REACH;
-      most += fmax(beyond->planes[n][a] * low, beyond->planes[n][a] * high);
-    }
-    if (most < 0) return false;
+    const vec3 normal = vec3_of(planes[n]);
+    double most = -INFINITY;
+    for (int c = 0; c < 8; c++) most = fmax(most, vec3_dot(normal, corners[c]));
+    if (most + planes[n][3] < 0) return false;
   }
   return true;
+}
+
+bool hl_beyond_is_seen(const hl_beyond *beyond, const uint64_t begin[3], const uint64_t count[3]) {
+  vec3 corners[8];
+  if (beyond->coarse == NULL) return true;
+  for (int c = 0; c < 8; c++) {
+    double index[3];
+    for (int a = 0; a < 3; a++)
+      index[a] = (c >> a & 1) == 0 ? (double)begin[a] - HL_BEYOND_REACH
+                                   : (double)(begin[a] + count[a]) - 1 + HL_BEYOND_REACH;
+    corners[c] = affine3_apply(beyond->grid, vec3_of(index));
+  }
+  for (size_t n = 0; n < beyond->seen_count; n++)
+    if (touches(beyond->seen[n], corners)) return true;
+  return false;
 }
 
 /* Scratch memory: a row of stored values, and a row of data values. */

@@ -1,8 +1,9 @@
-/* volume/beyond.h - voxels out of sight. They are not read, but interpolated in a coarser resolution of the
- * same data. In: a coarser volume, and the planes around the part that a picture sees. Out: which boxes of
- * voxels are seen, and rows of the other voxels. Voxels that are seen, and voxels within HL_BEYOND_REACH of
- * them, are never interpolated: no kernel, gradient or smoothing of a seen place takes a voxel that lies out
- * of sight. */
+/* volume/beyond.h - voxels out of sight, which are interpolated in a coarser resolution of the same data in
+ * place of being read.
+ *
+ * In: a coarser volume, and the planes around the parts that pictures see. Out: which boxes of voxels are
+ * seen, and rows of the other voxels. Voxels that are seen, and voxels within HL_BEYOND_REACH of them, are
+ * never interpolated: no kernel, gradient or smoothing of a seen place takes a voxel that lies out of sight. */
 #ifndef HL_VOLUME_BEYOND_H
 #define HL_VOLUME_BEYOND_H
 
@@ -13,19 +14,20 @@
 enum { HL_BEYOND_REACH = 4 }; /* in voxels */
 
 typedef struct hl_beyond {
-  const hl_volume *coarse; /* borrowed; null if everything is seen */
-  hl_voxel_type type;      /* of the voxels in the file */
-  /* the planes around the part that is seen, in indices of the grid; a point is inside if a i + b j + c k + d
-   * >= 0 */
-  double planes[4][4];
+  const hl_volume *coarse;    /* borrowed; null if everything is seen */
+  hl_voxel_type type;         /* of the voxels in the file */
+  const double (*seen)[4][4]; /* borrowed; [seen_count]; the planes around each part that is seen, in the
+                               * world; inside where a x + b y + c z + d >= 0 */
+  size_t seen_count;
+  affine3 grid;             /* the map from the grid's indices to the world */
   double first[3], step[3]; /* index in `coarse` = first + step * index in the grid, along each axis */
 } hl_beyond;
 
-/* Finds the rule for a grid. coarse: may be null. seen: planes in the world. *beyond becomes a rule by which
- * everything is seen where `coarse` cannot be used: where it is a label map or its axes are not parallel to
- * the grid's. */
-void hl_beyond_prepare(const hl_volume *coarse, const double seen[4][4], const hl_volume_description *grid,
-                       hl_beyond *beyond);
+/* Finds the rule for a grid. coarse: may be null. seen: [count], planes in the world, borrowed as long as the
+ * rule is used. *beyond becomes a rule by which everything is seen where `coarse` cannot be used: where it is
+ * a label map or its axes are not parallel to the grid's. */
+void hl_beyond_prepare(const hl_volume *coarse, const double (*seen)[4][4], size_t count,
+                       const hl_volume_description *grid, hl_beyond *beyond);
 
 /* Returns whether any voxel of a box may be seen. */
 bool hl_beyond_is_seen(const hl_beyond *beyond, const uint64_t begin[3], const uint64_t count[3]);

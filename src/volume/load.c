@@ -403,9 +403,10 @@ hl_status hl_volume_load_with(hl_context *context, const char *path, const hl_vo
                              .pixels = options->pixels,
                              .preview_pixels = options->preview_pixels,
                              .coarse = options->coarse,
+                             .seen = options->seen,
+                             .seen_count = options->seen_count,
                              .selection = {1, 1, 1, 0, 0, 0, 0}};
   memcpy(request.spacing, options->spacing, sizeof request.spacing);
-  memcpy(request.seen, options->seen, sizeof request.seen);
   hl_stream *stream = NULL;
   bool on_server = options->bytes == NULL && hl_plain_is_url(path) && !hl_is_confined(context);
   if (on_server || (options->bytes == NULL && hl_file_kind(context, path) == 'd')) {

@@ -52,6 +52,9 @@ hl_scene_make_floor up
 hl_volume_from_shapes name
 hl_volume_load_with options
 hl_transfer_function_load_for volume
+hl_volume_read_finer path
+hl_volume_read_finer cameras
+hl_scene_read_finer cameras
 hl_scene_for_channels options
 hl_scene_for_channels channels
 hl_ranks_join communicator

@@ -14,7 +14,7 @@ import zlib
 
 import servers
 
-STORE, SHARDED, LEVEL_CHUNKS = "v2.zarr", "v3.zarr", 64
+STORE, SHARDED, FIRST, SECOND, TIMES, CHANNELS, LEVEL_CHUNKS = "v2.zarr", "v3.zarr", "first.zarr", "second.zarr", "times.zarr", "channels.zarr", 64
 ZOOM = ("--zoom", 4)
 
 
@@ -53,6 +53,38 @@ def write_sharded(folder):
         index = b"".join((number * len(chunk)).to_bytes(8, "little") + len(chunk).to_bytes(8, "little")
                          for number, chunk in enumerate(chunks))
         (array / "c/0/0/0").write_bytes(b"".join(chunks) + index + servers.crc32c(index).to_bytes(4, "little"))
+
+
+def write_several(of, folder, axis):
+    """The pyramid twice, along an axis of its own: t or c."""
+    shutil.copytree(of, folder)
+    text = json.loads((folder / ".zattrs").read_text())
+    text["multiscales"][0]["axes"].insert(0, {"name": axis, "type": {"t": "time", "c": "channel"}[axis]})
+    for level in text["multiscales"][0]["datasets"]:
+        for change in level["coordinateTransformations"]:
+            change[change["type"]].insert(0, 1 if change["type"] == "scale" else 0)
+    (folder / ".zattrs").write_text(json.dumps(text))
+    for level in range(servers.LEVELS):
+        array = json.loads((folder / str(level) / ".zarray").read_text())
+        array["shape"].insert(0, 2)
+        array["chunks"].insert(0, 1)
+        (folder / str(level) / ".zarray").write_text(json.dumps(array))
+        slices = sorted(path for path in (folder / str(level)).iterdir() if path.is_dir())
+        (folder / str(level) / "moved").mkdir()
+        for path in slices:
+            path.rename(folder / str(level) / "moved" / path.name)
+        (folder / str(level) / "moved").rename(folder / str(level) / "0")
+        shutil.copytree(folder / str(level) / "0", folder / str(level) / "1")
+
+
+def write_small_chunks(stores):
+    """Two pyramids of smaller chunks, one that moves, and one of two channels."""
+    servers.CHUNK //= 2
+    write_store(stores / FIRST)
+    write_store(stores / SECOND)
+    servers.CHUNK *= 2
+    write_several(stores / FIRST, stores / TIMES, "t")
+    write_several(stores / FIRST, stores / CHANNELS, "c")
 
 
 def whole_picture(case, store, *words):
@@ -135,6 +167,46 @@ def read_once(case, server):
                 len(next(iter(asked.values()))) in (LEVEL_CHUNKS, LEVEL_CHUNKS // 8), (said, asked.keys()))
 
 
+def doors(case, server):
+    """Each way to a picture that is zoomed in: the bytes of a part of the finest level are sent, and pictures are those of all bytes.
+    Without shadows a picture of all bytes is that of its scene, which is read whole."""
+    url, off = server.url, ("--zoom", 8, "--shadows", "off", "--size", "32x32", "--quiet")
+    finest, first = (servers.level_bytes(server.folder / FIRST, level) for level in (0, 1))
+    pictures, others = case.folder / "pictures", case.folder / "others"
+    one, two, times = f"{url}/{FIRST}", f"{url}/{SECOND}", (f"{url}/{TIMES}", "--time", "all")
+    for name, stores, words in (
+            ("several volumes", 2, ("render", one, two, *off, "-o", pictures / "a.png")),
+            ("several channels", 2, ("render", f"{url}/{CHANNELS}", "--channel", "all", *off, "-o", pictures / "a.png")),
+            ("several sides", 1, ("render", one, *off, "--views", "front,left", "-o", f"{pictures}/%s.png")),
+            ("a series of files", 2, ("render", one, two, *off, "-o", f"{pictures}/%s.png")),
+            ("a series of times", 2, ("render", *times, *off, "-o", f"{pictures}/%d.png")),
+            ("a film", 1, ("animate", one, *off, "--turntable", 8, "--frames", 2, "-o", pictures)),
+            ("a film of times", 2, ("animate", *times, *off, "-o", pictures)),
+            ("a film that goes nearer", 1, ("animate", one, *off, "--key", "camera.zoom=0:1,2:2", "-o", pictures))):
+        for folder in (pictures, others):
+            shutil.rmtree(folder, ignore_errors=True)
+            folder.mkdir()
+        case.fresh()
+        server.forget()
+        done = case.run(*words)
+        made = [pixels_of(case, path) for path in sorted(pictures.iterdir())]
+        case.ok(f"{name}: the first level and a part of the finest one", done.returncode == 0 and made != [] and
+                stores * first < server.sent < stores * (first + finest * 3 / 4), (done.stderr, server.sent / stores, first, finest, len(made)))
+        case.run(*(str(word).replace(url, str(server.folder)).replace(str(pictures), str(others)) for word in words))
+        case.ok(f"{name}: the pictures of all chunks", made == [whole_of(case, path) for path in sorted(others.iterdir())], len(made))
+
+
+def whole_of(case, picture):
+    """The pixels of the scene that a picture carries, whose volumes are read whole."""
+    case.run("render", picture, "-o", case.folder / "whole.png", "--quiet")
+    return pixels_of(case, case.folder / "whole.png")
+
+
+def pixels_of(case, picture):
+    case.run("convert", picture, case.folder / "same.npy")
+    return (case.folder / "same.npy").read_bytes()
+
+
 def greatest_difference(a, b):
     if a is None or b is None:
         return 1
@@ -150,7 +222,9 @@ def main():
         stores = pathlib.Path(folder, "stores")
         write_store(stores / STORE)
         write_sharded(stores / SHARDED)
+        write_small_chunks(stores)
         server = servers.Server(stores)
+        doors(case, server)
         seen = parts(case, server)
         shards(case, server)
         faults(case, server, seen)

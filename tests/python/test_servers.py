@@ -81,3 +81,42 @@ def test_bytes_of_a_pyramid(server: Any, tmp_path: Path, program: str) -> None:
     done = subprocess.run(words, capture_output=True, text=True, check=True, env=dict(os.environ))
     assert needed < server.sent <= 3 * needed
     assert "the server has no file for 504 of 512 chunks" in done.stderr
+
+
+@pytest.mark.parametrize("words", [{}, {"channel": "all"}])
+def test_of_a_zoomed_picture_a_part_is_fetched(server: Any, tmp_path: Path, program: str, words: dict[str, Any]) -> None:
+    """As by the program: the level of the whole picture, and of the finest level the chunks that the camera sees."""
+    url, folder = f"{server.url}/v2.zarr", server.folder / "v2.zarr"
+    finest, first = (servers.level_bytes(folder, level) for level in (0, 1))
+    server.forget()
+    image = hl.render(url, camera={"zoom": 8}, size=32, shadows=False, **words)
+    assert first < server.sent < first + 3 / 4 * finest
+    assert image.scene.volumes[0].dimensions == (64, 64, 64)
+    options = [word for name, value in words.items() for word in (f"--{name}", value)]
+    subprocess.run([program, "render", str(folder), "--zoom", "8", "--size", "32x32", "--shadows", "off", "--quiet",
+                    *options, "-o", str(tmp_path / "a.npy")], check=True)
+    assert np.array_equal(np.asarray(image), np.load(tmp_path / "a.npy"))
+    again = hl.Scene.from_json(image.scene.to_json().replace(url, str(folder)))
+    assert np.allclose(np.asarray(hl.Renderer().render(again)), np.asarray(image), atol=1e-6)
+
+
+@pytest.mark.parametrize("fault", ["403", "page", "half"])
+def test_faults_of_what_a_zoomed_picture_sees_are_told(server: Any, fault: str) -> None:
+    """No chunk that is seen is left out, or taken from the coarser level, without a word."""
+    picture = {"camera": {"zoom": 8}, "size": 32, "shadows": False}
+    server.forget()
+    hl.render(f"{server.url}/v2.zarr", **picture)
+    seen = next(name for name in server.requests if name.startswith("v2.zarr/0/") and (server.folder / name).exists() and name[-1].isdigit())
+    shutil.rmtree(server.folder.parent / "halflight")
+    server.forget(**{seen.replace("/", "__"): ["always", fault]})
+    with pytest.raises((OSError, hl.InputError)):
+        hl.render(f"{server.url}/v2.zarr", **picture)
+
+
+def test_a_picture_takes_the_level_that_it_shows(server: Any) -> None:
+    """As the program does, unless a level is asked for."""
+    url = f"{server.url}/v2.zarr"
+    assert hl.render(url, size=32).scene.volumes[0].dimensions == (32, 32, 32)
+    assert hl.render(url, size=64).scene.volumes[0].dimensions == (64, 64, 64)
+    assert hl.render(url, size=32, level=0).scene.volumes[0].dimensions == (64, 64, 64)
+    assert hl.Volume(url).dimensions == (64, 64, 64)

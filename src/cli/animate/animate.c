@@ -152,6 +152,7 @@ static int choose_output(animate_job *job) {
 static int load(animate_job *job) {
   bool bare;
   hl_error error = {0};
+  job->host.preview_pixels = render_first_pixels(job->render);
   int exit_code = render_load_inputs(&job->host, job->render, job->inputs, &bare, &job->scene);
   if (exit_code == EXIT_CODE_OK)
     exit_code = render_change_scene(&job->host, job->render, bare, 0, &job->scene);
@@ -209,6 +210,36 @@ static bool has_times(const animate_job *job) {
          hl_volume_get_selection(description->volumes[0].volume, &selection) == HL_OK && selection.times > 1;
 }
 
+/* Finds the cameras of all frames. */
+static hl_status find_cameras(const film *f, hl_camera *cameras, hl_error *error) {
+  hl_status status = HL_OK;
+  for (int n = 0; n < film_frames(f) && status == HL_OK; n++) {
+    hl_scene *scene = NULL;
+    status = film_scene(f, n, &scene, error);
+    if (status == HL_OK) cameras[n] = hl_scene_describe(scene)->camera;
+    hl_scene_release(scene);
+  }
+  return status;
+}
+
+/* Reads the volumes where the camera of any frame sees them, and makes the film of them. */
+static int go_nearer(animate_job *job, film_options *options) {
+  hl_error error = {0};
+  const size_t count = (size_t)film_frames(job->film);
+  hl_camera *cameras = calloc(count, sizeof *cameras);
+  if (cameras == NULL) return fail(EXIT_CODE_FAILURE, "out of memory for %zu cameras", count);
+  hl_status status = find_cameras(job->film, cameras, &error);
+  int exit_code = status == HL_OK ? render_go_nearer(&job->host, cameras, count, &job->scene)
+                                  : host_fail(&job->host, PHASE_CHANGE, status, &error);
+  free(cameras);
+  if (exit_code != EXIT_CODE_OK) return exit_code;
+  film_destroy(job->film);
+  job->film = NULL;
+  options->scene = job->scene;
+  status = film_create(options, &job->film, &error);
+  return status == HL_OK ? EXIT_CODE_OK : host_fail(&job->host, PHASE_CHANGE, status, &error);
+}
+
 static int plan(animate_job *job) {
   const cli_value *frames = &job->values[ANIMATE_FRAMES];
   motion moving;
@@ -224,7 +255,8 @@ static int plan(animate_job *job) {
     options->frames = 2 * (int)fmax(1, frames_per_second(job));
   hl_status status = film_create(options, &job->film, &error);
   render_name_scene(job->input, false, &error);
-  return status == HL_OK ? EXIT_CODE_OK : host_fail(&job->host, PHASE_CHANGE, status, &error);
+  if (status != HL_OK) return host_fail(&job->host, PHASE_CHANGE, status, &error);
+  return hl_scene_is_coarse(hl_scene_describe(job->scene)) ? go_nearer(job, options) : EXIT_CODE_OK;
 }
 
 /* ---- the run ---- */

@@ -251,12 +251,15 @@ static int fill_panel(figure_job *job, figure_panel *panel) {
     hl_status status = hl_image_read(job->host.context, panel->operands[0], &panel->image, &error);
     return status == HL_OK ? EXIT_CODE_OK : host_fail(&job->host, PHASE_READ, status, &error);
   }
+  job->host.preview_pixels = render_first_pixels(panel->values);
   int exit_code = render_load_inputs(&job->host, panel->values, panel->operands, &panel->bare, &panel->scene);
   if (exit_code != EXIT_CODE_OK) return exit_code;
   size_panel(page, panel);
   exit_code = render_change_scene(&job->host, panel->values, panel->bare, 0, &panel->scene);
   if (exit_code == EXIT_CODE_OK) exit_code = share(job, panel);
-  return exit_code == EXIT_CODE_OK ? magnify(job, panel) : exit_code;
+  if (exit_code == EXIT_CODE_OK) exit_code = magnify(job, panel);
+  if (exit_code != EXIT_CODE_OK) return exit_code;
+  return render_go_nearer(&job->host, &hl_scene_describe(panel->scene)->camera, 1, &panel->scene);
 }
 
 static int make_scenes(figure_job *job) {

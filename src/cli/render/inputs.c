@@ -85,15 +85,6 @@ static hl_status load_channels(cli_host *host, const cli_value *values, const cl
 /* Volumes on the command line that are shown as slices are not smoothed: a slice shows the voxels. */
 static const double unsmoothed = 0;
 
-/* Reads the part of a volume that a picture sees (nearer.c). */
-static void take_seen_part(const cli_host *host, hl_volume_load_options *options) {
-  options->coarse = host->seen.coarse;
-  memcpy(options->seen, host->seen.planes, sizeof options->seen);
-  options->level = host->seen.level;
-  options->time = host->seen.time;
-  if (options->channel_name == NULL) options->channel = host->seen.channel;
-}
-
 static int load_each(cli_host *host, const cli_value *values, cli_input *inputs, size_t count,
                      hl_scene **scenes) {
   hl_volume_load_options options;
@@ -109,7 +100,6 @@ static int load_each(cli_host *host, const cli_value *values, cli_input *inputs,
      * read again, and --smooth is measured in voxels of the resolution that the picture shows. */
     bool is_read_once = inputs[n].bytes != NULL || inputs[n].smooth != NULL;
     options.preview_pixels = is_read_once ? 0 : host->preview_pixels;
-    if (host->seen.coarse != NULL) take_seen_part(host, &options);
     hl_status status = bare && input_has_channels(&values[RENDER_CHANNEL])
                            ? load_channels(host, values, &inputs[n], options, &scenes[n], &error)
                            : input_load(host->context, &inputs[n], bare ? &options : NULL, &scenes[n],

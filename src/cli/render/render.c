@@ -129,13 +129,13 @@ static int protect_what_was_read(const render_job *job) {
 
 static int job_load(render_job *job) {
   render_overlay_set_size(job->values, NULL, job->size_text);
-  job->host.preview_pixels = render_first_pixels(job->values, job->input.count);
+  job->host.preview_pixels = render_first_pixels(job->values);
   int exit_code = render_load_inputs(&job->host, job->values, job->input.all, &job->input.bare, &job->scene);
   if (exit_code == EXIT_CODE_OK) render_overlay_set_size(job->values, job->scene, job->size_text);
   if (exit_code == EXIT_CODE_OK)
-    exit_code = job->host.preview_pixels > 0 && render_is_first(job->scene)
-                    ? render_go_nearer(&job->host, job->values, job->input.all, &job->scene)
-                    : render_change_scene(&job->host, job->values, job->input.bare, 0, &job->scene);
+    exit_code = render_change_scene(&job->host, job->values, job->input.bare, 0, &job->scene);
+  if (exit_code == EXIT_CODE_OK)
+    exit_code = render_go_nearer(&job->host, &hl_scene_describe(job->scene)->camera, 1, &job->scene);
   if (exit_code == EXIT_CODE_OK) exit_code = protect_what_was_read(job);
   hl_error error = {0};
   hl_status status = exit_code == EXIT_CODE_OK && !prints_text(job->values)

@@ -182,15 +182,12 @@ void render_name_scene(const char *input, bool bare, hl_error *error);
  * made for volume files. flags: further HL_COMPOSE_ flags. Returns the exit code. */
 int render_change_scene(cli_host *host, const cli_value *values, bool bare, unsigned flags, hl_scene **scene);
 
-/* The pixels for which a volume of several resolutions is read first, if the picture shows a part of it
- * (--zoom); 0 if it is read once. count: the number of operands. */
-int render_first_pixels(const cli_value *values, int count);
-/* Returns whether a scene's only volume was read at a coarser resolution than the picture needs. */
-bool render_is_first(const hl_scene *scene);
-/* Reads the volume of such a scene at the resolution that the picture needs, where the picture shows it, and
- * applies the options. The picture has the camera that the options give the first scene. Returns the exit
- * code. */
-int render_go_nearer(cli_host *host, const cli_value *values, char **operands, hl_scene **scene);
+/* The pixels for which volumes of several resolutions are read first, if pictures show a part of them
+ * (--zoom); 0 if they are read once. It becomes host->preview_pixels before volumes are loaded. */
+int render_first_pixels(const cli_value *values);
+/* Reads the volumes of a scene that were read at a coarser resolution than the pictures need, where the
+ * pictures' cameras see them. cameras: [count]. Returns the exit code. */
+int render_go_nearer(cli_host *host, const hl_camera *cameras, size_t count, hl_scene **scene);
 
 /* Refuses options about the scene that contradict each other or cannot be read. */
 int render_check_scene_options(const cli_value *values);

@@ -190,7 +190,9 @@ static int make_scene(series_job *job) {
   if (exit_code == EXIT_CODE_OK)
     exit_code = render_change_scene(&job->host, job->values, bare, 0, &job->scene);
   if (exit_code == EXIT_CODE_OK) exit_code = frame_all(job);
-  return exit_code == EXIT_CODE_OK ? try_motion(job) : exit_code;
+  if (exit_code == EXIT_CODE_OK) exit_code = try_motion(job);
+  if (exit_code != EXIT_CODE_OK) return exit_code;
+  return render_go_nearer(&job->host, &hl_scene_describe(job->scene)->camera, 1, &job->scene);
 }
 
 /* ---- pictures ---- */
@@ -236,6 +238,12 @@ static int make_picture(series_job *job, hl_renderer *renderer, int number) {
     return bad ? EXIT_CODE_OK : exit_code;
   }
   hl_status status = move(job, number, &scene, &error);
+  if (status == HL_OK) exit_code = series_go_nearer(job, number, &scene);
+  if (exit_code != EXIT_CODE_OK) {
+    hl_scene_release(scene);
+    job->progress.failed += job->files.bad[number];
+    return job->files.bad[number] ? EXIT_CODE_OK : exit_code;
+  }
   bool there = status == HL_OK && is_there(job, number, scene, path); /* for a label map */
   const frames_style style = {.no_metadata = job->values[RENDER_NO_METADATA].given,
                               .overlay = &job->overlay,
@@ -286,6 +294,7 @@ static int run(series_job *job) {
   int exit_code = picture_path(job, 0, path, sizeof path);
   if (exit_code == EXIT_CODE_OK) exit_code = output_make_folder_of(path);
   job->host.own_bar = true;
+  job->host.preview_pixels = render_first_pixels(job->values);
   if (exit_code == EXIT_CODE_OK) exit_code = series_find_times(job);
   if (exit_code == EXIT_CODE_OK) exit_code = find_range(job);
   if (exit_code == EXIT_CODE_OK) exit_code = make_scene(job);

@@ -58,6 +58,10 @@ int series_load_volume(series_job *job, int number, int channel, hl_volume **vol
  * failure, job->files.bad[number] says whether the file is the cause. */
 int series_scene(series_job *job, int number, hl_scene **scene);
 
+/* Reads the volumes of a file's scene where its camera sees them (nearer.c). A failure is noted as
+ * series_scene() notes it. */
+int series_go_nearer(series_job *job, int number, hl_scene **scene);
+
 /* Makes the scene of a file, but with the voxels or triangles of the first file, so that the file need not be
  * read. Only the scene's text is used, to find out whether a picture was made of this scene. Fails, without
  * an error line, for label maps, because their text depends on the file's content. */

@@ -158,6 +158,7 @@ static void reading_of(const series_job *job, int number, hl_volume_load_options
   render_load_options(job->values, options);
   if (job->files.of_times) options->time = number;
   if (job->scene != NULL) options->level = hl_scene_describe(job->scene)->volumes[0].level;
+  options->preview_pixels = job->host.preview_pixels;
 }
 
 static hl_space space_of(const hl_volume *volume) {
@@ -193,7 +194,9 @@ int series_load_volume(series_job *job, int number, int channel, hl_volume **vol
     hl_status status = input_load_volume(job->host.context, &input, &options, volume, &error);
     double smooth = job->scene != NULL ? hl_volume_smoothing(hl_scene_describe(job->scene)->volumes[0].volume)
                                        : 0;
-    if (status == HL_OK && smooth > 0) status = input_smooth(smooth, volume, &error);
+    /* a file that is read again, finer, is smoothed as the first file was, also if that was not smoothed */
+    const bool again = job->scene != NULL && job->host.preview_pixels > 0;
+    if (status == HL_OK && (smooth > 0 || again)) status = input_smooth(smooth, volume, &error);
     if (status != HL_OK) exit_code = host_fail(&job->host, PHASE_READ, status, &error);
   }
   input_close(&input);
@@ -358,6 +361,10 @@ int series_scene(series_job *job, int number, hl_scene **scene) {
   if (job->files.of_meshes) return mesh_scene(job, number, scene);
   return render_is_label_map(job->values) ? label_scene(job, number, scene)
                                           : volume_scene(job, number, scene);
+}
+
+int series_go_nearer(series_job *job, int number, hl_scene **scene) {
+  return note(job, number, render_go_nearer(&job->host, &hl_scene_describe(*scene)->camera, 1, scene));
 }
 
 hl_status series_scene_unread(const series_job *job, int number, hl_scene **scene) {

@@ -147,7 +147,43 @@ static int share_scale(views_job *job) {
   return EXIT_CODE_OK;
 }
 
+/* Puts the volumes of one view in the place of another view's. */
+static int take_volumes(views_job *job, const hl_scene *from, hl_scene **scene) {
+  const hl_scene_description *finer = hl_scene_describe(from);
+  hl_scene_description description = *hl_scene_describe(*scene);
+  hl_scene_volume *volumes = malloc(description.volume_count * sizeof *volumes + 1);
+  hl_scene *made = NULL;
+  hl_error error = {0};
+  if (volumes == NULL) return fail(EXIT_CODE_FAILURE, "out of memory for a list of volumes");
+  for (size_t n = 0; n < description.volume_count; n++) {
+    volumes[n] = description.volumes[n];
+    volumes[n].volume = finer->volumes[n].volume;
+    volumes[n].labels = finer->volumes[n].labels;
+    volumes[n].label_count = finer->volumes[n].label_count;
+  }
+  description.volumes = volumes;
+  hl_status status = hl_scene_create(job->host.context, &description, &made, &error);
+  free(volumes);
+  if (status != HL_OK) return host_fail(&job->host, PHASE_CHANGE, status, &error);
+  hl_scene_release(*scene);
+  *scene = made;
+  return EXIT_CODE_OK;
+}
+
+/* Reads the volumes where any of the views sees them. All views share the volumes. */
+static int go_nearer(views_job *job) {
+  hl_camera cameras[MOST_VIEWS];
+  if (job->host.preview_pixels == 0) return EXIT_CODE_OK;
+  for (size_t v = 0; v < job->count; v++) cameras[v] = hl_scene_describe(job->scenes[v])->camera;
+  int exit_code = EXIT_CODE_OK;
+  for (size_t v = 0; v < job->count && exit_code == EXIT_CODE_OK; v++)
+    exit_code = v == 0 ? render_go_nearer(&job->host, cameras, job->count, &job->scenes[0])
+                       : take_volumes(job, job->scenes[0], &job->scenes[v]);
+  return exit_code;
+}
+
 static int load(views_job *job) {
+  job->host.preview_pixels = render_first_pixels(job->values);
   render_overlay_set_size(job->values, NULL, job->size_text);
   int exit_code = render_load_inputs(&job->host, job->values, job->inputs, &job->bare, &job->loaded);
   if (exit_code == EXIT_CODE_OK) render_overlay_set_size(job->values, job->loaded, job->size_text);
@@ -162,6 +198,7 @@ static int load(views_job *job) {
     job->host.quiet = true; /* the warnings were printed for the first side */
   }
   if (exit_code == EXIT_CODE_OK && !job->files) exit_code = share_scale(job);
+  if (exit_code == EXIT_CODE_OK) exit_code = go_nearer(job);
   for (size_t v = 0; v < job->count && exit_code == EXIT_CODE_OK; v++) {
     hl_error error = {0};
     job->host.quiet = v > 0 || job->values[RENDER_QUIET].given;

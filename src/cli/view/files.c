@@ -147,51 +147,27 @@ hl_status view_open_file(void *user_data, const server_file *file, hl_scene **sc
 
 /* ---- finer resolutions ---- */
 
-/* Loads a file by its absolute path. Nothing outside of the file's folder is read, as when a page opens the
- * file. */
-static hl_status load_again(hl_context *context, const char *path, const hl_volume_load_options *options,
-                            hl_volume **volume, hl_error *error) {
+/* Reads a scene's volume at the next finer resolution, from its absolute path. Nothing outside of the file's
+ * folder is read, as when a page opens the file. *finer: null if the volume has the wanted resolution
+ * already. */
+static hl_status read_finer(hl_context *context, const hl_scene_description *scene, size_t number,
+                            hl_volume **finer, hl_error *error) {
   hl_context *confined = NULL;
+  const char *path = scene->volumes[number].file;
+  if (path == NULL || path[0] != '/') /* a URL */
+    return hl_volume_read_finer(context, path, scene, number, NULL, 0, true, finer, error);
   const char *name = base_name(path);
-  if (path[0] != '/') return hl_volume_load_with(context, path, options, volume, error); /* a URL */
   char *folder = strndup(path, (size_t)(name - path));
   if (folder == NULL) {
     snprintf(error->message, sizeof error->message, "out of memory for a path");
     return HL_ERROR_MEMORY;
   }
   hl_status status = hl_context_confine(context, folder, &confined, error);
-  if (status == HL_OK) status = hl_volume_load_with(confined, name, options, volume, error);
+  if (status == HL_OK)
+    status = hl_volume_read_finer(confined, name, scene, number, NULL, 0, true, finer, error);
   hl_context_destroy(confined);
   free(folder);
   return status;
-}
-
-/* Reads a scene's volume at the next finer resolution, from the file and with the options with which it was
- * read. *finer: null if the volume has the wanted resolution already. */
-static hl_status read_finer(hl_context *context, const hl_scene_volume *volume, hl_volume **finer,
-                            hl_error *error) {
-  hl_volume_selection read = {.struct_size = sizeof read};
-  hl_volume_info info = {.struct_size = sizeof info};
-  hl_volume_load_options options;
-  *finer = NULL;
-  if (volume->file == NULL || hl_volume_get_selection(volume->volume, &read) != HL_OK ||
-      read.level <= read.aim)
-    return HL_OK;
-  hl_status status = hl_volume_get_info(volume->volume, &info);
-  if (status != HL_OK) return status;
-  hl_volume_load_options_defaults(&options);
-  options.array = volume->array;
-  options.series = volume->series;
-  options.component = volume->component;
-  memcpy(options.spacing, volume->spacing, sizeof options.spacing);
-  options.time = read.time;
-  options.channel = read.channel;
-  options.level = read.aim;
-  /* the next finer resolution is the coarsest one that has more voxels */
-  for (int axis = 0; axis < 3; axis++)
-    if (info.dimensions[axis] >= (size_t)options.preview_pixels)
-      options.preview_pixels = (int)info.dimensions[axis] + 1;
-  return load_again(context, volume->file, &options, finer, error);
 }
 
 hl_status view_refine_scene(void *user_data, const hl_scene *scene, hl_scene **finer, hl_error *error) {
@@ -203,7 +179,7 @@ hl_status view_refine_scene(void *user_data, const hl_scene *scene, hl_scene **f
   if (status != HL_OK) snprintf(error->message, sizeof error->message, "out of memory for a list of volumes");
   for (size_t v = 0; status == HL_OK && v < d.volume_count; v++) {
     volumes[v] = d.volumes[v];
-    status = read_finer(context, &volumes[v], &read[v], error);
+    status = read_finer(context, hl_scene_describe(scene), v, &read[v], error);
     if (read[v] != NULL) volumes[v].volume = read[v];
   }
   d.volumes = volumes;

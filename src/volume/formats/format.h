@@ -25,16 +25,17 @@ typedef struct hl_load_request {
   int pixels;               /* pixels of the picture's longer side; 0 if unknown */
   int preview_pixels;       /* pixels of the longer side of a first picture; 0 if there is none */
   const hl_volume *coarse;  /* see hl_volume_load_options; null if everything is read */
-  double seen[4][4];        /* see hl_volume_load_options */
-  double window[2];         /* set by readers: the data values that are shown black and white; both equal if
-                             * the file does not state them */
-  hl_channel *channels;     /* owned; [selection.channels]; set by readers if the file describes channels */
-  const char *unit;         /* set by readers: the unit of lengths, static; null if the file does not state
-                             * it */
-  hl_absence absence;       /* set by readers of stores on servers */
-  bool is_anatomical;       /* set by readers of medical formats: whether the file states its anatomical space
-                             * explicitly */
-  bool says_labels;         /* set by readers: whether the file says that its values are labels */
+  const double (*seen)[4][4]; /* [seen_count]; see hl_volume_load_options */
+  size_t seen_count;
+  double window[2];       /* set by readers: the data values that are shown black and white; both equal if
+                           * the file does not state them */
+  hl_channel *channels;   /* owned; [selection.channels]; set by readers if the file describes channels */
+  const char *unit;       /* set by readers: the unit of lengths, static; null if the file does not state
+                           * it */
+  hl_absence absence;     /* set by readers of stores on servers */
+  bool is_anatomical;     /* set by readers of medical formats: whether the file states its anatomical space
+                           * explicitly */
+  bool says_labels;       /* set by readers: whether the file says that its values are labels */
   bool says_fog;          /* set by readers: whether the file says that its values are the density of a fog */
   const char *series;     /* DICOM: the number, UID or description of the wanted series; null if the
                            * reader may choose */

@@ -143,7 +143,7 @@ static hl_status load_image(const hl_bundle *bundle, const hl_zarr_image *image,
   else if (status == HL_OK) status = hl_component_choose(request, bundle->path, false, &payload, error);
   if (status != HL_OK) return status;
   hl_volume_description grid = hl_payload_grid(&payload, request->spacing);
-  hl_beyond_prepare(request->coarse, request->seen, &grid, &choice.beyond);
+  hl_beyond_prepare(request->coarse, request->seen, request->seen_count, &grid, &choice.beyond);
   hl_destination to = {.context = NULL};
   status = hl_zarr_voxels_read(bundle, array, &choice, &grid, &to, &request->absence, error);
   if (status == HL_OK) status = hl_destination_adopt(&to, &grid, volume, error);

@@ -1,0 +1,45 @@
+/* halflight/resolutions.h - reads the volumes of a scene anew, as fine as its pictures show them, and only
+ * where its pictures see them.
+ *
+ * A file may hold a volume in several resolutions (OME-Zarr). A picture that is zoomed in deserves a fine
+ * one, but sees only a part of it. Nobody knows which part before the camera is placed, and the camera frames
+ * what the voxels show. So a caller reads the volumes at a coarse resolution first
+ * (hl_volume_load_options.preview_pixels), makes the scene, and then calls hl_scene_read_finer(). */
+#ifndef HALFLIGHT_RESOLUTIONS_H
+#define HALFLIGHT_RESOLUTIONS_H
+
+#include "scene.h"
+
+#ifdef __cplusplus
+extern "C" {
+#endif
+
+/* Returns whether any volume of the scene was read at a coarser resolution than the one that its options for
+ * reading ask for (hl_volume_selection). */
+HL_API int hl_scene_is_coarse(const hl_scene_description *description);
+
+/* Reads volume number `number` of a scene at a finer resolution, with the options that the scene names. path:
+ * the volume's file; null stands for the file that the scene names. cameras: [camera_count], the cameras of
+ * the pictures that will be made, which have the description's size; with null, the volume is read whole.
+ * Chunks of a store that no camera sees are not read: their voxels are interpolated in the volume that the
+ * scene has. Label maps are read whole, since numbers between two labels are other labels. by_step: whether
+ * the next finer resolution is read; else the one that the options ask for. The volume is smoothed as the
+ * scene's volume was; if that was not smoothed, it is smoothed where hl_scene_for_volume() would smooth it.
+ * *finer is owned by the caller (release it); it is null if the volume has the wanted resolution already, or
+ * if no file is named. */
+HL_API HL_WARN_UNUSED hl_status hl_volume_read_finer(hl_context *context, const char *path,
+                                                     const hl_scene_description *description, size_t number,
+                                                     const hl_camera *cameras, size_t camera_count,
+                                                     int by_step, hl_volume **finer, hl_error *error);
+
+/* Makes a scene that differs from `scene` only in its volumes, which hl_volume_read_finer() reads at the
+ * resolutions that their options ask for. Label maps get the labels of their finer voxels. *finer is owned by
+ * the caller (release it); if no volume is coarse, it is the scene itself, retained. */
+HL_API HL_WARN_UNUSED hl_status hl_scene_read_finer(hl_context *context, hl_scene *scene,
+                                                    const hl_camera *cameras, size_t camera_count,
+                                                    hl_scene **finer, hl_error *error);
+
+#ifdef __cplusplus
+}
+#endif
+#endif
