@@ -40,6 +40,19 @@ def is_grid(source: Any) -> bool:
     return _is_of_blocks(source) or _is_unstructured(source) or _is_curvilinear(source)
 
 
+def _with_points(source: Any) -> Any:
+    """A block, with a point for each of its places also if it is a rectilinear grid or an image."""
+    is_rectilinear = _is_a(source, "vtkRectilinearGrid")
+    if not is_rectilinear and not _is_a(source, "vtkImageData"):
+        return source
+    from vtkmodules.vtkFiltersGeneral import vtkImageDataToPointSet, vtkRectilinearGridToPointSet
+
+    convert = vtkRectilinearGridToPointSet() if is_rectilinear else vtkImageDataToPointSet()
+    convert.SetInputData(source)
+    convert.Update()
+    return convert.GetOutput()
+
+
 def _leaves(source: Any) -> Iterator[Any]:
     """The grids of cells among the blocks, in their order. Surfaces, such as OpenFOAM's patches, are left out."""
     for count, part in (("GetNumberOfBlocks", "GetBlock"), ("GetNumberOfPartitionedDataSets", "GetPartitionedDataSet"),
@@ -48,6 +61,7 @@ def _leaves(source: Any) -> Iterator[Any]:
             for n in range(getattr(source, count)()):
                 yield from _leaves(getattr(source, part)(n))
             return
+    source = _with_points(source)
     if source is not None and source.GetNumberOfCells() and (_is_curvilinear(source) or (_is_unstructured(source) and _has_volume(source))):
         yield source
 

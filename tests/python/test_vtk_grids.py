@@ -136,3 +136,18 @@ def test_what_is_no_grid_of_cells(tmp_path: Path) -> None:
     case = pyvista.EnSightReader(str(write_ensight(tmp_path / "ensight", linear))).read()
     with pytest.raises(ValueError, match="has no array 'p': choose of T"):
         hl.Volume(case, array="p")
+
+
+@pytest.mark.parametrize("kind", ["rectilinear", "image"])
+def test_blocks_may_be_grids_along_the_axes(kind: str) -> None:
+    """As in EnSight's cases: a block that is a rectilinear grid or an image holds the cells of the same curvilinear grid."""
+    x, y, z = np.linspace(0, 1, 13) ** (2 if kind == "rectilinear" else 1), np.linspace(0, 2, 9), np.linspace(0, 1, 7)
+    if kind == "rectilinear":
+        grid = pyvista.RectilinearGrid(x, y, z)
+    else:
+        grid = pyvista.ImageData(dimensions=(13, 9, 7), spacing=(x[1], y[1], z[1]))
+    grid["field"] = linear(*grid.points.T)
+    blocks = pyvista.MultiBlock([grid])
+    found, curvilinear = hl.Volume(blocks, array="field"), hl.Volume(grid.cast_to_structured_grid(), array="field")
+    assert found.dimensions == curvilinear.dimensions
+    assert np.array_equal(np.asarray(found), np.asarray(curvilinear), equal_nan=True)
