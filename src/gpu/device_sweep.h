@@ -57,6 +57,16 @@ typedef struct plan_cut {
 #define CUT_BOX    1
 #define CUT_SPHERE 2
 
+/* The number of columns and of sizes of caps of a table of a phase function (light/phase_table.h). */
+#define PLAN_PHASE_COLUMNS 512
+#define PLAN_PHASE_CAPS    64
+#define PLAN_LIGHT_CAPS    4
+
+/* A part of a wide light: the members of light_cap (light/light_caps.h). */
+typedef struct plan_cap {
+  float middle[3], spread[6];
+} plan_cap;
+
 /* A light, and the shadow buffer of a light that casts shadows. */
 typedef struct plan_light {
   int parallel, shadowed, inverse_square, nearest, cubic;
@@ -68,6 +78,9 @@ typedef struct plan_light {
   float path;        /* the members of these names in shade_light (render/slab.h) */
   float through[3];  /* the members of these names in attenuate_job (shadow/attenuate.h) */
   float cone_axis[3], cone_outer, cone_scale;
+  int wide_parallel, cap_count; /* whether the light is parallel and has a row of its own in the table of the
+                                 * phase function, and the number of `caps` */
+  plan_cap caps[PLAN_LIGHT_CAPS];
   int sector_count, sector;
   float sector_axis[PLAN_SECTORS][3], sector_least;
   /* the shadow buffer */
@@ -184,7 +197,7 @@ typedef struct plan_volume {
   int face_cuts[6]; /* [axis][low, high] */
   /* the material (shade_volume in render/slab.h) */
   float ambient, diffuse, specular, shininess, emission;
-  float anisotropy;
+  float anisotropy, phase_rows; /* phase_rows: rows_per_log2 of phase_table */
   float albedo[3];
   int absorbs, receives_shadow;
   float cast[3];   /* the extinction for lights divided by the extinction for the eye */
@@ -305,6 +318,7 @@ typedef struct plan_variant {
   int colored;   /* whether the voxels have colours of their own */
   int soft;      /* some lights are soft */
   int paper;     /* some lights are convolved by the paper's method */
+  int phases;    /* the volume has a table of its phase function */
   int sublights; /* some lights have sub-lights */
   int sky;       /* whether the sky's light is added in this sweep */
   int maximum;   /* whether the picture is a maximum projection */

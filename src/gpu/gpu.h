@@ -108,6 +108,12 @@ typedef struct gpu_sublights {
                                       * of marks */
 } gpu_sublights;
 
+/* The table of the volume's phase function; borrowed. */
+typedef struct gpu_phases {
+  const float *rows[PLAN_LIGHTS]; /* [PLAN_PHASE_COLUMNS] for each light; null for lights without a row */
+  const float *caps;              /* [PLAN_PHASE_CAPS][PLAN_PHASE_COLUMNS][2]; null if they are not read */
+} gpu_phases;
+
 /* A sweep as plain data; borrowed until hl_gpu_read(). */
 typedef struct gpu_sweep gpu_sweep;
 struct gpu_sweep {
@@ -120,6 +126,7 @@ struct gpu_sweep {
                               * composited from back to front; null stands for slab 1 for all blocks */
   gpu_sky sky;
   gpu_sublights sublights;
+  gpu_phases phases;
   const float *shown_values; /* [PLAN_TABLE_ROWS][4]; the table of shown values of a maximum projection; null
                               * for other pictures */
   size_t plane_floats;       /* number of floats of the planes of all lights together */

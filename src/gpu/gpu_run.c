@@ -97,6 +97,19 @@ static bool reset_sublights(hl_gpu *gpu, const gpu_sweep *sweep, const gpu_progr
          fill(gpu, program, BUFFER_SUBLIGHT_MARKS, mark_floats(sweep), 0);
 }
 
+/* Brings the table of the phase function to the device: a row for each light, then the caps. */
+static bool upload_phases(hl_gpu *gpu, const gpu_sweep *sweep) {
+  const gpu_phases *phases = &sweep->phases;
+  const size_t row = PLAN_PHASE_COLUMNS * sizeof(float), lights = (size_t)sweep->plan->light_count,
+               caps = 2 * PLAN_PHASE_CAPS * row;
+  bool done = hl_gpu_reserve(gpu, BUFFER_PHASES, sweep->variant.phases ? lights * row + caps : 0);
+  for (size_t i = 0; i < lights && done; i++)
+    if (phases->rows[i] != NULL) done = hl_gpu_upload(gpu, BUFFER_PHASES, i * row, phases->rows[i], row);
+  if (done && phases->caps != NULL)
+    done = hl_gpu_upload(gpu, BUFFER_PHASES, lights * row, phases->caps, caps);
+  return done;
+}
+
 /* Brings the cells of the sky's field to the device, unless the device has them already. */
 static bool prepare_sky(hl_gpu *gpu, const gpu_sky *sky) {
   if (sky->cells == NULL || sky->version == gpu->sky_version) return hl_gpu_reserve(gpu, BUFFER_SKY, 0);
@@ -123,7 +136,8 @@ static bool make_room(hl_gpu *gpu, const gpu_sweep *sweep) {
               hl_gpu_reserve(gpu, BUFFER_LIST, slots * sizeof(uint32_t)) &&
               hl_gpu_reserve(gpu, BUFFER_MASKS, 2 * tiles * 256 * sizeof(uint32_t)) &&
               hl_gpu_reserve(gpu, BUFFER_CUTS, sweep->cut_count * sizeof *sweep->cuts) &&
-              make_soft_room(gpu, sweep) && make_sublight_room(gpu, sweep) && prepare_sky(gpu, &sweep->sky) &&
+              make_soft_room(gpu, sweep) && make_sublight_room(gpu, sweep) && upload_phases(gpu, sweep) &&
+              prepare_sky(gpu, &sweep->sky) &&
               (sweep->passes == NULL || hl_gpu_upload_passes(gpu, sweep->passes));
   if (done && sweep->shown_from != NULL)
     done = hl_gpu_upload(gpu, BUFFER_SHOWN_FROM, 0, sweep->shown_from, tiles * 16 * sizeof(int32_t));
@@ -188,6 +202,7 @@ static bool launch_kernel(hl_gpu *gpu, const gpu_program *program, int kernel, s
                                     hl_gpu_memory(gpu, BUFFER_SUBLIGHTS),
                                     hl_gpu_memory(gpu, BUFFER_OF_SUBLIGHTS),
                                     hl_gpu_memory(gpu, BUFFER_SUBLIGHT_MARKS),
+                                    hl_gpu_memory(gpu, BUFFER_PHASES),
                                     hl_gpu_number(run.first),
                                     hl_gpu_number(run.end),
                                     hl_gpu_number(run.number)};

@@ -18,6 +18,9 @@ _Static_assert(PLAN_LIGHTS >= MAXIMUM_SWEEP_LIGHTS && PLAN_SECTORS == LIGHT_SECT
 _Static_assert(PLAN_SHOWN_FROM == SHOWN_FROM && PLAN_SHOWN_TO == SHOWN_TO &&
                    PLAN_SHOWN_BELOW == SHOWN_BELOW && PLAN_TABLE_ROWS == (int)SHOWN_ENTRIES,
                "tables of shown values of plans are those of frames");
+_Static_assert(PLAN_PHASE_COLUMNS == PHASE_COLUMNS && PLAN_PHASE_CAPS == PHASE_CAPS &&
+                   PLAN_LIGHT_CAPS == MOST_CAPS && sizeof(plan_cap) == sizeof(light_cap),
+               "tables of phase functions of plans are those of lights");
 _Static_assert(PLAN_HARMONICS == FIELD_HARMONICS, "skies of plans are skies of fields");
 _Static_assert(CUT_PLANE == (int)HL_CUT_PLANE && CUT_BOX == (int)HL_CUT_BOX &&
                    CUT_SPHERE == (int)HL_CUT_SPHERE,
@@ -61,12 +64,30 @@ static void plan_brightness(const shade_light *shade, plan_light *light) {
   light->of_sky = shade->of_sky;
   light->path = shade->path;
   memcpy(light->cone_axis, shade->cone.axis, sizeof light->cone_axis);
+  light->wide_parallel = shade->parallel_row >= 0;
+  light->cap_count = shade->caps.count;
+  memcpy(light->caps, shade->caps.cap, sizeof light->caps);
   light->cone_outer = shade->cone.outer;
   light->cone_scale = shade->cone.scale;
   light->sector_count = shade->sector.count;
   light->sector = shade->sector.sector;
   memcpy(light->sector_axis, shade->sector.axis, sizeof light->sector_axis);
   light->sector_least = shade->sector.least;
+}
+
+/* The rows and caps of the volume's phase table that a sweep reads. */
+static gpu_phases phases_of(const sweep_constants *constants, int lights) {
+  const phase_table *table = constants->volumes[0].phase_once;
+  gpu_phases phases = {0};
+  if (table == NULL) return phases;
+  bool caps = constants->shade.sky != NULL;
+  for (int i = 0; i < lights; i++) {
+    const shade_light *light = &constants->lights[i];
+    if (light->parallel_row >= 0) phases.rows[i] = table->parallel[light->parallel_row];
+    caps = caps || light->caps.count > 0;
+  }
+  if (caps) phases.caps = &table->caps[0][0][0];
+  return phases;
 }
 
 /* The data from which a sweep is described for a device. */
@@ -327,6 +348,7 @@ static plan_variant variant_of(const sweep_task *task, const device_sweep *plan)
                         .cuts = shade->cut_count > 0,
                         .soft = has_soft_lights(task),
                         .paper = any_light(task, hl_is_convolved),
+                        .phases = shade->phase_once != NULL,
                         .sublights = any_light(task, hl_has_sublights),
                         .sky = task->constants->shade.sky != NULL,
                         .maximum = shade->shown != NULL,
@@ -388,6 +410,7 @@ hl_status hl_plan_sweep(const sweep_means *means, const frame_plan *frame_plan, 
                                .variant = variant_of(task, plan),
                                .shown_from = shown_from,
                                .sky = cells_of_sky(job->sky),
+                               .phases = phases_of(&planned->constants, plan->light_count),
                                .shown_values = shade->shown == NULL ? NULL : &shade->shown[0][0],
                                .plane_floats = floats,
                                .slabs = slabs};

@@ -1,7 +1,6 @@
 /* render/device_reasons.c - see device_reasons.h. */
 #include "render/device_reasons.h"
 
-#include "light/phase_table.h"
 #include "volume/store/pages.h"
 
 static const frame_volume *volume_of(const frame_plan *plan) { return &plan->volumes.list[0]; }
@@ -56,9 +55,6 @@ static bool has_images(const frame_plan *plan) {
     if (plan->lights[i].has_image) return true;
   return false;
 }
-static bool has_phase_tables(const frame_plan *plan) {
-  return hl_phase_table(plan->fields.phases, volume_of(plan)->look.anisotropy) != NULL;
-}
 
 /* The reasons why a device cannot make a frame, each with a function that tells whether it applies. The user
  * gets the first reason that applies. */
@@ -80,7 +76,6 @@ static const struct {
     {masks_thick_slabs, "a mask with sheets more than 1.5 voxels apart"},
     {has_many_sublights, "more than 16 x 16 sub-lights"},
     {has_images, "lights with images"},
-    {has_phase_tables, "wide lights in media that scatter unevenly"},
 };
 
 const char *hl_reason_for_processors(const frame_plan *plan) {

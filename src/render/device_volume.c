@@ -166,6 +166,7 @@ static void plan_material(const shade_volume *shade, const frame_volume *of, pla
   volume->shininess = shade->shininess;
   volume->emission = shade->emission;
   volume->anisotropy = shade->anisotropy;
+  if (shade->phase_once != NULL) volume->phase_rows = shade->phase_once->rows_per_log2;
   memcpy(volume->albedo, shade->albedo, sizeof volume->albedo);
   volume->absorbs = shade->absorbs;
   volume->receives_shadow = shade->receives_shadow;

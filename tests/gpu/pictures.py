@@ -59,6 +59,7 @@ SUN = {"type": "directional", "direction": [0.4, -0.7, 0.5], "angular_diameter_d
 LAMP = {"type": "point", "position": [40, 50, -50], "radius": 9}
 TILTED = {"type": "rect", "position": [30, 40, -40], "edge1": [14, 0, 6], "edge2": [0, 12, 16]}
 WITHIN = {"type": "point", "position": [4, 3, -5], "radius": 3}
+FORWARDS, BACKWARDS = ({"scattering": {"anisotropy": g, "albedo": [0.9, 0.7, 0.5]}} for g in (0.7, -0.4))
 BEHIND = {**SUN, "direction": [0.2, -0.3, -0.9]}
 EVEN_SKY = {"type": "uniform", "color": [0.6, 0.8, 1], "strength": 0.8}
 SKY = {"type": "gradient", "zenith": [0.36, 0.4, 0.5], "horizon": [0.32, 0.33, 0.36], "ground": [0.16, 0.14, 0.12]}
@@ -193,6 +194,11 @@ MADE = {
         sky=SKY, shadows="soft", shading="phong", opacity=DENSE, light=SUN, volume={"mask": {**ORGANS, "rest": 0}, "cuts": [BLOCK]},
         render=SUBLIGHTS),
     "sub-lights beside hard ones": scene(shadows="soft", shading="phong", opacity=LAYERS, light=TILTED, render=SUBLIGHTS),
+    "forward scattering under a wide light": scene(light=SUN, volume=FORWARDS),
+    "backward scattering under a ball and a tilted light": scene(light=LAMP, volume=BACKWARDS, shading="phong"),
+    "forward scattering under a sky, soft shadows": scene(sky=SKY, shadows="soft", light=SUN, volume={**FORWARDS, "cuts": [BALL]}),
+    "backward scattering under a sky, no shadows received": scene(sky=EVEN_SKY, light=TILTED,
+                                                                  volume={**BACKWARDS, "receives_shadow": False}),
     "an even sky": scene(sky=EVEN_SKY),
     "a sky, surfaces": scene(sky=SKY, shading="phong", opacity=DENSE),
     "a sky, soft shadows of surfaces, colours": scene(sky=SKY, shadows="soft", shading="phong", opacity=LAYERS, light=SUN,
@@ -226,6 +232,7 @@ LABELS = scene(shading="phong")
 LABELS["volumes"] = [{"file": "labels.nrrd", "labels": [{"value": 1, "color": [0.8, 0.2, 0.1]}, {"value": 2, "color": [0.1, 0.4, 0.8]}]}]
 MADE["labels"] = LABELS
 MADE["soft shadows beside hard ones"]["lights"].append({"type": "directional", "direction": [-0.5, -0.5, 0.5], "shadows": "hard"})
+MADE["backward scattering under a ball and a tilted light"]["lights"].append(TILTED)
 MADE["sub-lights beside hard ones"]["lights"] += [{"type": "directional", "direction": [-0.5, -0.5, 0.5], "shadows": "hard"},
                                                    {**LAMP, "shadows": "soft"}]
 LARGE = scene(volume={"file": "large.nrrd"}, render={"sheet_spacing": 4},
@@ -233,7 +240,7 @@ LARGE = scene(volume={"file": "large.nrrd"}, render={"sheet_spacing": 4},
 # One scene of each feature.
 FEW = ("medium", "a field at levels, surfaces", "gradient opacity, cuts, light from behind", "coloured voxels", "labels", "a projection of cuts",
        "the paper's soft shadows of surfaces, colours, near light", "a sky, soft shadows of surfaces, colours",
-       "sub-lights of a tilted light, dense",
+       "sub-lights of a tilted light, dense", "forward scattering under a sky, soft shadows",
        "soft shadows of surfaces in layers, a mask, cuts, light from behind")
 LEFT = {
     "more than 16 x 16 sub-lights": scene(shadows="soft", light=SUN, render={**SUBLIGHTS, "light_samples": 17}),

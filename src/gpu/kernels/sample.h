@@ -22,8 +22,10 @@ typedef struct volume_data {
                                        * and at most FARTHEST_BRICK */
   GLOBAL const wide *cell_bits;       /* [bricks z][y][x]; read only where plan->has_cell_bits */
   GLOBAL const float *tables;
-  GLOBAL const byte *colors;   /* [z][y][x][4]; read only if the voxels have colours */
-  GLOBAL const byte *mask;     /* the mask's parts (kernels/mask.h); read only if there is a mask */
+  GLOBAL const byte *colors; /* [z][y][x][4]; read only if the voxels have colours */
+  GLOBAL const byte *mask;   /* the mask's parts (kernels/mask.h); read only if there is a mask */
+  GLOBAL const float
+      *phases; /* the table of the phase function (kernels/phase.h); read only if there is one */
   GLOBAL const plan_cut *cuts; /* [views][cut_count]; the eye's view comes first, then the lights' views */
 } volume_data;
 

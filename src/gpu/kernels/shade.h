@@ -5,10 +5,9 @@
 #define HL_GPU_SHADE_H
 
 #include "core/sheet_constants.h"
+#include "gpu/kernels/phase.h"
 #include "gpu/kernels/sky.h"
 #include "gpu/kernels/surface.h"
-
-#define LEAST_LIGHT_DISTANCE 1e-3f /* as HL_LEAST_LIGHT_DISTANCE */
 
 /* ---- where the slab is seen ---- */
 
@@ -149,13 +148,6 @@ DEVICE vector color_of_way(const volume_data *volume, const slab_sample *s) {
 
 /* ---- lights ---- */
 
-/* Henyey and Greenstein's phase function times 4 pi. turn: minus the cosine of the angle by which scattering
- * turns the light. */
-DEVICE float phase_of(float g, float turn) {
-  float squared = fused(turn, 2 * g, 1 + g * g);
-  return divided(1 - g * g, squared * root(squared));
-}
-
 DEVICE float within_cone(GLOBAL const plan_light *light, vector towards) {
   float x = limited((-dot3(towards, vector_at(light->cone_axis)) - light->cone_outer) * light->cone_scale,
                     0.0f, 1.0f);
@@ -171,6 +163,16 @@ DEVICE float fraction_of_sector(GLOBAL const plan_light *light, vector towards) 
   }
   return divided(own, sum);
 }
+
+#if PHASES
+DEVICE phase_data phases_of_volume(GLOBAL const device_sweep *plan, const volume_data *volume) {
+  phase_data phases;
+  phases.table = volume->phases;
+  phases.lights = plan->light_count;
+  phases.rows_per_log2 = volume->plan->phase_rows;
+  return phases;
+}
+#endif
 
 /* Finds the direction from which a light comes at a position. Returns the length of its way through the
  * slab. */
@@ -241,7 +243,13 @@ DEVICE void add_light(GLOBAL const device_sweep *plan, const volume_data *volume
   (void)buffers;
   (void)path;
 #endif
+#if PHASES
+  const phase_data phases = phases_of_volume(plan, volume);
+  medium = medium * phase_of_light(&phases, matter->anisotropy, light, (int)(light - plan->lights), towards,
+                                   s->position, s->towards_eye);
+#else
   if (matter->anisotropy != 0) medium = medium * phase_of(matter->anisotropy, dot3(s->towards_eye, towards));
+#endif
   if (light->of_sky > 0) medium = medium * light->of_sky;
 #if PHONG
   float diffuse = greater(facing, 0.0f) * matter->diffuse * s->surface, glint = 0.0f;
@@ -317,7 +325,12 @@ DEVICE vector color_of_slab(GLOBAL const device_sweep *plan, const volume_data *
 #endif
 #if SKY
   const sky_data field = {&plan->sky, sky};
+#if PHASES
+  const phase_data phases = phases_of_volume(plan, volume);
+  const vector of_sky = sky_of_sample(&field, volume, &phases, s);
+#else
   const vector of_sky = sky_of_sample(&field, volume, s);
+#endif
   lit = vector_of(fused(of_sky.x, color.x, lit.x), fused(of_sky.y, color.y, lit.y),
                   fused(of_sky.z, color.z, lit.z));
 #else

@@ -5,6 +5,7 @@
 
 #include "core/sheet_constants.h"
 #include "gpu/kernels/light.h"
+#include "gpu/kernels/phase.h"
 
 #if SKY
 
@@ -188,14 +189,64 @@ DEVICE float light_of_surface(const sky_data *sky, const sky_place *place, int h
   return greater(hidden ? sum * (place->unit * sky->plan->stored_unit[channel]) : sum, 0.0f);
 }
 
+DEVICE float harmonic_at(const sky_data *sky, const sky_place *place, int hidden, int channel, int k) {
+  return hidden ? sum_of_harmonic(sky, place, channel, k) * (place->unit * sky->plan->stored_unit[channel])
+                : sky->plan->open[channel][k];
+}
+
+#if PHASES
+
+DEVICE float second_degree(const float light[FIELD_HARMONICS], vector d) {
+  return (light[4] * d.x * d.y + light[5] * d.y * d.z + light[6] * d.z * d.x) * (float)HARMONIC_2 +
+         light[7] * fused(d.z * d.z, 3.0f, -1.0f) * (float)HARMONIC_20 +
+         light[8] * (d.x * d.x - d.y * d.y) * (float)HARMONIC_22;
+}
+
+/* As sky_cap in render/sky_phase_lanes.h. */
+typedef struct sky_cap {
+  float even, more, cosine;
+  vector middle;
+} sky_cap;
+
+DEVICE sky_cap cap_of_sky(const float light[FIELD_HARMONICS]) {
+  const float mean = light[0] * (float)HARMONIC_0, least = 1e-12f;
+  const vector flux = scaled(vector_of(light[1], light[2], light[3]), (float)HARMONIC_1 / 3);
+  const float size = greater(root(dot3(flux, flux)), least), inverse = divided(1.0f, size);
+  sky_cap cap;
+  cap.middle = scaled(flux, inverse);
+  const float of_all = divided(size * 2.0f, greater(mean, least)) - 1.0f;
+  const float ratio = second_degree(light, cap.middle) * 0.2f * inverse;
+  cap.cosine = limited(greater(ratio, of_all), -1.0f, 1.0f);
+  cap.more = lesser(divided(size * 2.0f, greater(cap.cosine + 1.0f, 1e-6f)), mean);
+  cap.even = mean - cap.more;
+  return cap;
+}
+
+/* The light that a medium receives from the sky and scatters unevenly, as in render/sky_phase_lanes.h.
+ * onwards: the direction of the eye's ray. hidden: whether matter may hide the sky; then `place` is set. */
+DEVICE float light_of_medium(const sky_data *sky, const sky_place *place, const phase_data *phases, float g,
+                             vector onwards, int hidden, int channel) {
+  const float size = magnitude(g), most = divided(1.0f, (1 - size) * (1 - size));
+  float light[FIELD_HARMONICS];
+  for (int k = 0; k < FIELD_HARMONICS; k++) light[k] = harmonic_at(sky, place, hidden, channel, k);
+  const sky_cap cap = cap_of_sky(light);
+  const float x = dot3(cap.middle, onwards);
+  const phase_angle angle = phase_angle_at(g, -x);
+  const float row = row_of_ratio(phases, fused(cap.cosine, -2 * size * most, (1 + size * size) * most));
+  const float sum = fused(cap.more, mean_in_table(phases, row, &angle), cap.even);
+  const float second = cap.more * cap.cosine * (cap.cosine + 1.0f) * fused(x * x, 3.75f, -1.25f);
+  return greater(fused(second_degree(light, onwards) - second, g * g, sum), 0.0f);
+}
+
+#else
+
 /* The light that an evenly scattering medium receives from the sky. hidden: whether matter may hide the sky;
  * then `place` is set. */
 DEVICE float light_of_medium(const sky_data *sky, const sky_place *place, int hidden, int channel) {
-  const float mean = hidden ? sum_of_harmonic(sky, place, channel, 0) *
-                                  (place->unit * sky->plan->stored_unit[channel])
-                            : sky->plan->open[channel][0];
-  return greater(mean * (float)HARMONIC_0, 0.0f);
+  return greater(harmonic_at(sky, place, hidden, channel, 0) * (float)HARMONIC_0, 0.0f);
 }
+
+#endif
 
 /* ---- the light that a sample scatters ---- */
 
@@ -214,7 +265,11 @@ DEVICE float way_to_outside(const volume_data *volume, const slab_sample *s) {
 
 /* The light of the sky that a sample sends to the eye, as a factor for each channel of its colour. It is the
  * same number that sky_of_volume() in render/sky_lanes.h finds. */
-DEVICE vector sky_of_sample(const sky_data *sky, const volume_data *volume, const slab_sample *s) {
+DEVICE vector sky_of_sample(const sky_data *sky, const volume_data *volume,
+#if PHASES
+                            const phase_data *phases,
+#endif
+                            const slab_sample *s) {
   GLOBAL const plan_volume *matter = volume->plan;
   const int hidden = matter->receives_shadow;
   const float in_cell = s->sums.extinction * (HALF_CELL * sky->plan->cell) * (1.0f - s->surface);
@@ -232,7 +287,13 @@ DEVICE vector sky_of_sample(const sky_data *sky, const volume_data *volume, cons
       on_surface = s->surface > 0.0f
                        ? light_of_surface(sky, &place, hidden, factors, c) * (matter->diffuse * s->surface)
                        : 0.0f;
+#if PHASES
+      const vector onwards = scaled(s->towards_eye, -1.0f);
+      in_medium = light_of_medium(sky, &place, phases, matter->anisotropy, onwards, hidden, c) * haze;
+      if (!(s->surface < 1.0f)) in_medium = 0.0f;
+#else
       in_medium = s->surface < 1.0f ? light_of_medium(sky, &place, hidden, c) * haze : 0.0f;
+#endif
     }
     const float left = matter->absorbs ? in_medium * matter->albedo[c] : in_medium;
     sent[c] = fused(left, 1.0f - s->surface, on_surface) * sky->plan->color[c];
