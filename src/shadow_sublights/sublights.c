@@ -454,13 +454,19 @@ static void advance_sublights(light_shadow *shadow, const occupancy *occupancy, 
   if (task.ends_run) map_run(sublights, slab, sheets->normal, to, to - from);
 }
 
+/* The offset of a tile's first pixel in a plane of the slab. */
+static size_t first_pixel_of_tile(const shadow_buffer *slab, size_t tile) {
+  const size_t tiles_x = (size_t)slab->tiles_x;
+  return tile / tiles_x * TILE * slab->stride + tile % tiles_x * TILE;
+}
+
 /* Prepares a tile so that the next slab also attenuates the planes SHADOW_SECOND. The slab's transmittance
  * begins at 1 in each slab; these planes keep what is left of the light of the light's centre. */
 static void before_tile(const light_shadow *shadow, size_t tile, attenuate_job *job) {
   const shadow_buffer *slab = shadow->buffer;
   if (!slab->has_second) return;
-  size_t x = tile % (size_t)slab->tiles_x * TILE, y = tile / (size_t)slab->tiles_x * TILE;
-  for (int c = 0; c < job->channels; c++) job->older[c] = slab->second[c] + y * slab->stride + x;
+  const size_t at = first_pixel_of_tile(slab, tile);
+  for (int c = 0; c < job->channels; c++) job->older[c] = slab->second[c] + at;
   job->left = job->older[0];
 }
 
@@ -500,8 +506,16 @@ static hl_status check_sublights(const light_shadow *shadow, hl_error *error) {
                  all->count, bytes / 1e9);
 }
 
+/* Blocks in which some light of the light's centre is left count as lit, too, so that this light is known in
+ * every part of a shared picture, whatever sub-lights the part needs. */
 static void find_lit(light_shadow *shadow, size_t tile) {
-  hl_sublights_find_lit(shadow->state, shadow->buffer, tile);
+  shadow_buffer *slab = shadow->buffer;
+  hl_sublights_find_lit(shadow->state, slab, tile);
+  if (!slab->has_second) return;
+  const size_t at = first_pixel_of_tile(slab, tile);
+  const float *left[HL_CHANNELS] = {NULL};
+  for (int c = 0; c < slab->channels; c++) left[c] = slab->second[c] + at;
+  slab->tile_lit[tile] |= (uint16_t)shadow->means.functions->lit_blocks(left, slab->channels, slab->stride);
 }
 
 const shadow_method hl_shadow_sublights = {.name = "sublights",
