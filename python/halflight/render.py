@@ -524,7 +524,7 @@ def _scene_of_channels(path: Any, channels: str | Sequence[int | str], place: Ma
         if word in ("origin", "direction", "affine", "axes", "component", "smooth"):
             raise TypeError(f"{word} is not for several channels of a file")
     reading = {word: value for word, value in place.items() if word != "channel"}
-    scene = Scene.of_channels(path, channels, look=material.get("look", "auto"), _picture=picture, **reading)
+    scene = Scene._of_channels(path, channels, picture, look=material.get("look", "auto"), **reading)
     shown = {word: value for word, value in material.items() if word != "look"}
     count = len(scene.volumes)
     projected = material.get("look") == "mip"
