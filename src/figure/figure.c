@@ -129,14 +129,13 @@ hl_status hl_figure_add_strip(hl_context *context, hl_figure *figure, hl_error *
 hl_status hl_figure_clear_legend(hl_context *context, const hl_figure *figure, hl_figure_panel *panel,
                                  hl_error *error) {
   HL_DOOR;
-  if (context == NULL || figure == NULL || panel == NULL || panel < figure->panels ||
-      panel >= figure->panels + figure->panel_count)
-    return hl_fail(
-        error, HL_ERROR_ARGUMENT,
-        "hl_figure_clear_legend: context, figure and panel must not be null, and the panel must be "
-        "the figure's");
+  if (context == NULL || figure == NULL || panel == NULL)
+    return hl_fail(error, HL_ERROR_ARGUMENT,
+                   "hl_figure_clear_legend: context, figure and panel must not be null");
   hl_overlay *overlay = &panel->overlay;
   if (!overlay->legend || overlay->legend_corner != HL_CORNER_FREE || panel->image == NULL) return HL_OK;
+  if (panel < figure->panels || panel >= figure->panels + figure->panel_count)
+    return hl_fail(error, HL_ERROR_ARGUMENT, "hl_figure_clear_legend: the panel must be one of the figure's");
   hl_status status = check(figure, error);
   bool covers = false;
   if (status == HL_OK)
