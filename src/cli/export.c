@@ -105,9 +105,11 @@ static int run_export(const cli_value *values, char **operands) {
   char place[PATH_MAX];
   export_job job = {.values = values, .input = operands[0], .page = viewer_page(values, place)};
   if (job.page == NULL)
-    return fail(EXIT_CODE_INPUT,
-                "the viewer's page is not installed: scripts/web in Halflight's sources makes it, and "
-                "`meson install` then installs it; or name it by --page, as --page build-web/halflight.html");
+    return fail(
+        EXIT_CODE_INPUT,
+        "the viewer's page is not installed: scripts/web in Halflight's sources makes it, and "
+        "`meson setup --reconfigure build` and `meson install -C build` install it; or name it by --page, "
+        "as --page build-web/halflight.html");
   const cli_value *output = &values[EXPORT_OUTPUT];
   job.output = output->given ? strdup(output->text) : output_default_name(operands[0], ".html");
   job.title = title_of(&values[EXPORT_TITLE], operands[0]);

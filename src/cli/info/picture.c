@@ -25,6 +25,11 @@ int info_picture_read(cli_host *host, const char *title, const void *bytes, size
   if (status == HL_OK)
     status = hl_image_find_field_errors(host->context, title, bytes, length, &errors, &error);
   picture->scene = load(scene);
+  picture->panels = json_array_size(json_object_get(picture->scene, "panels"));
+  if (picture->panels > 0) { /* a figure is no scene */
+    json_decref(picture->scene);
+    picture->scene = NULL;
+  }
   picture->field_errors = load(errors);
   hl_text_release(host->context, scene);
   hl_text_release(host->context, errors);
@@ -149,6 +154,11 @@ int info_of_plain_picture(const info_picture *picture, const char *title, bool a
   }
   printf("%s\n", title);
   info_picture_print(picture);
+  if (picture->panels > 0) {
+    printf("  figure      of %zu panel%s: halflight figure %s repeats it\n", picture->panels,
+           picture->panels == 1 ? "" : "s", title);
+    return finish_stdout();
+  }
   printf("  scene       none: %s\n", strcmp(picture->about.format, "PNG") == 0
                                          ? "the .png pictures of halflight render have one, without "
                                            "--no-metadata"

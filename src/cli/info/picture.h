@@ -14,6 +14,7 @@ typedef struct info_picture {
   json_t *scene;        /* owned; null if the picture holds no scene */
   json_t *field_errors; /* owned; the differences between the fields of the scene's volumes and their files,
                          * as the picture states them; null if it states none */
+  size_t panels;        /* the number of panels of the figure that the picture carries; 0 if there is none */
 } info_picture;
 
 /* Reads a picture's file. title: its name in messages. bytes: [length]. Returns the exit code; call

@@ -6,6 +6,7 @@ END
 halflight figure page.json --dpi 150 --quiet -o page.png || { echo "this build draws nothing"; exit 77; }
 halflight figure page.png --quiet -o again.png
 cmp page.png again.png && echo repeated
+halflight info page.png | grep figure
 halflight render page.png -o no.png 2>message || echo $? "$(cut -c12-110 message)"
 echo '{"width": "20mm", "panels": [{"input": "page.png"}]}' >outer.json
 halflight figure outer.json --quiet -o outer.png && echo shown
