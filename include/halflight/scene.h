@@ -508,7 +508,8 @@ typedef struct hl_view {
 } hl_view;
 
 /* The sides from which the volumes can be seen. If the file says how a patient lies (hl_volume_info.space),
- * left is the patient's left side. Otherwise left is the side that lies to the left as seen from the
+ * left is the patient's left side, and the patient's front is at the upper edge of pictures from the top and
+ * from the bottom. Otherwise left is the side that lies to the left as seen from the
  * front. */
 typedef enum hl_side {
   HL_SIDE_AUTOMATIC = 0, /* the three-quarter view that shows the most of the volumes */
