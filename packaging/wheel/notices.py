@@ -16,12 +16,14 @@ import sys
 import tomllib
 import zipfile
 
+import pefile
 from elftools.elf.elffile import ELFFile
 
 ALLOWED = {"Apache-2.0", "Apache-2.0 WITH LLVM-exception", "BSD-2-Clause", "BSD-3-Clause", "IJG", "LicenseRef-Public-Domain", "MIT", "MPL-2.0", "Zlib",
-           "bzip2-1.0.6", "libpng-2.0", "libtiff"}
+           "ZPL-2.1", "bzip2-1.0.6", "libpng-2.0", "libtiff"}
 ALLOWED_AS_FILES = {"LGPL-2.1-or-later"}  # of libraries that are files of their own, which can be replaced
-SYSTEM = re.compile(r"lib(c|m|pthread|dl|rt)\.so\.[0-9]+|ld-linux.*")
+# What the systems, and Python on Windows, have themselves.
+SYSTEM = re.compile(r"lib(c|m|pthread|dl|rt)\.so\.[0-9]+|ld-linux.*|api-ms-win-crt-[\w-]+\.dll|(kernel32|shell32|ntdll|psapi|advapi32|bcrypt|python3)\.dll", re.I)
 
 
 def fail(message):
@@ -63,19 +65,26 @@ def check_licences(libraries):
 def check_archives(libraries, root):
     listed = {file for library in libraries.values() for file in library["archives"]}
     for file in [*root.glob("lib/*.a"), *root.glob("lib/*.so.*")]:
+        if file.name.endswith(".dll.a"):
+            continue  # the names of a library that Python has, and no code
         if file.name not in listed and not (file.is_symlink() or re.sub(r"(\.so\.\d+).*", r"\1", file.name) in listed):
             fail(f"{file}: a library that libraries.toml does not list")
+
+
+def needed_by(content):
+    """The names of the libraries that a program or a library needs; None: it is neither."""
+    if content.startswith(b"\x7fELF"):
+        dynamic = ELFFile(io.BytesIO(content)).get_section_by_name(".dynamic")
+        return [tag.needed for tag in dynamic.iter_tags("DT_NEEDED")]
+    if content.startswith(b"MZ"):
+        return [entry.dll.decode() for entry in pefile.PE(data=content).DIRECTORY_ENTRY_IMPORT]
+    return None
 
 
 def check_needed(libraries, files):
     """No file needs a library but the system's and those in the wheel, which are listed."""
     listed = {file for library in libraries.values() for file in library["archives"]}
-    inside = {}
-    for name, content in files.items():
-        if not content.startswith(b"\x7fELF"):
-            continue
-        dynamic = ELFFile(io.BytesIO(content)).get_section_by_name(".dynamic")
-        inside[name] = [tag.needed for tag in dynamic.iter_tags("DT_NEEDED")]
+    inside = {name: needed for name, content in files.items() if (needed := needed_by(content)) is not None}
     bundled = {}
     for name in inside:
         if ".libs/" in name:
@@ -118,6 +127,8 @@ def rewrite(wheel, files, libraries, notices):
 def main():
     wheel, root, sources, zig = (pathlib.Path(word) for word in sys.argv[1:5])
     libraries = tomllib.loads((pathlib.Path(__file__).parent / "libraries.toml").read_text())
+    system = "windows" if wheel.stem.endswith("win_amd64") else "linux"
+    libraries = {name: library for name, library in libraries.items() if system in library.get("systems", ["linux"])}
     with zipfile.ZipFile(wheel) as archive:
         members = [member for member in archive.infolist() if not member.is_dir()]
         modes = {member.filename: member.external_attr for member in members}

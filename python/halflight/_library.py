@@ -204,6 +204,12 @@ def made(function: Any, type_name: str, release: Any, *arguments: Any, path: str
     return ffi.gc(place[0], release)
 
 
+def path_bytes(path: str | bytes | os.PathLike[str]) -> bytes:
+    """A file's name for the library, which separates folders by '/' on every system."""
+    name = os.fsencode(path)
+    return name.replace(b"\\", b"/") if sys.platform == "win32" else name
+
+
 def encoded(function: Any, *arguments: Any) -> bytes:
     """The bytes that `function(*arguments, &bytes, &length, error)` makes."""
     data, length = ffi.new("unsigned char **"), ffi.new("size_t *")

@@ -3,15 +3,15 @@
 from __future__ import annotations
 
 import os
-import resource
 import shutil
 import subprocess
+import sys
 import tempfile
 from pathlib import Path
 
 
 class NoConverter(Exception):
-    """No converter is installed."""
+    """No converter is installed. On Windows none is asked, since nothing there limits its output."""
 
 
 def convert(path: str) -> bytes:
@@ -24,10 +24,12 @@ def convert(path: str) -> bytes:
     Raises
     ------
     NoConverter
-        The program is not installed.
+        The program is not installed, or the system is Windows.
     OSError
         The converter has failed; the message is its first line.
     """
+    if sys.platform == "win32":
+        raise NoConverter
     converter = os.environ.get("HALFLIGHT_OPENVDB") or shutil.which("halflight-openvdb") or "nanovdb_convert"
     with tempfile.TemporaryDirectory(prefix="halflight-") as folder:
         source, made = Path(folder, "in.vdb"), Path(folder, "out.nvdb")
@@ -47,6 +49,8 @@ def _run(words: list[str], said: Path) -> bool:
     """Run a program whose messages go to the file `said`. Returns whether it succeeds. It has ended when this call
     returns.
     """
+    import resource  # Windows has none
+
     memory = os.sysconf("SC_PAGE_SIZE") * os.sysconf("SC_PHYS_PAGES")
     with said.open("wb") as output:
         process = subprocess.Popen(words, stdin=subprocess.DEVNULL, stdout=output, stderr=subprocess.STDOUT)

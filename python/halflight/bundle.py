@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from . import pieces, picture_files
-from ._library import call, context, ffi, lib, made, text_of
+from ._library import call, context, ffi, lib, made, path_bytes, text_of
 
 if TYPE_CHECKING:
     from .scene import Scene
@@ -37,7 +37,7 @@ class _Folder:
 
 def _write_voxels(volume: Volume, path: str) -> None:
     if volume._colored is None:
-        call(lib.hl_volume_save, context, volume._handle if volume._sharp is None else volume._sharp, os.fsencode(path))
+        call(lib.hl_volume_save, context, volume._handle if volume._sharp is None else volume._sharp, path_bytes(path))
     else:
         _, (voxels, place, space, _) = volume._source()
         picture_files.write_whole(path, pieces.color_file(voxels, "zyx", place, space))
@@ -73,7 +73,7 @@ def _put_volumes(scene: Scene, folder: _Folder, copy: bool, name: Any) -> Any:
             struct.file = name(os.path.abspath(os.fsdecode(ffi.string(struct.file))))
         if struct.mask.volume != ffi.NULL and (copy or struct.mask.file == ffi.NULL):
             path = folder.place(None, f"mask{n}", ".nrrd")
-            call(lib.hl_volume_save, context, struct.mask.volume, os.fsencode(path))
+            call(lib.hl_volume_save, context, struct.mask.volume, path_bytes(path))
             struct.mask.file = name(path)
     return volumes
 
@@ -88,7 +88,7 @@ def save(scene: Scene, path: str, copy: bool) -> None:
     keep: list[Any] = []
 
     def name(file: str) -> Any:
-        keep.append(text := ffi.new("char[]", os.fsencode(file)))
+        keep.append(text := ffi.new("char[]", path_bytes(file)))
         return text
 
     description = ffi.new("hl_scene_description *", scene._struct[0])
@@ -104,7 +104,7 @@ def save(scene: Scene, path: str, copy: bool) -> None:
     named = made(lib.hl_scene_create, "hl_scene", lib.hl_scene_release, context, description)
     del volumes
     text = ffi.new("char **")
-    call(lib.hl_scene_to_json_beside, context, named, ffi.new("char[]", os.fsencode(beside)), text)
+    call(lib.hl_scene_to_json_beside, context, named, ffi.new("char[]", path_bytes(beside)), text)
     try:
         picture_files.write_whole(path, ffi.string(text[0]))
     finally:

@@ -8,7 +8,7 @@ from typing import Any
 import numpy as np
 
 from . import colors
-from ._library import call, context, ffi, lib, made
+from ._library import call, context, ffi, lib, made, path_bytes
 from ._words import suggests
 from .image import Image
 
@@ -50,7 +50,7 @@ def _handle_of(name: str, picture: Any) -> Any:
         return picture._handle
     if isinstance(picture, (str, os.PathLike)):
         path = os.fspath(picture)
-        return made(lib.hl_image_read, "hl_image", lib.hl_image_destroy, context, os.fsencode(path), path=path)
+        return made(lib.hl_image_read, "hl_image", lib.hl_image_destroy, context, path_bytes(path), path=path)
     values = np.asarray(picture)
     if values.ndim != 3 or values.shape[2] not in (3, 4) or 0 in values.shape:
         raise ValueError(f"{name}: the shape {values.shape} is not (height, width, 3) or (height, width, 4)")

@@ -7,7 +7,7 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
 from typing import TYPE_CHECKING, Any
 
-from ._library import call, context, encoded, ffi, lib
+from ._library import call, context, encoded, ffi, lib, path_bytes
 from ._settings import number, numbers_of
 from ._words import choice, suggests
 from .colors import linear_color
@@ -148,7 +148,7 @@ class Figure:
         """
         kept: list[Any] = []
         made = self._figure(kept)
-        call(lib.hl_figure_write, context, made, os.fsencode(path), self._options(made))
+        call(lib.hl_figure_write, context, made, path_bytes(path), self._options(made))
 
     def encode(self, format: str = "png") -> bytes:
         """The bytes of a "pdf", "svg", "png" or "tif" file."""

@@ -10,7 +10,7 @@ import numpy as np
 from numpy.lib.mixins import NDArrayOperatorsMixin
 
 from . import colors, picture_files
-from ._library import call, context, encoded, ffi, lib, made
+from ._library import call, context, encoded, ffi, lib, made, path_bytes
 from ._settings import number, table, to_field
 from ._words import choice, suggests
 from .errors import UnsupportedError
@@ -227,7 +227,7 @@ class Image(NDArrayOperatorsMixin):
         if kind in picture_files.FORMATS:
             content = picture_files.encode(self.to_srgb8(background, exposure, tone), kind)
         elif open_file is None and kind == ending:
-            call(lib.hl_image_write, context, self._handle if kind != "png" else self._plain(), os.fsencode(name),
+            call(lib.hl_image_write, context, self._handle if kind != "png" else self._plain(), path_bytes(name),
                  self._with_scene(self._options(background, exposure, tone, depth), metadata, os.path.dirname(name)))
             return
         else:

@@ -9,7 +9,7 @@ from typing import Any
 import numpy as np
 
 from . import _settings, colors
-from ._library import call, context, ffi, lib
+from ._library import call, context, ffi, lib, path_bytes
 from ._words import suggests
 
 __all__ = ["EmissionImage", "Texture"]
@@ -20,7 +20,7 @@ Pixels = np.ndarray[Any, np.dtype[np.float32]]
 def _read(path: str) -> Pixels:
     """The file's linear RGB, [height][width][3]."""
     place = ffi.new("hl_image **")
-    call(lib.hl_image_read, context, os.fsencode(path), place, path=path)
+    call(lib.hl_image_read, context, path_bytes(path), place, path=path)
     image = ffi.gc(place[0], lib.hl_image_destroy)
     shape = (lib.hl_image_height(image), lib.hl_image_width(image), 4)
     held = ffi.buffer(lib.hl_image_pixels(image), 4 * shape[0] * shape[1] * 4)
@@ -49,7 +49,7 @@ def _fill_image(struct: Any, keep: list[Any], place: str, image: Any, file: str 
     struct.pixels, struct.width, struct.height = pointer, pixels.shape[1], pixels.shape[0]
     name = os.fspath(image) if isinstance(image, (str, os.PathLike)) else file
     if name is not None:
-        keep.append(text := ffi.new("char[]", os.fsencode(name)))
+        keep.append(text := ffi.new("char[]", path_bytes(name)))
         struct.file = text
 
 

@@ -3,7 +3,7 @@ from __future__ import annotations
 
 import os
 
-from ._library import call, context, ffi, lib
+from ._library import call, context, ffi, lib, path_bytes
 
 _limited: tuple[int | None, str | None] = None, None
 
@@ -45,6 +45,6 @@ def limit_memory(limit: int | None, *, scratch_folder: str | os.PathLike[str] | 
     folder = os.fspath(scratch_folder if scratch_folder is not None else os.environ.get("TMPDIR") or "/var/tmp")
     if scratch_folder is not None and not os.path.isdir(folder):
         raise FileNotFoundError(f"scratch_folder: there is no folder {folder!r}")
-    call(lib.hl_context_limit_memory, context, limit or 0, ffi.new("char[]", os.fsencode(folder)))
+    call(lib.hl_context_limit_memory, context, limit or 0, ffi.new("char[]", path_bytes(folder)))
     global _limited
     _limited = limit, folder

@@ -10,7 +10,7 @@ from typing import Any, Unpack
 import numpy as np
 
 from . import _settings, colors, mesh_sources
-from ._library import call, context, ffi, lib, made, text_of
+from ._library import call, context, ffi, lib, made, path_bytes, text_of
 from ._words import check_keywords
 from .arrays import matrix_of
 from .keywords import MaterialSettings, MeshSettings
@@ -121,7 +121,7 @@ class Mesh:
                 if value is not None:
                     raise TypeError(f"{word}: a file says them itself")
             self._file = os.fspath(source)
-            self._handle = made(lib.hl_mesh_load, "hl_mesh", lib.hl_mesh_release, context, os.fsencode(source),
+            self._handle = made(lib.hl_mesh_load, "hl_mesh", lib.hl_mesh_release, context, path_bytes(source),
                                 path=self._file)
             if affine is None:
                 return
@@ -283,7 +283,7 @@ class Mesh:
         UnsupportedError
             If the name has another ending, or the mesh has no triangles.
         """
-        call(lib.hl_mesh_save, context, self._handle, os.fsencode(path))
+        call(lib.hl_mesh_save, context, self._handle, path_bytes(path))
 
     def replace(self, **look: Unpack[MeshLook]) -> Mesh:
         """The same triangles with another look."""
@@ -314,7 +314,7 @@ class Mesh:
         struct.mesh = self._handle
         look = dict(self.look)
         if self._file is not None:
-            keep.append(file := ffi.new("char[]", os.fsencode(self._file)))
+            keep.append(file := ffi.new("char[]", path_bytes(self._file)))
             struct.file = file
         if (name := look.pop("name", None)) is not None:
             keep.append(text := ffi.new("char[]", str(name).encode()))

@@ -6,7 +6,7 @@ import tempfile
 from importlib.resources import files
 from typing import TYPE_CHECKING
 
-from ._library import call, context, ffi, lib
+from ._library import call, context, ffi, lib, path_bytes
 
 if TYPE_CHECKING:
     from .scene import Scene
@@ -29,6 +29,6 @@ def page_of(scene: Scene, title: str) -> str:
     viewer = _viewer_page()
     with tempfile.TemporaryDirectory(prefix="halflight-") as folder:
         path = os.path.join(folder, "page.html")
-        call(lib.hl_scene_write_page, context, scene._handle, os.fsencode(viewer), title.encode(), os.fsencode(path))
+        call(lib.hl_scene_write_page, context, scene._handle, path_bytes(viewer), title.encode(), path_bytes(path))
         with open(path, encoding="utf-8") as file:
             return file.read()

@@ -15,7 +15,7 @@ from typing import Any
 import numpy as np
 
 from . import memory
-from ._library import call, context, ffi, lib, made
+from ._library import call, context, ffi, lib, made, path_bytes
 from .arrays import Place
 
 __all__ = ["color_file", "color_volume", "does_not_fit", "has_colors", "volume_of_pieces", "voxels_of"]
@@ -105,7 +105,7 @@ def volume_of_pieces(array: Any, axes: str, place: Place, space: int) -> Any:
             file.write(_header(tuple(array.shape), stored, axes, place, space, False))
             for piece in _slices(array, _step(array)):
                 np.ascontiguousarray(piece, np.dtype(stored)).tofile(file)
-        return made(lib.hl_volume_load_with, "hl_volume", lib.hl_volume_release, context, os.fsencode(path), ffi.NULL)
+        return made(lib.hl_volume_load_with, "hl_volume", lib.hl_volume_release, context, path_bytes(path), ffi.NULL)
     finally:
         with contextlib.suppress(FileNotFoundError):
             os.unlink(path)
@@ -118,7 +118,7 @@ def voxels_of(handle: Any) -> np.ndarray[Any, Any]:
     """The voxels of an hl_volume, [z][y][x] of its index axes, in the type that holds its values; by way of a NIfTI file."""
     with tempfile.TemporaryDirectory(prefix="halflight-", dir=memory.current()[1]) as folder:
         path = os.path.join(folder, "voxels.nii")
-        call(lib.hl_volume_save, context, handle, os.fsencode(path), warns=False)
+        call(lib.hl_volume_save, context, handle, path_bytes(path), warns=False)
         with open(path, "rb") as file:
             header = file.read(352)
             sizes = np.frombuffer(header, "<i2", 8, 40)

@@ -24,7 +24,7 @@ def program_path() -> str:
     FileNotFoundError
         There is none.
     """
-    beside = os.path.join(os.path.dirname(os.path.abspath(__file__)), "bin", "halflight-program")
+    beside = os.path.join(os.path.dirname(os.path.abspath(__file__)), "bin", "halflight-program" + (".exe" if sys.platform == "win32" else ""))
     if os.path.exists(beside):
         return beside
     if (named := os.environ.get("HALFLIGHT_PROGRAM")):
@@ -39,13 +39,15 @@ def program_path() -> str:
 
 
 def main() -> int:
-    """Replaces this process by the program, for ``halflight ...`` and ``python -m halflight ...``."""
+    """Replaces this process by the program, for ``halflight ...`` and ``python -m halflight ...``. Windows replaces no process: there this one waits."""
     try:
         path = program_path()
     except FileNotFoundError as problem:
         print(f"halflight: {problem}", file=sys.stderr)
         return 1
     sys.stdout.flush()
+    if sys.platform == "win32":
+        return subprocess.run([path, *sys.argv[1:]]).returncode
     os.execv(path, ["halflight", *sys.argv[1:]])
 
 

@@ -9,7 +9,7 @@ import numpy
 
 from . import _settings, arrays, cuts
 from . import marks as scene_marks
-from ._library import call, choices_of, composed, context, ffi, lib, made, text_of
+from ._library import call, choices_of, composed, context, ffi, lib, made, path_bytes, text_of
 from ._words import check_keywords, choice
 from .camera import Camera, camera_from
 from .composing import build_scene, scene_for_meshes
@@ -126,13 +126,13 @@ class Scene:
         """
         raw = text.encode()
         return cls._of(made(lib.hl_scene_from_json, "hl_scene", lib.hl_scene_release, context, raw, len(raw),
-                            ffi.NULL if folder is None else ffi.new("char[]", os.fsencode(folder)), name.encode()))
+                            ffi.NULL if folder is None else ffi.new("char[]", path_bytes(folder)), name.encode()))
 
     @classmethod
     def load(cls, path: str | os.PathLike[str]) -> Scene:
         """The scene of a file. Relative paths in the file begin in its folder."""
         file = os.fspath(path)
-        return cls._of(made(lib.hl_scene_load, "hl_scene", lib.hl_scene_release, context, os.fsencode(file),
+        return cls._of(made(lib.hl_scene_load, "hl_scene", lib.hl_scene_release, context, path_bytes(file),
                             path=file))
 
     @classmethod
@@ -162,7 +162,7 @@ class Scene:
         if not listed:
             raise ValueError("channel: [] names none: give a number or a name, several as [0, 2], or 'all'")
         projected = choice("look", look, choices_of("look")) == "mip"
-        handle = made(lib.hl_scene_for_channels, "hl_scene", lib.hl_scene_release, context, os.fsencode(file), options,
+        handle = made(lib.hl_scene_for_channels, "hl_scene", lib.hl_scene_release, context, path_bytes(file), options,
                       ",".join(listed).encode(), b"auto" if projected else look.encode(), path=file)
         del keep  # the texts that `options` borrows are kept in this list
         if projected:
@@ -191,7 +191,7 @@ class Scene:
             plain.render.threads = 0
             handle = made(lib.hl_scene_create, "hl_scene", lib.hl_scene_release, context, plain)
         call(lib.hl_scene_to_json_beside, context, handle,
-             ffi.NULL if folder is None else ffi.new("char[]", os.fsencode(folder)), text)
+             ffi.NULL if folder is None else ffi.new("char[]", path_bytes(folder)), text)
         try:
             return text_of(text[0])
         finally:

@@ -8,7 +8,7 @@ from typing import Any
 import numpy as np
 
 from . import colors
-from ._library import call, context, ffi, lib, names
+from ._library import call, context, ffi, lib, names, path_bytes
 from ._settings import number, numbers_of
 from ._words import nearest, suggests
 from .plane import Plane, plane_from
@@ -214,7 +214,7 @@ def named_function(tf: Any, volume: Any, old: TransferFunction) -> TransferFunct
         return function_from(_made(lib.hl_transfer_function_preset, path.encode(), volume))
     if "." not in path and "/" not in path and not os.path.exists(path):
         raise ValueError(f"tf: there is no preset or file '{path}'{nearest(path, presets())}")
-    loaded = _made(lib.hl_transfer_function_load_for, os.fsencode(path), volume, path=path)
+    loaded = _made(lib.hl_transfer_function_load_for, path_bytes(path), volume, path=path)
     function = function_from(loaded)
     if loaded.opacity == ffi.NULL and function.plane.second is None:
         function.opacity, function.unit_distance = old.opacity, old.unit_distance

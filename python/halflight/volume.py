@@ -8,7 +8,7 @@ from typing import Any, NamedTuple, Unpack
 import numpy as np
 
 from . import _settings, arrays, cuts, grids, isosurface, mask, neighbours, pieces, vtk_grids
-from ._library import call, choices_of, composed, context, ffi, lib, made, text_of
+from ._library import call, choices_of, composed, context, ffi, lib, made, path_bytes, text_of
 from ._words import check_keywords, choice
 from .transfer import function_from
 from .values import VALUES, function_for
@@ -176,7 +176,7 @@ class Volume:
         options, keep = load_options(chosen, spacing, axes, picture)
         self._file = path
         self._loading = (options, keep)
-        self._handle = made(lib.hl_volume_load_with, "hl_volume", lib.hl_volume_release, context, os.fsencode(path),
+        self._handle = made(lib.hl_volume_load_with, "hl_volume", lib.hl_volume_release, context, path_bytes(path),
                             options, path=path)
         # A scene, and a restored volume, read the channel by its number, and the resolution that suits the picture.
         read = ffi.new("hl_volume_selection *", {"struct_size": ffi.sizeof("hl_volume_selection")})
@@ -335,7 +335,7 @@ class Volume:
         if unit is not None:
             text = ffi.new("char[]", str(unit).encode())
             options.unit = text
-        call(lib.hl_volume_save_with, context, self._handle, os.fsencode(path), options)
+        call(lib.hl_volume_save_with, context, self._handle, path_bytes(path), options)
 
     def _source(self) -> tuple[str, Any]:
         """The source of the voxels, for pickle and comparison: ("file", (path, how it is read)), ("shapes", text) or
@@ -422,7 +422,7 @@ class Volume:
         return f"<halflight.Volume {size} {self.info().type}{'' if self._file is None else f' {self._file}'}>"
 
     def _file_text(self) -> Any:
-        return ffi.NULL if self._file is None else ffi.new("char[]", os.fsencode(self._file))
+        return ffi.NULL if self._file is None else ffi.new("char[]", path_bytes(self._file))
 
     def _is_of_values(self) -> bool:
         """Whether a label map has its values instead of its labels: settings ask for values, or it is not drawn and may only be

@@ -52,9 +52,9 @@ def write_plotfile(folder: Path, names: Sequence[str], components: Sequence[list
             data += b"".join(np.ascontiguousarray(part[level][number][1]).astype(kind).tobytes() for part in components)
         text += [")", str(len(places)), *(f"FabOnDisk: Cell_D_00000 {place}" for place in places), "", ""]
         (folder / f"Level_{level}" / "Cell_D_00000").write_bytes(data)
-        (folder / f"Level_{level}" / "Cell_H").write_text("\n".join(text))
+        (folder / f"Level_{level}" / "Cell_H").write_text("\n".join(text), newline="\n")
         lines += [f"{level} {len(places)} 0.25", "0", f"Level_{level}/Cell"]
-    (folder / "Header").write_text("\n".join(lines) + "\n")
+    (folder / "Header").write_text("\n".join(lines) + "\n", newline="\n")
 
 
 def write_vthb(path: Path, parts: list[list[Patch]], ratio: int = 2, cells: int = 32) -> None:

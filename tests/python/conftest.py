@@ -27,3 +27,12 @@ def blob():
 def small(blob):
     """A scene that renders in an instant."""
     return halflight.Scene(blob, size=(64, 48))
+
+
+@pytest.fixture(scope="session")
+def has_openexr(blob):
+    """Skips a test where the build writes no OpenEXR, as on Windows."""
+    try:
+        halflight.Renderer().render(halflight.Scene(blob, size=(8, 8))).encode("exr")
+    except halflight.UnsupportedError as missing:
+        pytest.skip(str(missing))

@@ -3,6 +3,7 @@ import gc
 import multiprocessing
 import os
 import signal
+import sys
 import threading
 import time
 
@@ -35,7 +36,7 @@ def test_ctrl_c_stops_a_render_and_leaves_the_renderer_usable(slow, small):
     sent, late = threading.Event(), []
 
     def interrupt():
-        os.kill(os.getpid(), signal.SIGINT)
+        signal.raise_signal(signal.SIGINT)
         sent.set()
 
     threading.Timer(0.3, interrupt).start()
@@ -46,7 +47,7 @@ def test_ctrl_c_stops_a_render_and_leaves_the_renderer_usable(slow, small):
 
 
 def test_ctrl_c_stops_the_reference(slow):
-    threading.Timer(0.2, os.kill, (os.getpid(), signal.SIGINT)).start()
+    threading.Timer(0.2, signal.raise_signal, (signal.SIGINT,)).start()
     with pytest.raises(KeyboardInterrupt):
         halflight.reference(slow)
 
@@ -114,7 +115,7 @@ def test_the_lock_is_released(slow):
     def count():
         for _ in range(20):
             time.sleep(0.005)
-        os.kill(os.getpid(), signal.SIGINT)
+        signal.raise_signal(signal.SIGINT)
 
     threading.Thread(target=count).start()
     with pytest.raises(KeyboardInterrupt):
@@ -138,6 +139,7 @@ def test_renderers_in_threads(small):
     assert len(results) == 12 and all(np.array_equal(one, expected) for one in results)
 
 
+@pytest.mark.skipif(not hasattr(os, "fork"), reason="the system has no fork")
 def test_fork(small):
     renderer = Renderer()
     expected = np.asarray(renderer.render(small))
@@ -158,7 +160,7 @@ def mean_of(angle):
     return float(np.asarray(halflight.render(volume, size=(32, 32), camera=(angle, 20), threads=1)).mean())
 
 
-@pytest.mark.parametrize("method", ["fork", "spawn"])
+@pytest.mark.parametrize("method", sorted({"fork", "spawn"} & set(multiprocessing.get_all_start_methods())))
 def test_multiprocessing(method):
     with multiprocessing.get_context(method).Pool(2) as pool:
         assert pool.map(mean_of, [0, 40]) == [mean_of(0), mean_of(40)]
@@ -205,7 +207,7 @@ def test_volumes_larger_than_memory_give_the_same_pictures(large):
     volume = halflight.Volume(path)  # less is allowed than its voxels alone
     halflight.limit_memory(600_000_000, scratch_folder=scratch)
     assert np.array_equal(np.asarray(halflight.render(volume, size=(40, 30))), whole)
-    assert list(scratch.iterdir()) == []
+    assert sys.platform == "win32" or list(scratch.iterdir()) == []  # there a file has its name until it is closed
 
 
 def test_arrays_larger_than_memory_are_refused(large):

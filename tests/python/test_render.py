@@ -88,7 +88,7 @@ def test_a_png_tells_no_more_than_it_is_asked_to(program, tmp_path, blob):
     assert bare == (tmp_path / "program.png").read_bytes()
 
 
-def test_layers_are_the_program_s(program, tmp_path, blob):
+def test_layers_are_the_program_s(program, tmp_path, blob, has_openexr):
     source = tmp_path / "blob.npy"
     np.save(source, blob)
     halflight.render(source, size=(64, 48), layers=True).save(tmp_path / "python.exr")
