@@ -24,8 +24,8 @@ blocks_under hl_sublight_blocks(const sublight_maps *maps, int axis, int tile, i
         fminf(near->scale[axis] * (from - near->shift[axis]), far->scale[axis] * (from - far->shift[axis])),
         BLOCK, end);
     int last = segment_of(
-        fmaxf(near->scale[axis] * (to - near->shift[axis]), far->scale[axis] * (to - far->shift[axis])), BLOCK,
-        end);
+        fmaxf(near->scale[axis] * (to - near->shift[axis]), far->scale[axis] * (to - far->shift[axis])),
+        BLOCK, end);
     under.first[i] = first < 0 ? 0 : first;
     under.last[i] = last < end ? last : end - 1;
   }

@@ -3,7 +3,8 @@
  *
  * In: a coarser volume, and the planes around the parts that pictures see. Out: which boxes of voxels are
  * seen, and rows of the other voxels. Voxels that are seen, and voxels within HL_BEYOND_REACH of them, are
- * never interpolated: no kernel, gradient or smoothing of a seen place takes a voxel that lies out of sight. */
+ * never interpolated: no kernel, gradient or smoothing of a seen place takes a voxel that lies out of sight.
+ */
 #ifndef HL_VOLUME_BEYOND_H
 #define HL_VOLUME_BEYOND_H
 

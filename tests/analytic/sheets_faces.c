@@ -213,8 +213,8 @@ static void open_cut_matter(stage *set, int layer, const hl_cut *cut, vec3 light
 }
 
 /* A corner of the ball is cut away, from five voxels below its surface on. For the light, the corner's floor
- * lies behind five voxels of opaque matter. The function returns the greatest light on this floor, which should
- * be dark up to the wall. sublights: whether the light is 4 degrees wide, and its shadows are made by
+ * lies behind five voxels of opaque matter. The function returns the greatest light on this floor, which
+ * should be dark up to the wall. sublights: whether the light is 4 degrees wide, and its shadows are made by
  * sub-lights. */
 static double light_in_corner(bool sublights) {
   static float pixels[SIDE * SIDE * 4];

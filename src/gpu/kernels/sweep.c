@@ -157,6 +157,7 @@ KERNEL(12) run_light(SWEEP_ARGUMENTS) {
   /* the buffer of a light with sub-lights takes each slab for itself, where some sub-light reaches it */
   const int single = light->sublights > 0;
   const sublight_marks of_light = marks_of_light(plan, light, sublight_marks_of_all);
+  own.left = own.passing[0];
   if (single) lit = in_frame[first].chunk <= 1 || (of_light.lit[own_tile] >> (member >> 4) & 1) != 0;
 #else
   const int single = 0;
@@ -204,6 +205,9 @@ KERNEL(12) run_light(SWEEP_ARGUMENTS) {
     const int goes_on = block_any(votes, is_lit(&own));
     if (!single) lit = goes_on;
   }
+#if SUBLIGHTS
+  if (single) own.passing[0] = own.left;
+#endif
   for (int c = 0; c < PLANES_OF_SHEET; c++) state[c * 256] = own.passing[c];
 #if SOFT
   for (int c = 0; c < CHANNELS; c++) moments[c * 512] = own.moment[c];

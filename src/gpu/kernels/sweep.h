@@ -364,7 +364,21 @@ typedef struct light_pixel {
 #if SOFT
   float moment[CHANNELS];
 #endif
+#if SUBLIGHTS
+  /* the light of the first channel that is left of all the light of the sub-lights' centre; passing[0] is the
+   * transmittance of the slab alone there */
+  float left;
+#endif
 } light_pixel;
+
+/* The light of the first channel that is left of all the light that the lamp sends. */
+DEVICE float light_left(GLOBAL const plan_light *light, const light_pixel *pixel) {
+#if SUBLIGHTS
+  if (light->sublights > 0) return pixel->left;
+#endif
+  (void)light;
+  return pixel->passing[0];
+}
 
 /* The factor by which matter_factor multiplies a slab's extinction. It is found at the centre of
  * gravity of the slab's matter. */
@@ -422,7 +436,7 @@ DEVICE int attenuate_slab(const sweep_data *sweep, GLOBAL const plan_light *ligh
                          : 0.0f;
   kept_light kept = kept_in_slab(&sweep->volume, a, b, &sums, part.length * path, extinction * path, skin,
                                  pixel->passing[0], pixel->passing[CHANNELS]);
-  if (ends || (CUTS && volume->faces_take && pixel->passing[0] < DARK &&
+  if (ends || (CUTS && volume->faces_take && light_left(light, pixel) < DARK &&
                nears_inner_corner(&sweep->volume, light, in_index - 1, ray->u, ray->v)))
     kept.before = kept.within = 0.0f;
 #endif
@@ -430,6 +444,9 @@ DEVICE int attenuate_slab(const sweep_data *sweep, GLOBAL const plan_light *ligh
     float depth = fused(extinction, volume->weight[c], 0.0f), light_before = pixel->passing[c];
     const float passing = exp_negative(depth * path);
     pixel->passing[c] = light_before * passing;
+#if SUBLIGHTS
+    if (c == 0) pixel->left = pixel->left * passing;
+#endif
 #if SOFT
     pixel->passing[OLDER_PLANE + c] = pixel->passing[OLDER_PLANE + c] * passing;
     pixel->moment[c] = fused(light_before - pixel->passing[c], in_frame->position, pixel->moment[c]);
