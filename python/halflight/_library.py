@@ -30,7 +30,7 @@ class _Calls(threading.local):
     def __init__(self) -> None:
         self.failure: BaseException | None = None
         self.reports: list[Report | None] = []
-        self.messages: list[str] = []
+        self.messages: list[tuple[int, str]] = []  # (hl_log_level, text)
 
 
 _calls = _Calls()
@@ -59,8 +59,7 @@ def python_progress(stage: Any, fraction: float) -> int:
 
 @ffi.def_extern()  # type: ignore[untyped-decorator]
 def python_log(level: int, message: Any) -> None:
-    if level == lib.HL_LOG_WARNING:
-        _calls.messages.append(text_of(message))
+    _calls.messages.append((level, text_of(message)))
 
 
 @ffi.def_extern()  # type: ignore[untyped-decorator]
@@ -152,6 +151,15 @@ def warn(message: str) -> None:
     warnings.warn(message, HalflightWarning, stacklevel=_frames_to_caller())
 
 
+def _pass_on(level: int, message: str) -> None:
+    """Pass a message of the library on: a warning as Python's warning, any other message to the logger "halflight"."""
+    if level == lib.HL_LOG_WARNING:
+        warn(message)
+        return
+    import logging  # this import stands here because it takes longer than the rest of the package
+    logging.getLogger(__package__).info("%s", message)
+
+
 @contextmanager
 def listening(report: Report | None) -> Iterator[None]:
     """Within this context manager, calls report their progress to `report`."""
@@ -175,7 +183,7 @@ def call(function: Any, *arguments: Any, path: str | None = None, urls: Sequence
     urls : sequence of str
         URLs of further stores for whose files servers are asked.
     warns : bool
-        Whether the library's warnings are passed on: not where they would be about a file that the caller does not know of.
+        Whether the library's messages are passed on: not where they would be about a file that the caller does not know of.
     """
     error = ffi.new("hl_error *")
     lib.python_call_begin(bool(_calls.reports) and _calls.reports[-1] is not None)
@@ -188,8 +196,8 @@ def call(function: Any, *arguments: Any, path: str | None = None, urls: Sequence
         lib.python_call_end()
     if _calls.messages:
         messages, _calls.messages = _calls.messages, []
-        for message in messages if warns else []:
-            warn(message)
+        for level, message in messages if warns else []:
+            _pass_on(level, message)
     if status != lib.HL_OK:
         raise _exception(status, error, path)
     if _calls.failure is not None:  # a callback failed in the call's last moment

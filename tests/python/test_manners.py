@@ -189,6 +189,16 @@ def test_warnings_point_at_the_caller(tmp_path):
     assert found[0].filename == __file__
 
 
+def test_other_messages_go_to_the_logger(tmp_path, caplog):
+    np.save(tmp_path / "ball.npy", (np.linalg.norm(np.indices((24, 24, 24)) - 11.5, axis=0) < 9).astype(np.float32))
+    halflight.render(tmp_path / "ball.npy", slice="z", size=16)
+    assert not caplog.records  # nobody asked for them
+    with caplog.at_level("INFO", logger="halflight"):
+        halflight.render(tmp_path / "ball.npy", slice="z", size=16)
+    assert {record.name for record in caplog.records} == {"halflight"}
+    assert "seen from the top" in caplog.text
+
+
 @pytest.fixture
 def large(tmp_path):
     """A file of 5.4 MB of voxels, and an empty scratch folder."""

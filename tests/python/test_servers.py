@@ -56,6 +56,17 @@ def test_faults_are_told(server: Any, fault: str, words: str) -> None:
     assert not isinstance(failed.value, FileNotFoundError)
 
 
+def test_a_chunk_that_is_absent_is_told_to_the_logger(server: Any, caplog: pytest.LogCaptureFixture) -> None:
+    """Stores leave out chunks that hold nothing else than the fill value, so that it is no warning."""
+    with caplog.at_level("INFO", logger="halflight"):
+        hl.Volume(f"{server.url}/v2.zarr", level=0)
+        assert "the server has no file for 8 of 64 chunks" in caplog.text
+        shutil.rmtree(server.folder.parent / "halflight")
+        server.forget(**{"v2.zarr__0__1__1__1": ["always", "404"]})
+        hl.Volume(f"{server.url}/v2.zarr", level=0)
+    assert "the server has no file for 9 of 64 chunks" in caplog.text
+
+
 def test_only_what_is_named_is_asked_for(server: Any, tmp_path: Path) -> None:
     scene = tmp_path / "scene.json"
     scene.write_text(json.dumps({"halflight": 1, "volumes": [{"file": f"{server.url}/v2.zarr"}]}))
