@@ -166,6 +166,16 @@ void hl_tell_of_function(const hl_composer *composer) {
                                      : "the shading and the light are those of the look");
 }
 
+void hl_tell_of_background(const hl_composer *composer, const hl_scene_description *description) {
+  double color[3];
+  if (!composer->bare || description->volume_count < 2 || !hl_is_maximum(composer, description) ||
+      !find_background(composer, color) || color[0] + color[1] + color[2] == 0)
+    return;
+  hl_log(composer->context, HL_LOG_INFO,
+         "maximum projections of several volumes add up as light, so that small values are black before this "
+         "background: --background black has no such border");
+}
+
 void hl_compose_look(const hl_composer *composer, hl_scene_description *description) {
   const bool maximum = is_maximum(composer->asked);
   if (!composer->asked[HL_ASK_LOOK].given) return;

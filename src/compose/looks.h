@@ -43,6 +43,9 @@ hl_status hl_fade_projection(const struct hl_composer *composer, const hl_volume
  * "look". */
 void hl_tell_of_function(const struct hl_composer *composer);
 
+/* Logs that a maximum projection of several bare volumes does not suit a background that is not black. */
+void hl_tell_of_background(const struct hl_composer *composer, const hl_scene_description *description);
+
 /* Makes the picture a maximum projection, or a picture with light, as "look" asks. */
 void hl_compose_look(const struct hl_composer *composer, hl_scene_description *description);
 

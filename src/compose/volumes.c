@@ -184,6 +184,7 @@ hl_status hl_compose_volumes(const hl_composer *composer, hl_scene_description *
   changed->seen = description->volume_count > 0 && (whole || changes_any(composer));
   tell_of_holders(composer, description);
   hl_tell_of_function(composer);
+  hl_tell_of_background(composer, description);
   if (description->volume_count == 0) return refuse_looks(composer, description);
   if (!changed->seen && !masked && !shows_film(composer, description)) {
     tell_of_scraps(composer, description);

@@ -258,10 +258,11 @@ static void release(hl_context *context, hl_kept_scraps *kept) {
   hl_release(context, kept);
 }
 
-/* Keeps a result in place of an earlier one. A result for which there is no memory is not kept. */
-static void keep(hl_volume *volume, const hl_scraps_rule *rule, const hl_scraps *scraps) {
+/* Keeps a result in place of an earlier one. */
+static hl_status keep(hl_volume *volume, const hl_scraps_rule *rule, const hl_scraps *scraps,
+                      hl_error *error) {
   hl_kept_scraps *made = hl_allocate(volume->context, 1, sizeof *made);
-  if (made == NULL) return;
+  if (made == NULL) return hl_fail_memory(error, sizeof *made, "the bodies of a volume");
   *made = (hl_kept_scraps){*rule, *scraps};
   if (made->scraps.volume != NULL) hl_volume_retain(made->scraps.volume);
   lock(volume);
@@ -269,6 +270,7 @@ static void keep(hl_volume *volume, const hl_scraps_rule *rule, const hl_scraps 
   volume->scraps = made;
   unlock(volume);
   release(volume->context, earlier);
+  return HL_OK;
 }
 
 /* ---- doors of this file ---- */
@@ -291,6 +293,9 @@ hl_status hl_scraps_hide(hl_volume *volume, const hl_scraps_rule *rule, hl_scrap
   *scraps = (hl_scraps){0};
   if (take_kept(volume, rule, scraps)) return HL_OK;
   hl_status status = find_scraps(volume, rule, scraps, error);
-  if (status == HL_OK) keep(volume, rule, scraps);
+  if (status == HL_OK) status = keep(volume, rule, scraps, error);
+  if (status == HL_OK) return HL_OK;
+  hl_volume_release(scraps->volume);
+  scraps->volume = NULL;
   return status;
 }

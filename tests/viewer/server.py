@@ -93,8 +93,14 @@ def drawn_over(viewer, scene):
         lies_over(viewer, scene, body, asked)
         return body
 
-    plain, legend = frame(viewer, scene)[2], equals(viewer, scene, ["--legend", "auto"], legend=1)
-    check(pixels(legend) != pixels(plain), "the legend is seen")
+    def with_room(scene):
+        """The legend has room beside the matter. Where it has none, the program puts it below the picture."""
+        return scene | {"camera": scene["camera"] | {"fovy_deg": 75}, "image": scene["image"] | {"width": 320, "height": 240}}
+
+    roomy = with_room(scene)
+    legend = equals(viewer, roomy, ["--legend", "auto"], legend=1)
+    check(pixels(legend) != pixels(frame(viewer, roomy)[2]), "the legend is seen")
+    plain = frame(viewer, scene)[2]
     equals(viewer, scene, ["--unit", "kpc", "--scale-bar", "auto@target"], scale_bar=1, unit="kpc")
     check(pixels(equals(viewer, scene, ["--axes", "arrows"], axes="arrows")) != pixels(plain), "the axes are seen")
     target = scene["camera"]["target"]
@@ -106,7 +112,7 @@ def drawn_over(viewer, scene):
         check(status == 400 and body.count(b"\n") <= 1 and any(word in body for word in (b"unit", b"8 bits", b"directions", b"none")), f"{asked}: {status} {body}")
     subprocess.run([PROGRAM, "convert", "torus.nrrd", "torus.mrc", "--quiet"], check=True)
     with Viewer(PROGRAM, "torus.mrc") as measured:
-        scene = small(json.loads(request(measured, "GET", "start.json")[2])["scene"], 160)
+        scene = with_room(json.loads(request(measured, "GET", "start.json")[2])["scene"])
         bar = equals(measured, scene, ["--scale-bar", "auto@target", "--legend", "auto"], scale_bar=1, legend=1)
         check(pixels(bar) != pixels(frame(measured, scene)[2]), "the bar is seen")
         scene["image"]["background_transparent"] = True

@@ -15,3 +15,8 @@ tool png-pixel c.png 32 32
 # A volume alone stays grey.
 halflight render ball_16x16x16_uint8.raw --look mip --size 64x64 --quiet -o grey.png
 tool png-pixel grey.png 32 32
+# Light adds up from black. Before another background a line says so, and before black none.
+for background in white black transparent; do
+  halflight render ball_16x16x16_uint8.raw other_16x16x16_uint8.raw --look mip --background $background --size 16x16 -o d.png 2>&1 | grep -c 'add up as light' || true
+done
+halflight render ball_16x16x16_uint8.raw --look mip --background white --size 16x16 -o d.png 2>&1 | grep -c 'add up as light' || true
