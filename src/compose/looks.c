@@ -116,13 +116,16 @@ void hl_make_film(hl_transfer_function *function) {
   function->unit_distance *= hl_log2(1 - MIDDLE_GREY) / hl_log2(MIDDLE_GREY);
 }
 
-/* Fades the colours of values below `begin` into the background. */
+/* Fades the colours of values below `begin` into the background, by the places of the function's points.
+ * These are even on the scale of the function's range, so that decades of a logarithmic scale fade evenly,
+ * too. */
 static void fade_below(double begin, const double background[3], hl_transfer_function *function) {
-  const double low = function->color[0].value, high = function->color[function->color_count - 1].value;
-  if (begin >= high) return;
-  for (size_t n = 0; n < function->color_count && function->color[n].value < begin; n++) {
-    hl_color_point *point = &((hl_color_point *)function->color)[n];
-    mix_encoded(background, point->color, (point->value - low) / (begin - low), point->color);
+  if (begin >= function->color[function->color_count - 1].value) return;
+  size_t count = 0;
+  while (function->color[count].value < begin) count++;
+  for (size_t n = 0; n < count; n++) {
+    double *color = ((hl_color_point *)function->color)[n].color;
+    mix_encoded(background, color, (double)n / (double)count, color);
   }
 }
 
