@@ -179,9 +179,9 @@ HL_API HL_WARN_UNUSED hl_status hl_transfer_function_spread_over(hl_context *con
                                                                  hl_error *error);
 /* Makes the function *to, whose colours fit the background of a maximum projection: from the least value of
  * `from` up to the value from which the automatic function shows objects, the colours fade into the
- * background. The first colour would else surround the objects as a box or ring of noise. Where the least
- * value belongs to an object, or the function ends before objects begin, *to is a copy. background: linear
- * RGB. The caller owns the points of *to. */
+ * background. The first colour would else surround the objects as a box or ring of noise. *to is a copy where
+ * the first colour is nearly the background's, where the least value belongs to an object, and where the
+ * function ends before objects begin. background: linear RGB. The caller owns the points of *to. */
 HL_API HL_WARN_UNUSED hl_status hl_transfer_function_fade(hl_context *context, const hl_volume *volume,
                                                           const double background[3],
                                                           const hl_transfer_function *from,

@@ -116,6 +116,14 @@ void hl_make_film(hl_transfer_function *function) {
   function->unit_distance *= hl_log2(1 - MIDDLE_GREY) / hl_log2(MIDDLE_GREY);
 }
 
+/* Returns whether a colour is nearly the background's, so that a map that begins with it fades by itself. */
+static bool is_nearly(const double color[3], const double background[3]) {
+  static const double nearly = 1.0 / 16; /* of the encoded values from black to white */
+  for (int c = 0; c < 3; c++)
+    if (fabs(hl_srgb_encode_number(color[c]) - hl_srgb_encode_number(background[c])) > nearly) return false;
+  return true;
+}
+
 /* Fades the colours of values below `begin` into the background, by the places of the function's points.
  * These are even on the scale of the function's range, so that decades of a logarithmic scale fade evenly,
  * too. */
@@ -142,7 +150,8 @@ hl_status hl_transfer_function_fade(hl_context *context, const hl_volume *volume
   if (status == HL_OK) status = hl_transfer_function_copy(context, from, &faded, error);
   hl_transfer_function_release(context, &objects);
   if (status != HL_OK) return status;
-  if (faded.color_count > 1) fade_below(seen[0], background, &faded);
+  if (faded.color_count > 1 && !is_nearly(faded.color[0].color, background))
+    fade_below(seen[0], background, &faded);
   *to = faded;
   return HL_OK;
 }

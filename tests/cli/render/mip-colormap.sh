@@ -32,8 +32,9 @@ begin = next(value for value, opacity in json.load(open("auto.json"))["volumes"]
 faded = [a[0] for a, b in zip(*colors) if a != b]
 print(len(faded) > 1, max(faded) < begin)
 END
-# On a logarithmic scale the decades fade evenly: the scale's middle keeps most of its colour.
-for background in transparent 0; do
+# On a logarithmic scale the decades fade evenly: the scale's middle keeps a part of its colour. A map that begins with the
+# background's colour keeps its colours.
+for background in transparent 0.5 0; do
   mip --background $background --range 1,250 --range-scale log --colormap inferno --print-scene >log.json
   tool json log.json "[round(c, 2) for c in $function[32][1:]]"
 done
