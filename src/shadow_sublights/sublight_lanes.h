@@ -175,12 +175,28 @@ LANES_INLINE uint32_t lit_columns(const sublight_job *job, size_t at) {
   return columns;
 }
 
+/* Fills a block of a sub-light's plane with zeros. at: the offset of the block's first pixel. */
+LANES_INLINE void darken_block(const sublight_job *job, sublight_pixel *plane, size_t at) {
+  for (int i = 0; i < BLOCK_PIXELS; i++)
+    plane[at + (size_t)(i / BLOCK) * job->stride + (size_t)(i % BLOCK)] = 0;
+}
+
+/* Blocks that have become dark lose the rest of their light. From then on the slab's blocks over them may be
+ * skipped, so that what they would keep depends on the part of a shared picture. */
 static uint32_t sublight_lit(const sublight_job *job, int tile_x, int tile_y, uint32_t lit) {
   size_t corner = (size_t)(tile_y * TILE) * job->stride + (size_t)tile_x * TILE;
   uint32_t left = 0;
   for (int row = 0; row < TILE / BLOCK; row++)
     if ((lit >> 4 * row & 15) != 0)
       left |= blocks_of_columns(lit_columns(job, corner + (size_t)(row * BLOCK) * job->stride)) << 4 * row;
+  for (uint32_t dark = lit & ~left; dark != 0; dark &= dark - 1) {
+    const int block = __builtin_ctz(dark);
+    const size_t at = corner + (size_t)(block / 4 * BLOCK) * job->stride + (size_t)(block % 4 * BLOCK);
+    for (int c = 0; c < job->channels; c++) {
+      darken_block(job, job->transmittance[c], at);
+      if (job->outside[c] != NULL) darken_block(job, job->outside[c], at);
+    }
+  }
   return lit & left;
 }
 

@@ -143,6 +143,8 @@ static void test_slab_below_a_hemisphere(void **state) {
     slab->multiple_scattering = 1;
     stage_look(&set, (vec3){0, 0, k % 2 ? -40 : 40}, (vec3){0, 0, 0}, (vec3){0, 1, 0});
     stage_render_sheets(&set, pixels);
+    print_message("# slab of optical depth %g, %s: %+.4f of its light\n", depths[k / 2],
+                  k % 2 ? "below" : "above", (double)pixels[4 * MIDDLE] / expected - 1);
     assert_near((double)pixels[4 * MIDDLE], expected, 0.05 * expected);
     stage_close(&set);
   }

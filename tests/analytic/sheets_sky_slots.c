@@ -59,6 +59,8 @@ static void test_floors_of_slots(void **state) {
     stage_render_sheets(&set, pixels);
     double mean = 0;
     for (int i = 0; i < WIDTH * HEIGHT; i++) mean += (double)pixels[4 * i] / (WIDTH * HEIGHT);
+    print_message("# slot of half %d, depth %d, roof %d: %+.4f of its light\n", of->half, of->depth, of->roof,
+                  mean / of->light - 1);
     assert_near(mean, of->light, 0.045 * of->light);
     stage_close(&set);
   }

@@ -100,6 +100,22 @@ static void draw_hard(stage *set) { set->scene.render.shadows = HL_SHADOWS_HARD;
 static void draw_paper(stage *set) { soften(set, HL_SOFT_PAPER); }
 static void draw_cascade(stage *set) { soften(set, HL_SOFT_CASCADE); }
 static void draw_sublights(stage *set) { soften(set, HL_SOFT_SUBLIGHTS); }
+/* Little light is left behind opaque matter: most blocks of the sub-lights become dark. */
+static void draw_opaque(stage *set) {
+  stage_set_opacity(set, &set->volumes[0], 0.9, 1);
+  set->scene.light_count = 0;
+  stage_add_directional(set, (vec3){1, 1, 1})->angular_diameter_deg = 4;
+  set->scene.render.light_samples = 2;
+  draw_sublights(set);
+}
+/* A corner is cut away. Light comes to the inner corner through opaque matter. */
+static void draw_hollow(stage *set) {
+  static const hl_cut corner = {
+      .type = HL_CUT_BOX, .min = {3, 3, 3}, .max = {40, 40, 40}, .keep = HL_CUT_KEEP_OUTSIDE};
+  draw_opaque(set);
+  set->volumes[0].cuts = &corner;
+  set->volumes[0].cut_count = 1;
+}
 static void draw_maximum(stage *set) { set->scene.render.compositing = HL_COMPOSITING_MAXIMUM; }
 static void draw_sky(stage *set) {
   set->scene.sky.type = HL_SKY_UNIFORM;
@@ -159,7 +175,9 @@ static void test_ways(void **state) {
                              {"lights within", draw_within},
                              {"light ahead", draw_ahead},
                              {"orthographic", draw_orthographic},
-                             {"eye within", draw_eye_within}};
+                             {"eye within", draw_eye_within},
+                             {"opaque", draw_opaque},
+                             {"hollow", draw_hollow}};
   for (size_t n = 0; n < sizeof ways / sizeof *ways; n++) {
     stage set;
     stage_open(&set);

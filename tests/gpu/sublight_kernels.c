@@ -241,6 +241,7 @@ static void test_composite(void **state) {
       find_dark(&plan, &pass, places, device.pixels, device.marks, tile);
       assert_int_equal(~device.marks[3 * SLAB_TILES + tile] & EVERY_BLOCK, lit);
     }
+    assert_same_pixels();
   }
   assert_true(changed > ROUNDS / 2);
 }

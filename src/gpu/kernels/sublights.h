@@ -301,8 +301,15 @@ DEVICE void composite_sublights(GLOBAL const device_sweep *plan, GLOBAL const pl
 
 /* ---- the blocks with light ---- */
 
-/* Finds the blocks without light in a tile of a sub-light. Clears the lit blocks of a tile of the centre's
- * buffer, which the next pass finds. */
+/* Takes the rest of the light from a block, as darken_block(). first: the block's first pixel. */
+DEVICE void darken_block_of(GLOBAL const plan_light *light, GLOBAL word16 *first) {
+  for (int p = 0; p < PLANES_OF_SHEET; p++)
+    for (int i = 0; i < 16; i++)
+      first[p * (wide)light->sublight_plane + i / 4 * light->sublight_stride + i % 4] = 0;
+}
+
+/* Finds the blocks without light in a tile of a sub-light, and darkens them. Clears the lit blocks of a tile
+ * of the centre's buffer, which the next pass finds. */
 DEVICE void find_dark(GLOBAL const device_sweep *plan, GLOBAL const plan_pass *pass,
                       GLOBAL const plan_sublight_place *places, GLOBAL word16 *of_sublights,
                       GLOBAL int *marks, int number) {
@@ -317,16 +324,20 @@ DEVICE void find_dark(GLOBAL const device_sweep *plan, GLOBAL const plan_pass *p
   int dark = of.dark[number];
   for (int block = 0; block < 16; block++) {
     if (dark >> block & 1) continue;
-    GLOBAL const word16 *at = pixel_of_sublight(light, of_sublights, sublight, pass->sheet % plan->ring,
-                                                tile % light->sublight_tiles_x * 16 + block % 4 * 4,
-                                                tile / light->sublight_tiles_x * 16 + block / 4 * 4) +
-                              OUTSIDE * CHANNELS * (wide)light->sublight_plane;
+    GLOBAL word16 *first = pixel_of_sublight(light, of_sublights, sublight, pass->sheet % plan->ring,
+                                             tile % light->sublight_tiles_x * 16 + block % 4 * 4,
+                                             tile / light->sublight_tiles_x * 16 + block / 4 * 4);
+    GLOBAL const word16 *at = first + OUTSIDE * CHANNELS * (wide)light->sublight_plane;
     int lit = 0;
     for (int i = 0; i < 16 * CHANNELS && !lit; i++)
       lit = (float)at[i / 16 * (wide)light->sublight_plane + i % 16 / 4 * light->sublight_stride + i % 4] >=
             DARK * SUBLIGHT_WHOLE;
-    if (!lit) dark |= 1 << block;
+    if (lit) continue;
+    dark |= 1 << block;
+    darken_block_of(light, first);
   }
+  if (dark != of.dark[number])
+    of.changed[number + (1 - (pass->run & 1)) * light->sublights * tiles] = pass->sheet;
   of.dark[number] = dark;
 }
 
