@@ -1,6 +1,5 @@
 /* platform/wasi/threads.c - implements POSIX threads by WebAssembly's atomic waits, because the C library's
- * functions neither start threads nor wait for them. Puts a lock around the C library's allocator, which
- * serves only one thread.
+ * functions neither start threads nor wait for them.
  *
  * A mutex is Drepper's second one ("Futexes are tricky", 2011): 0 is open, 1 held, 2 held while another
  * thread waits. A condition variable is a count of its signals: a waiting thread reads the count before it
@@ -164,63 +163,3 @@ int pthread_cond_broadcast(pthread_cond_t *condition) {
 }
 
 int pthread_cond_signal(pthread_cond_t *condition) { return pthread_cond_broadcast(condition); }
-
-/* ---- memory ---- */
-
-/* The allocator of the C library. The linker replaces calls of malloc() by calls of __wrap_malloc(), and so
- * on (scripts/wasm.ini). */
-void *__real_malloc(size_t bytes);
-void *__real_calloc(size_t count, size_t bytes);
-void *__real_realloc(void *memory, size_t bytes);
-void *__real_aligned_alloc(size_t alignment, size_t bytes);
-int __real_posix_memalign(void **memory, size_t alignment, size_t bytes);
-void __real_free(void *memory);
-void *__wrap_malloc(size_t bytes);
-void *__wrap_calloc(size_t count, size_t bytes);
-void *__wrap_realloc(void *memory, size_t bytes);
-void *__wrap_aligned_alloc(size_t alignment, size_t bytes);
-int __wrap_posix_memalign(void **memory, size_t alignment, size_t bytes);
-void __wrap_free(void *memory);
-
-static atomic_int memory_lock;
-
-void *__wrap_malloc(size_t bytes) {
-  lock(&memory_lock);
-  void *memory = __real_malloc(bytes);
-  unlock(&memory_lock);
-  return memory;
-}
-
-void *__wrap_calloc(size_t count, size_t bytes) {
-  lock(&memory_lock);
-  void *memory = __real_calloc(count, bytes);
-  unlock(&memory_lock);
-  return memory;
-}
-
-void *__wrap_realloc(void *memory, size_t bytes) {
-  lock(&memory_lock);
-  void *moved = __real_realloc(memory, bytes);
-  unlock(&memory_lock);
-  return moved;
-}
-
-void *__wrap_aligned_alloc(size_t alignment, size_t bytes) {
-  lock(&memory_lock);
-  void *memory = __real_aligned_alloc(alignment, bytes);
-  unlock(&memory_lock);
-  return memory;
-}
-
-int __wrap_posix_memalign(void **memory, size_t alignment, size_t bytes) {
-  lock(&memory_lock);
-  int failed = __real_posix_memalign(memory, alignment, bytes);
-  unlock(&memory_lock);
-  return failed;
-}
-
-void __wrap_free(void *memory) {
-  lock(&memory_lock);
-  __real_free(memory);
-  unlock(&memory_lock);
-}
