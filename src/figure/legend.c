@@ -231,13 +231,16 @@ static hl_status find_scale(const legend *made, const hl_scene_volume *volume, h
   const double *stated = made->place->overlay->legend_range;
   const hl_transfer_function *function = &volume->transfer_function;
   double range[2];
+  const bool even = hl_strip_is_even(function);
   hl_status status = hl_transfer_function_visible_range(volume->volume, function, range, error);
   if (status != HL_OK) return status;
-  if (hl_strip_is_even(function)) {
+  if (even) {
     range[0] = function->color[0].value;
     range[1] = function->color[function->color_count - 1].value;
   }
-  *scale = hl_strip_scale_of(&volume->transfer_function, stated[0] < stated[1] ? stated : range);
+  /* the range that the overlay states is a range of matter: colours that a second volume gives have their own
+   */
+  *scale = hl_strip_scale_of(function, !even && stated[0] < stated[1] ? stated : range);
   return HL_OK;
 }
 

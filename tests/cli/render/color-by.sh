@@ -56,3 +56,8 @@ for wrong in "no.nrrd" "heat.nrrd:90,20" "heat.nrrd --look mip" "heat.nrrd --iso
   ball --color-by $wrong -o no.png 2>message || code=$?
   echo $code "$(cut -c12-180 message)"
 done
+# The legend's colours go over their own values, also where --range tells the values of matter.
+ball --color-by heat.nrrd:inferno --range 20,255 --legend "Heat (K)" --size 200 -o ranged.png
+"$PYTHON" -c "from PIL import Image
+pixels = Image.open('ranged.png').convert('RGB').getdata()
+print(any(r > 240 and g > 240 and 150 < b < 180 for r, g, b in pixels), any(r < 10 and g < 10 and b < 20 for r, g, b in pixels))"
