@@ -521,14 +521,16 @@ def _scene_of_channels(path: Any, channels: str | Sequence[int | str], place: Ma
     if not isinstance(path, (str, os.PathLike)):
         raise TypeError("channel is for files that hold several: choose by an index")
     for word in place:
-        if word in ("origin", "direction", "affine", "axes", "component", "smooth"):
+        if word in ("origin", "direction", "affine", "axes", "component"):
             raise TypeError(f"{word} is not for several channels of a file")
+    is_slice = settings.get("slice") is not None
     reading = {word: value for word, value in place.items() if word != "channel"}
+    if is_slice:
+        reading.setdefault("smooth", 0.0)
     scene = Scene._of_channels(path, channels, picture, look=material.get("look", "auto"), **reading)
     shown = {word: value for word, value in material.items() if word != "look"}
     count = len(scene.volumes)
     projected = material.get("look") == "mip"
-    is_slice = settings.get("slice") is not None
     volumes = [_look(one, projected, {} if is_slice else _look_for(look, n, count)).replace(**shown) for n, one in enumerate(scene.volumes)]
     chosen = [*(look.get(word) for word in ("clim", "opacity", "opacity_unit_distance", "tf")), shown.get("iso")]
     is_own = material.get("look", "auto") != "auto" or any(one is not None for one in chosen)

@@ -138,7 +138,7 @@ class Scene:
     @classmethod
     def of_channels(cls, path: str | os.PathLike[str], channels: str | Sequence[int | str] = "all", *, look: str = "auto",
                     array: str | None = None, series: str | None = None, time: int | None = None, level: int | None = None,
-                    spacing: Any = None) -> Scene:
+                    spacing: Any = None, smooth: float | None = None) -> Scene:
         """A scene of several channels of a file, such as a microscope's. Each channel is a volume in a colour of its
         own. The file may state this colour (OME, ImageJ, omero). If it does not, the colours are green and magenta,
         cyan, yellow, ...
@@ -147,14 +147,15 @@ class Scene:
         ----------
         path : path
         channels : "all", or a list of numbers from 0 and of the file's own names
-        look, array, series, time, level, spacing : optional
+        look, array, series, time, level, spacing, smooth : optional
             As for `halflight.render`.
         """
-        return cls._of_channels(path, channels, None, look=look, array=array, series=series, time=time, level=level, spacing=spacing)
+        return cls._of_channels(path, channels, None, look=look, array=array, series=series, time=time, level=level, spacing=spacing,
+                                smooth=smooth)
 
     @classmethod
     def _of_channels(cls, path: str | os.PathLike[str], channels: str | Sequence[int | str], picture: Picture | None, *,
-                     look: str = "auto", spacing: Any = None, **chosen: Any) -> Scene:
+                     look: str = "auto", spacing: Any = None, smooth: float | None = None, **chosen: Any) -> Scene:
         """The same, at the resolutions that suit a picture."""
         file = os.fspath(path)
         options, keep = load_options({word: value for word, value in chosen.items() if value is not None}, spacing, "zyx", picture)
@@ -162,8 +163,9 @@ class Scene:
         if not listed:
             raise ValueError("channel: [] names none: give a number or a name, several as [0, 2], or 'all'")
         projected = choice("look", look, choices_of("look")) == "mip"
+        sigma = ffi.NULL if smooth is None else ffi.new("double *", _settings.number("smooth", smooth))
         handle = made(lib.hl_scene_for_channels, "hl_scene", lib.hl_scene_release, context, path_bytes(file), options,
-                      ",".join(listed).encode(), b"auto" if projected else look.encode(), path=file)
+                      ",".join(listed).encode(), sigma, look.encode(), path=file)
         del keep  # the texts that `options` borrows are kept in this list
         if projected:
             handle = composed(lib.hl_scene_describe(handle), lib.HL_COMPOSE_BARE, {"look": "mip"})

@@ -55,7 +55,8 @@ class Volume:
         Copy the voxels of an array, which may then be changed.
     smooth : float, optional
         Smooth the voxels by a Gaussian of so many voxels along each axis; 0: not at all. By default, 0.8 for brains
-        without their skull, which end in a cliff of voxels, and for thick slices; 0 for all else.
+        without their skull, which end in a cliff of voxels, and for thick slices; 0 for all else, for slices and for
+        maximum projections.
     **look : Look
         How it looks and where it stands: `name`, `transfer_function`, `clip`, `scale`, the keywords of
         `halflight.keywords.VolumeSettings` and `MaterialSettings`, and `cmap`, `clim`, `opacity` and others as for
@@ -438,7 +439,7 @@ class Volume:
         if self._automatic is None:
             look = self._changes.get("look")
             projected = look is not None and choice("look", look, choices_of("look")) == "mip"
-            wanted = ffi.new("char[]", b"auto" if look is None or projected else look.encode())
+            wanted = ffi.new("char[]", b"auto" if look is None else look.encode())
             self._automatic = made(lib.hl_scene_for_volume_look, "hl_scene", lib.hl_scene_release, context, self._handle,
                                    self._file_text(), wanted)
             if self._is_of_values() and lib.hl_scene_describe(self._automatic).volumes[0].label_count > 0:

@@ -162,11 +162,10 @@ static hl_status scene_of(const looks_job *job, size_t index, hl_scene **scene, 
   const char *name = hl_option_choices("look")[index].name;
   hl_scene *made = NULL;
   bool projected = strcmp(name, "mip") == 0;
-  const char *own = projected ? "auto" : name;
   hl_status status = job->volume != NULL
-                         ? hl_scene_for_volume_look(context, job->volume, NULL, own, &made, error)
+                         ? hl_scene_for_volume_look(context, job->volume, NULL, name, &made, error)
                          : hl_scene_for_channels(context, job->opened.title, &job->load,
-                                                 job->values[LOOKS_CHANNEL].text, own, &made, error);
+                                                 job->values[LOOKS_CHANNEL].text, NULL, name, &made, error);
   if (status == HL_OK && (projected || job->volume == NULL)) status = compose(context, name, &made, error);
   if (status == HL_OK) {
     hl_scene_description description = *hl_scene_describe(made);

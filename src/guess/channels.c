@@ -204,6 +204,7 @@ hl_status hl_scene_channel_color(const hl_scene_description *description, size_t
 typedef struct channel_scenes {
   hl_context *context;
   const char *path, *look;
+  const double *smooth; /* the smoothing of each channel, in voxels; null: what the data need */
   hl_volume_load_options options;
   hl_scene *scenes[HL_CHANNELS_MOST]; /* owned */
   size_t count;
@@ -242,6 +243,19 @@ static hl_status refuse_again(const channel_scenes *made, const hl_volume *volum
   return HL_OK;
 }
 
+/* Replaces the volume of a channel by the smoothed volume that was asked for. */
+static hl_status smooth_channel(const channel_scenes *made, hl_volume **volume, hl_error *error) {
+  hl_volume *smoothed = NULL;
+  hl_error own = {0};
+  hl_status status = hl_volume_smooth(*volume, *made->smooth, &smoothed, &own);
+  if (status != HL_OK)
+    return hl_fail(error, status, "%s: channel %d: %s", made->path, (*volume)->selection.channel,
+                   own.message);
+  hl_volume_release(*volume);
+  *volume = smoothed;
+  return HL_OK;
+}
+
 /* Makes the scene of a channel. name: its number or its name. *channels: set to the number of channels that
  * the file has. */
 static hl_status add_channel(channel_scenes *made, const char *name, size_t *channels, hl_error *error) {
@@ -253,6 +267,7 @@ static hl_status add_channel(channel_scenes *made, const char *name, size_t *cha
     *channels = volume->selection.channels;
     status = refuse_again(made, volume, error);
   }
+  if (status == HL_OK && made->smooth != NULL) status = smooth_channel(made, &volume, error);
   if (status == HL_OK)
     status = hl_scene_for_volume_look(made->context, volume, made->path, made->look, &scene, error);
   if (status == HL_OK) status = name_channel(made, volume, &scene, error);
@@ -342,12 +357,13 @@ static hl_status color_channels(hl_context *context, hl_scene **scene, hl_error 
 }
 
 hl_status hl_scene_for_channels(hl_context *context, const char *path, const hl_volume_load_options *options,
-                                const char *channels, const char *look, hl_scene **scene, hl_error *error) {
+                                const char *channels, const double *smooth, const char *look,
+                                hl_scene **scene, hl_error *error) {
   HL_DOOR;
   if (scene != NULL) *scene = NULL;
   if (context == NULL || path == NULL || look == NULL || scene == NULL)
     return hl_fail(error, HL_ERROR_ARGUMENT, "hl_scene_for_channels: null context, path, look or scene");
-  channel_scenes made = {.context = context, .path = path, .look = look};
+  channel_scenes made = {.context = context, .path = path, .look = look, .smooth = smooth};
   hl_volume_load_options_defaults(&made.options);
   if (options != NULL) made.options = *options;
   made.options.channel = HL_INDEX_DEFAULT;

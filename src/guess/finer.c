@@ -86,12 +86,13 @@ static void find_options(const hl_scene_volume *volume, const hl_volume_selectio
       options->preview_pixels = (int)volume->volume->dimension[axis] + 1;
 }
 
-/* Replaces a finer volume by a smoothed one, if the coarse one was smoothed or the voxels need it. */
-static hl_status smooth(const hl_scene_volume *volume, hl_volume **finer, hl_error *error) {
+/* Replaces a finer volume by a smoothed one, if the coarse one was smoothed, or if the voxels need it and are
+ * not projected. */
+static hl_status smooth(const hl_scene_volume *volume, bool projected, hl_volume **finer, hl_error *error) {
   hl_volume *smoothed = NULL;
   hl_status status = volume->volume->smoothing > 0
                          ? hl_volume_smooth(*finer, volume->volume->smoothing, &smoothed, error)
-                     : atomic_load(&volume->volume->smoothing_chosen)
+                     : projected || atomic_load(&volume->volume->smoothing_chosen)
                          ? HL_OK
                          : hl_smooth_where_needed(*finer, volume->file, &smoothed, error);
   if (status == HL_OK && smoothed == NULL) return HL_OK;
@@ -123,7 +124,8 @@ hl_status hl_volume_read_finer(hl_context *context, const char *path, const hl_s
     status = hl_volume_load_with(context, path, &options, finer, error);
   }
   hl_release(context, seen);
-  return status == HL_OK ? smooth(volume, finer, error) : status;
+  const bool projected = description->render.compositing == HL_COMPOSITING_MAXIMUM;
+  return status == HL_OK ? smooth(volume, projected, finer, error) : status;
 }
 
 /* ---- a scene ---- */

@@ -307,11 +307,12 @@ hl_status hl_smooth_where_needed(hl_volume *volume, const char *file, hl_volume 
   return sigma > 0 ? hl_volume_smooth(volume, sigma, smoothed, error) : HL_OK;
 }
 
-/* Makes the scene of the volume, or of a smoothed volume where the voxels need it. */
+/* Makes the scene of the volume, or of a smoothed volume where the voxels need it. A volume that will be
+ * projected is not smoothed, because smoothing lowers its greatest values. */
 static hl_status make_scene(hl_context *context, hl_volume *volume, const char *file, const hl_look *style,
-                            hl_scene **scene, hl_error *error) {
+                            bool projected, hl_scene **scene, hl_error *error) {
   hl_volume *smoothed = NULL;
-  hl_status status = hl_smooth_where_needed(volume, file, &smoothed, error);
+  hl_status status = projected ? HL_OK : hl_smooth_where_needed(volume, file, &smoothed, error);
   if (status == HL_OK)
     status = make_scene_of(context, smoothed != NULL ? smoothed : volume, file, style, scene, error);
   hl_volume_release(smoothed);
@@ -324,7 +325,7 @@ hl_status hl_scene_for_volume(hl_context *context, hl_volume *volume, const char
   if (context == NULL || volume == NULL || scene == NULL)
     return hl_fail(error, HL_ERROR_ARGUMENT, "hl_scene_for_volume: null context, volume or scene");
   *scene = NULL;
-  return make_scene(context, volume, file, NULL, scene, error);
+  return make_scene(context, volume, file, NULL, false, scene, error);
 }
 
 hl_status hl_scene_for_volume_look(hl_context *context, hl_volume *volume, const char *file, const char *look,
@@ -333,9 +334,10 @@ hl_status hl_scene_for_volume_look(hl_context *context, hl_volume *volume, const
   if (context == NULL || volume == NULL || look == NULL || scene == NULL)
     return hl_fail(error, HL_ERROR_ARGUMENT, "hl_scene_for_volume_look: null context, volume, look or scene");
   const hl_look *style = NULL;
+  const bool projected = strcmp(look, "mip") == 0;
   *scene = NULL;
-  hl_status status = hl_style_named(look, &style, error);
-  return status == HL_OK ? make_scene(context, volume, file, style, scene, error) : status;
+  hl_status status = hl_style_named(projected ? "auto" : look, &style, error);
+  return status == HL_OK ? make_scene(context, volume, file, style, projected, scene, error) : status;
 }
 
 hl_status hl_scene_light_factor(const hl_scene_description *description, const char *look, double *factor,

@@ -57,6 +57,7 @@ hl_volume_read_finer cameras
 hl_scene_read_finer cameras
 hl_scene_for_channels options
 hl_scene_for_channels channels
+hl_scene_for_channels smooth
 hl_ranks_join communicator
 hl_option_kind_of name
 hl_option_choices name

@@ -35,8 +35,6 @@ static int check_kinds(const cli_value *values, const cli_input *inputs, size_t 
                   "'%s' is no volume file: several INPUTs are the volumes of one picture, and a scene is a "
                   "picture of its own",
                   inputs[n].path);
-  if (values[RENDER_SMOOTH].given && input_has_channels(&values[RENDER_CHANNEL]))
-    return fail(EXIT_CODE_USAGE, "--smooth is for one channel: leave it out, or name one --channel");
   if (inputs[0].kind == INPUT_VOLUME) return EXIT_CODE_OK;
   for (int which = RENDER_ARRAY; which <= RENDER_SMOOTH; which++)
     if (values[which].given)
@@ -75,11 +73,10 @@ void render_load_options(const cli_value *values, hl_volume_load_options *option
 /* The scene of several channels of one file. */
 static hl_status load_channels(cli_host *host, const cli_value *values, const cli_input *input,
                                hl_volume_load_options options, hl_scene **scene, hl_error *error) {
-  const char *look = render_look_name(values);
   options.bytes = input->bytes;
   options.byte_count = input->length;
   return hl_scene_for_channels(host->context, input->title, &options, values[RENDER_CHANNEL].text,
-                               look != NULL ? look : "auto", scene, error);
+                               input->smooth, input->look != NULL ? input->look : "auto", scene, error);
 }
 
 /* Volumes on the command line that are shown as slices are not smoothed: a slice shows the voxels. */
@@ -92,7 +89,7 @@ static int load_each(cli_host *host, const cli_value *values, cli_input *inputs,
   for (size_t n = 0; n < count; n++) {
     hl_error error = {0};
     bool bare = inputs[n].kind == INPUT_VOLUME;
-    inputs[n].look = render_look_name(values);
+    inputs[n].look = values[RENDER_LOOK].given ? values[RENDER_LOOK].text : NULL;
     inputs[n].smooth = values[RENDER_SMOOTH].given  ? &values[RENDER_SMOOTH].number[0]
                        : values[RENDER_SLICE].given ? &unsmoothed
                                                     : NULL;

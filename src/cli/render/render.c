@@ -298,8 +298,7 @@ static void find_choice(render_job *job) {
   const hl_scene_description *description = job->result.description;
   bool wanted = job->values[RENDER_JSON].given || (!job->host.quiet && isatty(STDERR_FILENO));
   if (!job->input.bare || description->volume_count == 0 || job->values[RENDER_TF].given ||
-      render_is_label_map(job->values) ||
-      (job->values[RENDER_LOOK].given && render_look_name(job->values) == NULL) || !wanted)
+      render_is_label_map(job->values) || render_is_projection(job->values) || !wanted)
     return;
   const hl_volume *volume = description->volumes[0].volume;
   if (hl_volume_guess(volume, job->input.first, &job->result.taken_for, NULL) != HL_OK)

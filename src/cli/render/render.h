@@ -192,8 +192,8 @@ int render_go_nearer(cli_host *host, const hl_camera *cameras, size_t count, hl_
 /* Refuses options about the scene that contradict each other or cannot be read. */
 int render_check_scene_options(const cli_value *values);
 
-/* The library's look that --look asks for; null if it asks for none, or for a maximum projection. */
-const char *render_look_name(const cli_value *values);
+/* Returns whether --look asks for a maximum projection. */
+bool render_is_projection(const cli_value *values);
 
 /* The layers that --layers asks for; their buffers are owned by the picture. */
 typedef struct render_layers {

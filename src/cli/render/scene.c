@@ -35,9 +35,8 @@ static void list_options(const cli_value *values, option_list *list) {
   }
 }
 
-const char *render_look_name(const cli_value *values) {
-  const cli_value *look = &values[RENDER_LOOK];
-  return look->given && strcmp(look->text, "mip") != 0 ? look->text : NULL;
+bool render_is_projection(const cli_value *values) {
+  return values[RENDER_LOOK].given && strcmp(values[RENDER_LOOK].text, "mip") == 0;
 }
 
 bool render_is_label_map(const cli_value *values) {
