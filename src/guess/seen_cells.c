@@ -9,6 +9,7 @@
 #include "elementary/elementary.h"
 #include "guess/looks.h"
 #include "guess/sample.h"
+#include "scene/geometry/placement.h"
 #include "volume/store/pages.h"
 
 /* voxels at the rim do not count if their opacity is below this fraction of the greatest opacity */
@@ -87,6 +88,43 @@ static float depth_at(const hl_seen *seen, const void *row, ptrdiff_t i) {
   return depth_of_float(seen, ((const float *)row)[i]);
 }
 
+/* The factor of extinction that a mask gives to one of its values. */
+static double factor_of(const hl_mask *mask, double value) {
+  size_t low = 0, high = mask->label_count;
+  while (low < high) {
+    const size_t middle = low + (high - low) / 2;
+    if ((double)mask->labels[middle].value < value) low = middle + 1;
+    else high = middle;
+  }
+  if (low == mask->label_count || (double)mask->labels[low].value != value) return mask->rest;
+  return mask->labels[low].visible ? mask->labels[low].opacity : 0;
+}
+
+/* The factor by which the volume's mask multiplies the extinction at a voxel, by the map's voxel around its
+ * centre. The renderer's factor differs beside the borders of labels, where it is smooth and 1/2. */
+static double mask_factor(const hl_seen *seen, ptrdiff_t i, ptrdiff_t j, ptrdiff_t k) {
+  const hl_volume *map = seen->mask->volume;
+  const vec3 at = affine3_apply(seen->index_to_mask, (vec3){(double)i, (double)j, (double)k});
+  const double near[3] = {floor(at.x + 0.5), floor(at.y + 0.5), floor(at.z + 0.5)};
+  for (int a = 0; a < 3; a++)
+    if (!(near[a] >= 0 && near[a] < (double)map->dimension[a])) return seen->mask->rest;
+  return factor_of(seen->mask,
+                   hl_volume_value_within(map, (size_t)near[0], (size_t)near[1], (size_t)near[2]));
+}
+
+/* A row of voxels. */
+typedef struct voxel_row {
+  const void *voxels;
+  ptrdiff_t j, k;
+  size_t cells; /* the row's first cell */
+} voxel_row;
+
+/* The optical depth per length of a voxel as it is seen: as the transfer function and the mask have it. */
+static float seen_depth(const hl_seen *seen, const voxel_row *row, ptrdiff_t i) {
+  const float depth = depth_at(seen, row->voxels, i);
+  return seen->mask == NULL || !(depth > 0) ? depth : (float)(depth * mask_factor(seen, i, row->j, row->k));
+}
+
 /* ---- cells and columns ---- */
 
 static size_t cell_of(const hl_seen *seen, ptrdiff_t i, ptrdiff_t j, ptrdiff_t k) {
@@ -95,14 +133,19 @@ static size_t cell_of(const hl_seen *seen, ptrdiff_t i, ptrdiff_t j, ptrdiff_t k
          (size_t)i / step;
 }
 
+static voxel_row row_at(const hl_seen *seen, ptrdiff_t j, ptrdiff_t k) {
+  return (voxel_row){hl_volume_row_in(seen->volume, (size_t)j, (size_t)k, seen->row), j, k,
+                     cell_of(seen, 0, j, k)};
+}
+
 static void add_row(hl_seen *seen, ptrdiff_t j, ptrdiff_t k) {
-  const void *row = hl_volume_row_in(seen->volume, (size_t)j, (size_t)k, seen->row);
-  float *mean = &seen->mean[cell_of(seen, 0, j, k)];
+  const voxel_row row = row_at(seen, j, k);
+  float *mean = &seen->mean[row.cells];
   ptrdiff_t step = (ptrdiff_t)seen->step;
   for (ptrdiff_t i = seen->first[0]; i < seen->end[0];) {
     ptrdiff_t cell = i / step, end = (cell + 1) * step < seen->end[0] ? (cell + 1) * step : seen->end[0];
     float sum = 0;
-    for (; i < end; i++) sum += depth_at(seen, row, i);
+    for (; i < end; i++) sum += seen_depth(seen, &row, i);
     mean[cell] += sum;
   }
 }
@@ -323,12 +366,21 @@ static hl_status make_cells(hl_seen *seen, hl_error *error) {
              : hl_fail_memory(error, cells * sizeof *seen->mean, "a volume's cells");
 }
 
+static void set_mask(const hl_scene_volume *volume, hl_seen *seen) {
+  affine3 world_to_mask;
+  if (volume->mask.volume == NULL || !affine3_invert(hl_scene_mask_index_to_world(volume), &world_to_mask))
+    return;
+  seen->mask = &volume->mask;
+  seen->index_to_mask = affine3_multiply(world_to_mask, hl_scene_volume_index_to_world(volume));
+}
+
 hl_status hl_seen_find(const hl_scene_volume *volume, hl_seen *seen, bool *any, hl_error *error) {
   const hl_transfer_function *function = &volume->transfer_function;
   double greatest = greatest_opacity(function, volume->volume->minimum, volume->volume->maximum);
   *seen = (hl_seen){.volume = volume->volume, .cut_count = volume->cut_count, .bins.function = function};
   *any = volume->visible && greatest > 0 && find_range(volume, seen);
   if (!*any) return HL_OK;
+  set_mask(volume, seen);
   seen->faint = (float)(-hl_log1p(-FAINT * fmin(greatest, OPAQUE)) / function->unit_distance * (1 - 1e-6));
   hl_status status = make_table(seen, error);
   if (status == HL_OK) status = make_cells(seen, error);
@@ -346,6 +398,7 @@ hl_status hl_seen_find(const hl_scene_volume *volume, hl_seen *seen, bool *any, 
 void hl_seen_release(hl_seen *seen) {
   hl_context *context = seen->volume->context;
   if (seen->volume->pages != NULL) hl_pages_forget(seen->volume->pages);
+  if (seen->mask != NULL && seen->mask->volume->pages != NULL) hl_pages_forget(seen->mask->volume->pages);
   hl_release(context, seen->depth);
   hl_release(context, seen->bins.bends);
   hl_release(context, seen->kind);
@@ -359,13 +412,6 @@ void hl_seen_release(hl_seen *seen) {
 static float least_depth(const hl_seen *seen, size_t cell) {
   return seen->kind[cell] == HL_SEEN ? fminf(seen->faint, seen->mean[cell] / 2) : seen->faint;
 }
-
-/* A row of voxels, and its first cell. */
-typedef struct voxel_row {
-  const void *voxels;
-  ptrdiff_t j, k;
-  size_t cells;
-} voxel_row;
 
 /* The index of the first voxel in a row that counts, searched from index `from` to `to`; `to + way` if none
  * counts. way: 1 or -1. */
@@ -382,7 +428,7 @@ static ptrdiff_t first_that_counts(const hl_seen *seen, const voxel_row *row, pt
     }
     float least = least_depth(seen, cells + (size_t)cell);
     for (; i != next; i += way)
-      if (depth_at(seen, row->voxels, i) >= least &&
+      if (seen_depth(seen, row, i) >= least &&
           hl_cuts_leave(seen->cuts, seen->cut_count, (vec3){(double)i, (double)row->j, (double)row->k}))
         return i;
   }
@@ -390,8 +436,7 @@ static ptrdiff_t first_that_counts(const hl_seen *seen, const voxel_row *row, pt
 }
 
 bool hl_seen_row(const hl_seen *seen, ptrdiff_t j, ptrdiff_t k, ptrdiff_t *first, ptrdiff_t *last) {
-  const voxel_row row = {hl_volume_row_in(seen->volume, (size_t)j, (size_t)k, seen->row), j, k,
-                         cell_of(seen, 0, j, k)};
+  const voxel_row row = row_at(seen, j, k);
   ptrdiff_t end = seen->end[0] - 1;
   *first = first_that_counts(seen, &row, seen->first[0], end, 1);
   if (*first > end) return false;

@@ -10,6 +10,7 @@
 
 #include <stdint.h>
 #include "core/error.h"
+#include "core/vector.h"
 #include "scene/geometry/cut.h"
 #include "scene/scene.h"
 
@@ -19,6 +20,8 @@ typedef struct hl_seen {
   const hl_volume *volume;
   cut_shape *cuts; /* owned; [cut_count]; matter that they remove is not seen */
   size_t cut_count;
+  const hl_mask *mask;        /* borrowed; matter that it hides is not seen; null if there is no mask */
+  affine3 index_to_mask;      /* maps the volume's index space to that of the mask's label map */
   ptrdiff_t first[3], end[3]; /* voxels inside the volume's box */
   size_t step;                /* number of voxels along each edge of a cell */
   size_t stride;              /* along y and z, every stride-th row is examined */
