@@ -10,7 +10,6 @@
 #include "host.h"
 #include "input.h"
 #include "output.h"
-#include "text/units.h"
 
 enum convert_option {
   CONVERT_CROP,
@@ -168,16 +167,6 @@ static int check_crop(const cli_value *crop, const hl_volume_save_options *optio
   return EXIT_CODE_OK;
 }
 
-/* Refuses a unit if the volume's file states another one. */
-static int check_unit(const cli_value *unit, const hl_volume *volume) {
-  const char *told = hl_volume_unit(volume);
-  const hl_unit *known = told != NULL ? hl_unit_find(told) : NULL,
-                *asked = unit->given ? hl_unit_find(unit->text) : NULL;
-  if (!unit->given || known == NULL || (asked != NULL && asked->metres == known->metres)) return EXIT_CODE_OK;
-  return fail(EXIT_CODE_USAGE, "--unit: the volume's file tells its unit, %s: --spacing changes distances",
-              told);
-}
-
 static void report(const char *output, double seconds) { say("%s: written in %.2f s", output, seconds); }
 
 /* Loads the volume IN. The caller closes the input and releases the volume, also after a failure. */
@@ -203,7 +192,7 @@ static int convert(cli_host *host, const cli_value *values, const char *in, cons
   hl_error error = {0};
   int exit_code = load_volume(host, values, in, &input, &volume);
   if (exit_code == EXIT_CODE_OK) exit_code = check_crop(&values[CONVERT_CROP], options, volume);
-  if (exit_code == EXIT_CODE_OK) exit_code = check_unit(&values[CONVERT_UNIT], volume);
+  if (exit_code == EXIT_CODE_OK) exit_code = input_check_unit(&values[CONVERT_UNIT], volume);
   if (exit_code == EXIT_CODE_OK) exit_code = read_files_protect(&host->read, out, in);
   if (exit_code == EXIT_CODE_OK) {
     hl_status status = HL_OK;
@@ -247,7 +236,7 @@ static int make_surface(cli_host *host, const cli_value *values, const char *in,
                 "label of a label map",
                 out, in);
   int exit_code = load_volume(host, values, in, &input, &volume);
-  if (exit_code == EXIT_CODE_OK) exit_code = check_unit(&values[CONVERT_UNIT], volume);
+  if (exit_code == EXIT_CODE_OK) exit_code = input_check_unit(&values[CONVERT_UNIT], volume);
   if (exit_code == EXIT_CODE_OK && !iso->given) exit_code = make_label_surface(host, values, volume, mesh);
   else if (exit_code == EXIT_CODE_OK) {
     hl_status status = hl_mesh_of_isosurface(host->context, volume, iso->number[0], mesh, &error);

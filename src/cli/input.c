@@ -18,6 +18,7 @@
 #include "output.h"
 #include "platform/memory.h"
 #include "text/plain.h"
+#include "text/units.h"
 
 #define STANDARD_INPUT "/dev/stdin" /* the volume's file in a scene made from standard input */
 
@@ -201,6 +202,15 @@ int input_picture_side(void) {
   hl_scene_description description;
   hl_scene_description_defaults(&description);
   return description.width > description.height ? description.width : description.height;
+}
+
+int input_check_unit(const cli_value *unit, const hl_volume *volume) {
+  const char *told = hl_volume_unit(volume);
+  const hl_unit *known = told != NULL ? hl_unit_find(told) : NULL,
+                *asked = unit->given ? hl_unit_find(unit->text) : NULL;
+  if (!unit->given || known == NULL || (asked != NULL && asked->metres == known->metres)) return EXIT_CODE_OK;
+  return fail(EXIT_CODE_USAGE, "--unit: the volume's file tells its unit, %s: --spacing changes distances",
+              told);
 }
 
 hl_status input_load_volume(hl_context *context, const cli_input *input,

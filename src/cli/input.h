@@ -119,6 +119,9 @@ int input_picture_side(void);
 hl_status input_load_volume(hl_context *context, const cli_input *input,
                             const hl_volume_load_options *options, hl_volume **volume, hl_error *error);
 
+/* Refuses the unit of --unit if the volume's file states another one. Returns the exit code. */
+int input_check_unit(const cli_value *unit, const hl_volume *volume);
+
 /* Replaces a volume by the smoothed volume that --smooth asks for. */
 hl_status input_smooth(double sigma, hl_volume **volume, hl_error *error);
 

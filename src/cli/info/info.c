@@ -25,6 +25,7 @@ enum info_option {
   INFO_CHANNEL,
   INFO_LEVEL,
   INFO_SPACING,
+  INFO_UNIT,
   INFO_LABEL_TABLE,
   INFO_MAX_MEMORY,
   INFO_OPTION_COUNT
@@ -41,6 +42,10 @@ static const cli_option info_options[INFO_OPTION_COUNT] = {
     INPUT_OPTIONS(INFO_ARRAY, NULL),
     [INFO_CHANNEL] = INPUT_OPTION_CHANNEL,
     [INFO_SPACING] = INPUT_OPTION_SPACING,
+    [INFO_UNIT] = {.name = "unit",
+                   .kind = OPTION_TEXT,
+                   .argument = "UNIT",
+                   .help = "unit of lengths, where FILE does not tell it: m, cm, mm,\num, nm or angstrom"},
     [INFO_LABEL_TABLE] =
         {.name = "label-table",
          .kind = OPTION_TEXT,
@@ -57,10 +62,11 @@ static int info_of_volume(cli_host *host, const cli_value *values, const cli_inp
   input_load_options(&values[INFO_ARRAY], &values[INFO_SPACING], &load);
   load.pixels = input_picture_side(); /* the properties are printed for the resolution that a picture shows */
   hl_status status = input_load_volume(host->context, input, &load, &volume, &error);
-  int exit_code = status == HL_OK
-                      ? info_tell_volume(host, values[INFO_JSON].given ? &json : NULL, input->title, volume,
-                                         true, values[INFO_LABEL_TABLE].text)
-                      : host_fail(host, PHASE_READ, status, &error);
+  int exit_code = status == HL_OK ? input_check_unit(&values[INFO_UNIT], volume)
+                                  : host_fail(host, PHASE_READ, status, &error);
+  if (exit_code == EXIT_CODE_OK)
+    exit_code = info_tell_volume(host, values[INFO_JSON].given ? &json : NULL, input->title, volume,
+                                 values[INFO_UNIT].text, true, values[INFO_LABEL_TABLE].text);
   hl_volume_release(volume);
   return exit_code == EXIT_CODE_OK ? finish_stdout() : exit_code;
 }
@@ -88,7 +94,7 @@ static int tell_scene(cli_host *host, bool as_json, const char *title, const hl_
   for (size_t n = 0; n < scene->volume_count && exit_code == EXIT_CODE_OK; n++) {
     const hl_scene_volume *volume = &scene->volumes[n];
     const char *path = volume->file != NULL ? volume->file : title;
-    exit_code = info_tell_volume(host, as_json ? &json : NULL, path, volume->volume, false, NULL);
+    exit_code = info_tell_volume(host, as_json ? &json : NULL, path, volume->volume, NULL, false, NULL);
     for (size_t label = 0; !as_json && label < volume->label_count; label++)
       printf("  %s  %" PRId64 ": %s%s\n", label == 0 ? "labels    " : "          ",
              volume->labels[label].value,
@@ -304,7 +310,8 @@ const cli_command info_command = {
         "triangles, spheres and lines,\n"
         "whether it has normals and colours, its area, the volume that it encloses, and its box. For a "
         "label\n"
-        "map, lists its labels with their names, voxels and volumes.",
+        "map, lists its labels with their names, voxels and volumes, in ml, too, if the unit of lengths is "
+        "known.",
     .options = info_options,
     .option_count = INFO_OPTION_COUNT,
     .run = run_info,

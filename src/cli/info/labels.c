@@ -31,8 +31,15 @@ static void count_voxels(const hl_volume *map, const hl_volume_info *info, const
       }
 }
 
+/* The number of cubes with an edge of a unit in a millilitre, which is a cube with an edge of a centimetre.
+ */
+static double per_millilitre(const hl_unit *unit) {
+  const double edge = hl_length_ratio(1e-2, unit->metres);
+  return edge * edge * edge;
+}
+
 static void print_json(json_writer *json, const hl_label *labels, size_t count, const uint64_t *voxels,
-                       double voxel) {
+                       double voxel, const hl_unit *unit) {
   json_open_array(json, "labels");
   for (size_t n = 0; n < count; n++) {
     json_open_object(json, NULL);
@@ -40,24 +47,26 @@ static void print_json(json_writer *json, const hl_label *labels, size_t count, 
     json_text(json, "name", labels[n].name != NULL ? labels[n].name : "");
     json_whole_number(json, "voxels", voxels[n]);
     json_number(json, "volume", (double)voxels[n] * voxel);
+    if (unit != NULL) json_number(json, "volume_ml", (double)voxels[n] * voxel / per_millilitre(unit));
     json_close(json);
   }
   json_close(json);
 }
 
 static void print_text(const hl_label *labels, size_t count, const uint64_t *voxels, double voxel,
-                       const char *unit_name) {
-  const hl_unit *unit = unit_name != NULL ? hl_unit_find(unit_name) : NULL;
+                       const hl_unit *unit) {
   for (size_t n = 0; n < count; n++) {
     const char *name = labels[n].name != NULL ? labels[n].name : "";
-    printf("  %s  %" PRId64 ": %s%s%" PRIu64 " voxel%s, %.6g %s%s\n", n == 0 ? "labels    " : "          ",
-           labels[n].value, name, name[0] != '\0' ? ", " : "", voxels[n], voxels[n] == 1 ? "" : "s",
-           (double)voxels[n] * voxel, unit != NULL ? unit->symbol : "cubic units", unit != NULL ? "³" : "");
+    const double volume = (double)voxels[n] * voxel;
+    printf("  %s  %" PRId64 ": %s%s%" PRIu64 " voxel%s, %.6g ", n == 0 ? "labels    " : "          ",
+           labels[n].value, name, name[0] != '\0' ? ", " : "", voxels[n], voxels[n] == 1 ? "" : "s", volume);
+    if (unit != NULL) printf("%s³, %.6g ml\n", unit->symbol, volume / per_millilitre(unit));
+    else printf("cubic units\n");
   }
 }
 
-hl_status info_tell_labels(hl_context *context, json_writer *json, const hl_volume *map, const char *table,
-                           hl_error *error) {
+hl_status info_tell_labels(hl_context *context, json_writer *json, const hl_volume *map, const char *unit,
+                           const char *table, hl_error *error) {
   hl_label *labels = NULL;
   size_t count = 0;
   hl_volume_info info = {.struct_size = sizeof info};
@@ -68,8 +77,9 @@ hl_status info_tell_labels(hl_context *context, json_writer *json, const hl_volu
   uint64_t *voxels = calloc(count, sizeof *voxels);
   if (voxels != NULL) {
     count_voxels(map, &info, labels, count, voxels);
-    if (json != NULL) print_json(json, labels, count, voxels, voxel);
-    else print_text(labels, count, voxels, voxel, hl_volume_unit(map));
+    const hl_unit *known = unit != NULL ? hl_unit_find(unit) : NULL;
+    if (json != NULL) print_json(json, labels, count, voxels, voxel, known);
+    else print_text(labels, count, voxels, voxel, known);
   }
   free(voxels);
   hl_labels_release(context, labels);

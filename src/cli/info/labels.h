@@ -1,4 +1,4 @@
-/* cli/info/labels.h - prints the labels of a label map: their names, and how many voxels each has. */
+/* cli/info/labels.h - prints the labels of a label map: their names, voxels and volumes. */
 #ifndef HL_CLI_INFO_LABELS_H
 #define HL_CLI_INFO_LABELS_H
 
@@ -6,9 +6,10 @@
 
 #include "cli/json_writer.h"
 
-/* Prints the labels. json: the writer to which a list is added; if null, text is printed. table: a table of
+/* Prints the labels. json: the writer to which a list is added; if null, text is printed. unit: the unit of
+ * lengths; null if it is not known. table: a table of
  * names; null if there is none. */
-hl_status info_tell_labels(hl_context *context, json_writer *json, const hl_volume *map, const char *table,
-                           hl_error *error);
+hl_status info_tell_labels(hl_context *context, json_writer *json, const hl_volume *map, const char *unit,
+                           const char *table, hl_error *error);
 
 #endif

@@ -245,7 +245,7 @@ static void print_field_error(const hl_volume *volume) {
   info_print_difference("", e.value, e.of_range, e.kind, e.source);
 }
 
-static void print_json(json_writer *json, const char *path, const hl_volume *volume,
+static void print_json(json_writer *json, const char *path, const hl_volume *volume, const char *unit,
                        const hl_volume_info *info, const double percentiles[PERCENTS], const char *kind,
                        const char *next) {
   uint64_t dimensions[3] = {info->dimensions[0], info->dimensions[1], info->dimensions[2]};
@@ -265,7 +265,7 @@ static void print_json(json_writer *json, const char *path, const hl_volume *vol
   json_numbers(json, "max", high, 3);
   json_close(json);
   json_text(json, "space", hl_space_name(info->space));
-  json_text(json, "unit", hl_volume_unit(volume));
+  json_text(json, "unit", unit);
   print_json_range(json, volume);
   json_number(json, "mean", info->mean);
   print_json_percentiles(json, percentiles);
@@ -314,8 +314,9 @@ static const char *value_text(const hl_volume *volume, int end, double value,
   return text;
 }
 
-static void print_text(const char *path, const hl_volume *volume, const hl_volume_info *info,
-                       const double percentiles[PERCENTS], const char *kind, const char *next) {
+static void print_text(const char *path, const hl_volume *volume, const char *unit,
+                       const hl_volume_info *info, const double percentiles[PERCENTS], const char *kind,
+                       const char *next) {
   const double(*d)[3] = info->direction;
   uint64_t voxels = (uint64_t)info->dimensions[0] * info->dimensions[1] * info->dimensions[2];
   printf("%s\n", path);
@@ -329,7 +330,6 @@ static void print_text(const char *path, const hl_volume *volume, const hl_volum
   print_segments(volume);
   print_label_maps(NULL, path, volume);
   printf("  spacing     %.9g, %.9g, %.9g\n", info->spacing[0], info->spacing[1], info->spacing[2]);
-  const char *unit = hl_volume_unit(volume);
   if (unit != NULL) printf("  unit        %s\n", unit);
   printf("  origin      %.9g, %.9g, %.9g\n", info->origin[0], info->origin[1], info->origin[2]);
   for (int axis = 0; axis < 3; axis++)
@@ -352,8 +352,9 @@ static void print_text(const char *path, const hl_volume *volume, const hl_volum
   print_histogram(info);
 }
 
-int info_tell_volume(cli_host *host, json_writer *json, const char *path, hl_volume *volume, bool labels,
-                     const char *table) {
+int info_tell_volume(cli_host *host, json_writer *json, const char *path, hl_volume *volume, const char *unit,
+                     bool labels, const char *table) {
+  if (unit == NULL) unit = hl_volume_unit(volume);
   const char *kind = NULL, *next = NULL;
   hl_volume_info info = {.struct_size = sizeof info};
   hl_error error = {0};
@@ -364,10 +365,10 @@ int info_tell_volume(cli_host *host, json_writer *json, const char *path, hl_vol
   if (status == HL_OK) status = hl_volume_next_look(volume, path, &next, &error);
   if (status == HL_OK) status = hl_volume_percentiles(volume, percents, PERCENTS, percentiles, &error);
   if (status != HL_OK) return host_fail(host, PHASE_RUN, status, &error);
-  if (json != NULL) print_json(json, path, volume, &info, percentiles, kind, next);
-  else print_text(path, volume, &info, percentiles, kind, next);
+  if (json != NULL) print_json(json, path, volume, unit, &info, percentiles, kind, next);
+  else print_text(path, volume, unit, &info, percentiles, kind, next);
   if (labels && (table != NULL || strcmp(kind, "labels") == 0))
-    status = info_tell_labels(host->context, json, volume, table, &error);
+    status = info_tell_labels(host->context, json, volume, unit, table, &error);
   if (json != NULL) json_close(json);
   return status == HL_OK ? EXIT_CODE_OK : host_fail(host, PHASE_READ, status, &error);
 }
