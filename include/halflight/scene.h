@@ -363,9 +363,7 @@ HL_API HL_WARN_UNUSED hl_status hl_scene_for_volume(hl_context *context, hl_volu
                                                     hl_scene **scene, hl_error *error);
 
 /* Makes a scene as hl_scene_for_volume() does, but with the look of this name (hl_look_name()), whatever the
- * data are. "mip" stands for the scene of which hl_scene_compose() makes a maximum projection by the option
- * "look": it has the look that suits the volume, and its voxels are not smoothed, because a projection
- * shows the greatest values of the file. file may be null. */
+ * data are. "mip" is the look that suits the volume, with voxels that are not smoothed. file may be null. */
 HL_API HL_WARN_UNUSED hl_status hl_scene_for_volume_look(hl_context *context, hl_volume *volume,
                                                          const char *file, const char *look, hl_scene **scene,
                                                          hl_error *error);
@@ -399,8 +397,7 @@ HL_API double hl_scene_joined_spacing(const hl_scene_description *description, c
  * used, and options->bytes is read once for each channel. channels: numbers, from 0, and names of channels,
  * separated by commas (hl_volume_load_options.channel_name); a name may hold commas of its own, and the
  * longest name that fits counts. "all" or null stands for all channels. At most HL_CHANNELS_MOST. smooth:
- * each channel is smoothed by hl_volume_smooth() with this standard deviation in voxels, 0 for none; null:
- * each channel is smoothed as hl_scene_for_volume_look() smooths a volume. */
+ * the sigma of hl_volume_smooth() for each channel; null: as hl_scene_for_volume_look() smooths it. */
 enum { HL_CHANNELS_MOST = 16 };
 HL_API HL_WARN_UNUSED hl_status hl_scene_for_channels(hl_context *context, const char *path,
                                                       const hl_volume_load_options *options,
