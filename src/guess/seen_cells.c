@@ -122,7 +122,8 @@ typedef struct voxel_row {
 /* The optical depth per length of a voxel as it is seen: as the transfer function and the mask have it. */
 static float seen_depth(const hl_seen *seen, const voxel_row *row, ptrdiff_t i) {
   const float depth = depth_at(seen, row->voxels, i);
-  return seen->mask == NULL || !(depth > 0) ? depth : (float)(depth * mask_factor(seen, i, row->j, row->k));
+  return seen->mask == NULL || !(depth > 0) ? depth
+                                            : (float)((double)depth * mask_factor(seen, i, row->j, row->k));
 }
 
 /* ---- cells and columns ---- */
