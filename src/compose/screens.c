@@ -7,6 +7,7 @@
 #include "core/memory.h"
 #include "elementary/elementary.h"
 #include "scene/function/transfer_function.h"
+#include "scene/label/label_table.h"
 #include "volume/volume.h"
 
 enum { EXAMINED = 400000 };
@@ -77,9 +78,8 @@ static bool is_in_mask(const hl_screen *screen, vec3 place) {
     if (voxel[a] < 0 || voxel[a] >= (long)mask->volume->dimension[a]) return false;
   const double value = hl_volume_value_within(mask->volume, (size_t)voxel[0], (size_t)voxel[1],
                                               (size_t)voxel[2]);
-  for (size_t l = 0; l < mask->label_count; l++)
-    if ((double)mask->labels[l].value == value) return mask->labels[l].visible && mask->labels[l].opacity > 0;
-  return false;
+  const hl_label *label = hl_label_of_value(mask->labels, mask->label_count, value);
+  return label != NULL && label->visible && label->opacity > 0;
 }
 
 bool hl_screen_leaves(const hl_screen *screen, vec3 place) {
@@ -88,15 +88,9 @@ bool hl_screen_leaves(const hl_screen *screen, vec3 place) {
 }
 
 size_t hl_screen_label(const hl_scene_volume *map, double value) {
-  size_t low = 0, high = map->label_count;
-  while (low < high) {
-    const size_t middle = low + (high - low) / 2;
-    if ((double)map->labels[middle].value < value) low = middle + 1;
-    else high = middle;
-  }
-  const bool found = low < map->label_count && (double)map->labels[low].value == value &&
-                     map->labels[low].visible && map->labels[low].opacity > 0;
-  return found ? low : map->label_count;
+  const hl_label *label = hl_label_of_value(map->labels, map->label_count, value);
+  const bool found = label != NULL && label->visible && label->opacity > 0;
+  return found ? (size_t)(label - map->labels) : map->label_count;
 }
 
 bool hl_screen_label_faces(const hl_screen *screen, vec3 place, vec3 towards) {

@@ -10,6 +10,7 @@
 #include "guess/looks.h"
 #include "guess/sample.h"
 #include "scene/geometry/placement.h"
+#include "scene/label/label_table.h"
 #include "volume/store/pages.h"
 
 /* voxels at the rim do not count if their opacity is below this fraction of the greatest opacity */
@@ -90,14 +91,9 @@ static float depth_at(const hl_seen *seen, const void *row, ptrdiff_t i) {
 
 /* The factor of extinction that a mask gives to one of its values. */
 static double factor_of(const hl_mask *mask, double value) {
-  size_t low = 0, high = mask->label_count;
-  while (low < high) {
-    const size_t middle = low + (high - low) / 2;
-    if ((double)mask->labels[middle].value < value) low = middle + 1;
-    else high = middle;
-  }
-  if (low == mask->label_count || (double)mask->labels[low].value != value) return mask->rest;
-  return mask->labels[low].visible ? mask->labels[low].opacity : 0;
+  const hl_label *label = hl_label_of_value(mask->labels, mask->label_count, value);
+  if (label == NULL) return mask->rest;
+  return label->visible ? label->opacity : 0;
 }
 
 /* The factor by which the volume's mask multiplies the extinction at a voxel, by the map's voxel around its

@@ -19,6 +19,16 @@ typedef struct found_labels {
   size_t count;
 } found_labels;
 
+const hl_label *hl_label_of_value(const hl_label *labels, size_t count, double value) {
+  size_t low = 0, high = count;
+  while (low < high) {
+    const size_t middle = low + (high - low) / 2;
+    if ((double)labels[middle].value < value) low = middle + 1;
+    else high = middle;
+  }
+  return low < count && (double)labels[low].value == value ? &labels[low] : NULL;
+}
+
 /* Adds a label to a list if the list does not have it yet. Returns false if there are too many labels. */
 static bool add_value(found_labels *found, int64_t value) {
   size_t low = 0, high = found->count;

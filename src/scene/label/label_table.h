@@ -16,6 +16,10 @@ typedef struct hl_label_list {
   char *names; /* the block of memory in which the labels' names lie */
 } hl_label_list;
 
+/* Finds a label by its value. labels: [count], rising by value. Returns null if the list has no such label.
+ */
+const hl_label *hl_label_of_value(const hl_label *labels, size_t count, double value);
+
 /* Reads a table of labels from a file. Lines are "number name R G B [A]", "number R G B A visible mesh
  * \"name\"", or one of these with commas. Colours are sRGB, with numbers from 0 to 255. If no number of a
  * colour is above 1 and one has a decimal point, the numbers go from 0 to 1. Lines that begin with #, and a
