@@ -160,8 +160,8 @@ export function cutSwitch(viewer) {
   const holders = `${chosen} ${chosen === 1 ? "plane" : "planes"}`;
   const why = [...(chosen > 0 ? [`${holders} ${chosen === 1 ? "takes" : "take"} away what holds the object`] : []), ...(hidden ? ["small bodies beside the object are hidden"] : [])].join(", and ");
   const told = make("p", { class: "facts", hidden: !leftOut }, `${why}: chosen by the program, as nobody said what to cut.`);
-  const shows = [...(chosen > 0 ? [`show what holds it: ${holders} ${chosen === 1 ? "cuts" : "cut"} it away`] : []), ...(hidden ? [`${chosen > 0 ? "" : "show "}hidden small bodies`] : [])].join("; ");
-  const note = make("button", { type: "button", class: "note", hidden: !leftOut, onclick: () => set(!isCut(store.scene)) });
+  const shows = chosen > 0 ? `show what holds it: ${holders} ${chosen === 1 ? "cuts" : "cut"} it away` : "show hidden small bodies"; // the title tells all
+  const note = make("button", { type: "button", class: "note", title: why, hidden: !leftOut, onclick: () => set(!isCut(store.scene)) });
   find("statistics").before(note);
   viewer.toggleCuts = () => set(!isCut(store.scene));
   const element = make("div", { class: "chooser" }, all.element, told);
