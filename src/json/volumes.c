@@ -107,28 +107,29 @@ static hl_status read_clip(hl_json_reader *reader, const json_t *value, hl_scene
   return status;
 }
 
-static hl_status read_scattering(hl_json_reader *reader, const json_t *value, hl_scene_volume *volume) {
-  static const char *const keys[] = {"anisotropy", "albedo", "multiple", NULL};
-  static const char *const settings[] = {"scattering/anisotropy", "scattering/albedo", "scattering/multiple"};
+/* Reads an object of settings of a volume. key: the object's key. keys: the keys in the object, null at the
+ * end. settings: the paths of the same settings in the table of settings, in the same order. */
+static hl_status read_group(hl_json_reader *reader, const json_t *value, const char *key,
+                            const char *const *keys, const char *const *settings, hl_scene_volume *volume) {
   if (value == NULL) return HL_OK;
-  size_t mark = hl_json_enter(reader, "scattering");
+  size_t mark = hl_json_enter(reader, key);
   hl_status status = hl_json_object(reader, value, keys);
-  for (size_t k = 0; status == HL_OK && k < sizeof settings / sizeof *settings; k++)
+  for (size_t k = 0; status == HL_OK && keys[k] != NULL; k++)
     status = hl_json_setting(reader, value, HL_SETTINGS_VOLUME, settings[k], volume);
   if (status == HL_OK) hl_json_leave(reader, mark);
   return status;
 }
 
+static hl_status read_scattering(hl_json_reader *reader, const json_t *value, hl_scene_volume *volume) {
+  static const char *const keys[] = {"anisotropy", "albedo", "multiple", NULL};
+  static const char *const settings[] = {"scattering/anisotropy", "scattering/albedo", "scattering/multiple"};
+  return read_group(reader, value, "scattering", keys, settings, volume);
+}
+
 static hl_status read_scraps(hl_json_reader *reader, const json_t *value, hl_scene_volume *volume) {
   static const char *const keys[] = {"faint", "firm", "least", NULL};
   static const char *const settings[] = {"scraps/faint", "scraps/firm", "scraps/least"};
-  if (value == NULL) return HL_OK;
-  size_t mark = hl_json_enter(reader, "scraps");
-  hl_status status = hl_json_object(reader, value, keys);
-  for (size_t k = 0; status == HL_OK && k < sizeof settings / sizeof *settings; k++)
-    status = hl_json_setting(reader, value, HL_SETTINGS_VOLUME, settings[k], volume);
-  if (status == HL_OK) hl_json_leave(reader, mark);
-  return status;
+  return read_group(reader, value, "scraps", keys, settings, volume);
 }
 
 static bool same_text(const char *a, const char *b) {

@@ -21,7 +21,7 @@
 #define MOST_TAPS       8        /* as SUBLIGHT_TAPS there */
 #define EVERY_BLOCK     0xffff
 #define BLOCKS_OF_TILE  4 /* along an axis */
-#define SPARE_OF_BLOCK  2 /* as BLOCK_SPARE in shadow_sublights/sublights.c */
+#define SPARE_OF_BLOCK  2 /* as BLOCK_SPARE in shadow_sublights/sublight_blocks.c */
 #define MOST_ROW_BLOCKS 60
 
 /* The marks of a light with sub-lights. */
