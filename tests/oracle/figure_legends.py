@@ -153,7 +153,7 @@ def label_legends():
 def titles_of_legends():
     """The ground of a legend with a long title is as wide as its lines, and no word is cut; a title that is broken keeps the strip."""
     nifti("full.nii", np.full((32, 32, 32), 200, np.uint8), 1.0)
-    look = ["full.nii", "--look", "surface", "--ortho", "--whole", "--zoom", "4", "--size", "500x400", "--quiet", "--range", "0,250"]
+    look = ["full.nii", "--look", "surface", "--ortho", "--whole", "--zoom", "4", "--size", "500x400", "--quiet", "--range", "0,250", "--place", "legend=upper-right"]
     title = "X-ray attenuation of the bonsai tree (arbitrary units)"
     widths = []
     for asked in "Flow", title:

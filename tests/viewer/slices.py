@@ -391,10 +391,9 @@ with tempfile.TemporaryDirectory() as folder:
     values = write_volumes()
     with open("tf.json", "w", encoding="utf-8") as steep:
         json.dump({"opacity": [[0, 0], [500, 1]], "color": [[0, 0.8, 0.7, 0.6]], "unit_distance": 0.5}, steep)
-    made = subprocess.run([PROGRAM, "render", "head.nrrd", "--tf", "tf.json", "--mask", "organs.nrrd", "--show", "3=red", "--sheet-spacing", "1", "--smooth", "0.8", "--shadows", "hard", "--print-scene"],
+    made = subprocess.run([PROGRAM, "render", "head.nrrd", "--tf", "tf.json", "--mask", "organs.nrrd", "--show", "3=red,rest:1", "--sheet-spacing", "1", "--smooth", "0.8", "--shadows", "hard", "--print-scene"],
                           capture_output=True, text=True, check=True)
     scene = json.loads(made.stdout)
-    scene["volumes"][0]["mask"]["rest"] = 1
     scene["volumes"][0]["mask"]["labels"][0]["name"] = "bone"
     with open("head.json", "w", encoding="utf-8") as file:
         json.dump(scene, file)
