@@ -156,7 +156,7 @@ export function cutSwitch(viewer) {
     if (!on || away()) store.change("all cuts", (scene) => withCuts(scene, on ? away() : { volumes: [] }));
   }
   const all = toggle({ label: "All cuts", get: () => isCut(store.scene), set });
-  const hidden = start.scene.volumes.some((volume) => volume.scraps), leftOut = chosen > 0 || hidden;
+  const hidden = start.scene.volumes?.some((volume) => volume.scraps) ?? false, leftOut = chosen > 0 || hidden;
   const holders = `${chosen} ${chosen === 1 ? "plane" : "planes"}`;
   const why = [...(chosen > 0 ? [`${holders} ${chosen === 1 ? "takes" : "take"} away what holds the object`] : []), ...(hidden ? ["small bodies beside the object are hidden"] : [])].join(", and ");
   const told = make("p", { class: "facts", hidden: !leftOut }, `${why}: chosen by the program, as nobody said what to cut.`);
