@@ -71,15 +71,7 @@ static bool is_in_box(const hl_screen *screen, vec3 place) {
 /* Whether a volume's mask leaves its matter at a place in the volume's index space. */
 static bool is_in_mask(const hl_screen *screen, vec3 place) {
   const hl_mask *mask = &screen->volume->mask;
-  if (mask->volume == NULL || mask->rest > 0) return true;
-  const vec3 at = affine3_apply(screen->to_mask, place);
-  const long voxel[3] = {lround(at.x), lround(at.y), lround(at.z)};
-  for (int a = 0; a < 3; a++)
-    if (voxel[a] < 0 || voxel[a] >= (long)mask->volume->dimension[a]) return false;
-  const double value = hl_volume_value_within(mask->volume, (size_t)voxel[0], (size_t)voxel[1],
-                                              (size_t)voxel[2]);
-  const hl_label *label = hl_label_of_value(mask->labels, mask->label_count, value);
-  return label != NULL && label->visible && label->opacity > 0;
+  return mask->volume == NULL || hl_mask_factor(mask, affine3_apply(screen->to_mask, place)) > 0;
 }
 
 bool hl_screen_leaves(const hl_screen *screen, vec3 place) {

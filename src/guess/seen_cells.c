@@ -89,23 +89,9 @@ static float depth_at(const hl_seen *seen, const void *row, ptrdiff_t i) {
   return depth_of_float(seen, ((const float *)row)[i]);
 }
 
-/* The factor of extinction that a mask gives to one of its values. */
-static double factor_of(const hl_mask *mask, double value) {
-  const hl_label *label = hl_label_of_value(mask->labels, mask->label_count, value);
-  if (label == NULL) return mask->rest;
-  return label->visible ? label->opacity : 0;
-}
-
-/* The factor by which the volume's mask multiplies the extinction at a voxel, by the map's voxel around its
- * centre. The renderer's factor differs beside the borders of labels, where it is smooth and 1/2. */
 static double mask_factor(const hl_seen *seen, ptrdiff_t i, ptrdiff_t j, ptrdiff_t k) {
-  const hl_volume *map = seen->mask->volume;
-  const vec3 at = affine3_apply(seen->index_to_mask, (vec3){(double)i, (double)j, (double)k});
-  const double near[3] = {floor(at.x + 0.5), floor(at.y + 0.5), floor(at.z + 0.5)};
-  for (int a = 0; a < 3; a++)
-    if (!(near[a] >= 0 && near[a] < (double)map->dimension[a])) return seen->mask->rest;
-  return factor_of(seen->mask,
-                   hl_volume_value_within(map, (size_t)near[0], (size_t)near[1], (size_t)near[2]));
+  return hl_mask_factor(seen->mask,
+                        affine3_apply(seen->index_to_mask, (vec3){(double)i, (double)j, (double)k}));
 }
 
 /* A row of voxels. */

@@ -39,6 +39,26 @@ static void write_segmentation(int layers) {
   fclose(file);
 }
 
+/* The factor of a mask is the one of its nearest voxel's label; labels that the mask does not name, and
+ * places outside of its map, have the rest's. */
+static void masks_have_factors(void **state) {
+  (void)state;
+  hl_context *context = make_context();
+  write_segmentation(1);
+  hl_volume *map = NULL;
+  assert_int_equal(hl_volume_load(context, path, &map, NULL), HL_OK);
+  hl_label labels[2] = {{.value = 1, .visible = false, .opacity = 1},
+                        {.value = 4, .visible = true, .opacity = 0.5}};
+  const hl_mask mask = {.volume = map, .labels = labels, .label_count = 2, .rest = 0.25};
+  assert_true(hl_mask_factor(&mask, (vec3){1.4, -0.4, 0.4}) == 0);   /* 1, which is hidden */
+  assert_true(hl_mask_factor(&mask, (vec3){0.6, 1.2, -0.2}) == 0.5); /* 4 */
+  assert_true(hl_mask_factor(&mask, (vec3){0.4, 0.4, 0}) == 0.25);   /* 0, which no label has */
+  assert_true(hl_mask_factor(&mask, (vec3){1, 0, -0.6}) == 0.25);    /* below the map */
+  assert_true(hl_mask_factor(&mask, (vec3){2.6, 1, 1}) == 0.25);     /* beside the map */
+  hl_volume_release(map);
+  hl_context_destroy(context);
+}
+
 static void segmentations_name_their_labels(void **state) {
   (void)state;
   hl_context *context = make_context();
@@ -282,6 +302,7 @@ static void labels_without_voxels_are_told(void **state) {
 
 int main(void) {
   const struct CMUnitTest tests[] = {
+      cmocka_unit_test(masks_have_factors),
       cmocka_unit_test(segmentations_name_their_labels),
       cmocka_unit_test(tables_of_other_programs),
       cmocka_unit_test(tables_keep_great_numbers_and_blanks),

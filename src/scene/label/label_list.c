@@ -29,6 +29,17 @@ const hl_label *hl_label_of_value(const hl_label *labels, size_t count, double v
   return low < count && (double)labels[low].value == value ? &labels[low] : NULL;
 }
 
+double hl_mask_factor(const hl_mask *mask, vec3 place) {
+  const double near[3] = {floor(place.x + 0.5), floor(place.y + 0.5), floor(place.z + 0.5)};
+  for (int a = 0; a < 3; a++)
+    if (!(near[a] >= 0 && near[a] < (double)mask->volume->dimension[a])) return mask->rest;
+  const double value = hl_volume_value_within(mask->volume, (size_t)near[0], (size_t)near[1],
+                                              (size_t)near[2]);
+  const hl_label *label = hl_label_of_value(mask->labels, mask->label_count, value);
+  if (label == NULL) return mask->rest;
+  return label->visible ? label->opacity : 0;
+}
+
 /* Adds a label to a list if the list does not have it yet. Returns false if there are too many labels. */
 static bool add_value(found_labels *found, int64_t value) {
   size_t low = 0, high = found->count;

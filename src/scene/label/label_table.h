@@ -6,6 +6,7 @@
 #include <halflight/scene.h>
 
 #include "core/error.h"
+#include "core/vector.h"
 
 enum { HL_MOST_LABELS = 16384 };
 
@@ -19,6 +20,12 @@ typedef struct hl_label_list {
 /* Finds a label by its value. labels: [count], rising by value. Returns null if the list has no such label.
  */
 const hl_label *hl_label_of_value(const hl_label *labels, size_t count, double value);
+
+/* Finds the factor by which a mask multiplies extinction at a place, by the map's voxel that is nearest to
+ * the place. The renderer's factor differs from this one beside the borders of labels, where it is smooth and
+ * 1/2. mask: its volume is not null, and its voxels are at hand. place: in the index space of the mask's
+ * volume. */
+double hl_mask_factor(const hl_mask *mask, vec3 place);
 
 /* Reads a table of labels from a file. Lines are "number name R G B [A]", "number R G B A visible mesh
  * \"name\"", or one of these with commas. Colours are sRGB, with numbers from 0 to 255. If no number of a
