@@ -128,6 +128,31 @@
 #define THIN_MATTER  0.25f
 #define SOLID_MATTER 0.75f
 
+/* ---- sub-lights ---- */
+
+/* A sub-light is one of the points that stand for a light. SUBLIGHT_ONE is full light in a pixel of a
+ * sub-light's buffer, which is a number of 16 bits. */
+#define SUBLIGHT_ONE 65535
+
+/* The greatest number of taps by which sixteen pixels in a row of a sub-light read a row of a slab's
+ * copies. */
+#define SUBLIGHT_TAPS 8
+
+/* The least fraction of light that a slab absorbs for which the kept light k (shadow/attenuate.h) is found
+ * from the slab's two transmittances. For a smaller fraction, rounding hides which part of the light surfaces
+ * keep. */
+#define LEAST_ABSORBED 1e-5f
+
+/* The number of pixels around a block of the slab that count as part of the block. A value at a half pixel
+ * depends on two pixels on either side, so the block's values affect a sub-light's pixels up to this
+ * distance. */
+#define BLOCK_SPARE 2
+
+/* The distance, in pixels, of the four look-ups that stand for the pixels that a sub-light reads between
+ * pixels: the square root of 1/6. Derived: the weights of bilinear look-ups, averaged over all positions
+ * between pixels, form a tent function with the variance 1/6. */
+#define SUBLIGHT_SPREAD 0.408248f
+
 /* ---- the light of a sky ---- */
 
 /* The greatest magnitude of a number that a cell of the sky's field stores. Such a number has 16 bits. */

@@ -32,10 +32,6 @@ typedef struct seen_light {
                             * box is near, or look-ups read only the nearest pixel */
 } seen_light;
 
-/* The square root of 1/6. Derived: the weights of bilinear look-ups, averaged over all positions between
- * pixels, form a tent function with the variance 1/6. */
-static const float SUBLIGHT_SPREAD = 0.408248f;
-
 LANES_INLINE lanes3 cross3(lanes3 a, lanes3 b) {
   return (lanes3){a.y * b.z - a.z * b.y, a.z * b.x - a.x * b.z, a.x * b.y - a.y * b.x};
 }

@@ -145,7 +145,6 @@ typedef struct shadow_lookup {
 /* The transmittance in the buffer of a sub-light (one of the points that stand for a light), in units of 1 /
  * SUBLIGHT_ONE. A number of 16 bits takes half of the memory traffic of a float. */
 typedef uint16_t sublight_pixel;
-enum { SUBLIGHT_ONE = 65535 };
 
 /* The data by which samples look up the buffer of one sub-light. */
 typedef struct sublight_lookup {

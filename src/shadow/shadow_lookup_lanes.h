@@ -3,6 +3,7 @@
 #ifndef HL_SHADOW_SHADOW_LOOKUP_LANES_H
 #define HL_SHADOW_SHADOW_LOOKUP_LANES_H
 
+#include "core/sheet_constants.h"
 #include "shadow/shadow_buffer.h"
 #include "simd/gathers.h"
 

@@ -1,12 +1,8 @@
 /* shadow_sublights/sublight_blocks.c - finds the blocks of a slab that the light of some sub-light still
  * reaches. In: the sub-lights' maps for a run of slabs, and the blocks of their buffers that have light. Out:
  * the lit blocks of the slab's tiles. */
+#include "core/sheet_constants.h"
 #include "shadow_sublights/sublights.h"
-
-/* The number of pixels around a block of the slab that count as part of the block. A value at a half pixel
- * depends on two pixels on either side, so the block's values affect a sub-light's pixels up to this
- * distance. */
-enum { BLOCK_SPARE = 2 };
 
 /* Divides a line of pixels into `count` segments of `length` pixels. Returns the number of the segment that
  * holds a position; -1 before the first segment, `count` after the last one. */

@@ -71,8 +71,6 @@ LANES_INLINE lanes_int nearest_halves(float scale, float start, float size) {
   return lanes_floor(lanes_clamp(lanes_load(LANE_INDICES) * scale + start, -2.0f, size + 1.0f) * 2.0f + 0.5f);
 }
 
-enum { SUBLIGHT_TAPS = 8 };
-
 /* The taps by which sixteen pixels in a row of a sub-light read a row of the slab's copies. If the slab's
  * pixels had the same size as the sub-light's pixels, pixel i would read the half pixel that is 2 i after the
  * half pixel of pixel 0. The slab's pixels are a little larger or smaller. So the half pixel that pixel i
@@ -210,10 +208,6 @@ LANES_INLINE lanes composite_sublight(const sublight_job *job, int channel, ptrd
   return light;
 }
 
-/* The least absorbed fraction of light for which the number k of attenuate.h is found from the light that a
- * slab absorbs. Below this fraction, rounding hides which part of the light surfaces keep. */
-static const float LEAST_TAKEN = 1e-5f;
-
 /* Composites the slab into the light at the outside of surfaces. light: the sub-light's transmittance before
  * the slab. Derived: with T, Y, t and k = k' of attenuate.h, Y becomes T t + k (Y - T t). If full light comes
  * to the slab, Y becomes t + k (1 - t). This number is stored as slab_outside, so k follows from it. */
@@ -221,9 +215,9 @@ LANES_INLINE void composite_outside(const sublight_job *job, int channel, ptrdif
                                     lanes slab_transmittance, lanes slab_outside) {
   sublight_pixel *at = job->outside[channel] + offset;
   lanes taken = 1.0f - slab_transmittance, left = light * slab_transmittance;
-  lanes kept = lanes_clamp((slab_outside - slab_transmittance) / lanes_max(taken, lanes_set(LEAST_TAKEN)), 0,
-                           1);
-  kept = lanes_select(taken > LEAST_TAKEN, kept, lanes_set(1.0f));
+  lanes kept = lanes_clamp((slab_outside - slab_transmittance) / lanes_max(taken, lanes_set(LEAST_ABSORBED)),
+                           0, 1);
+  kept = lanes_select(taken > LEAST_ABSORBED, kept, lanes_set(1.0f));
   lanes outside = lanes_fma(lanes_max(lanes_load_short(at) - left, lanes_set(0)), kept, left);
   lanes_store_short_int(at, lanes_truncate(outside + job->carry));
 }

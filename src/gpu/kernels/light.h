@@ -148,9 +148,6 @@ DEVICE float faded(GLOBAL const plan_light *light, const shadow_taps *taps, int 
 
 #if SUBLIGHTS
 
-/* The square root of 1/6, as SUBLIGHT_SPREAD in render/before_slab_lanes.h. */
-#define SPREAD_OF_SUBLIGHTS 0.408248f
-
 /* The mean over a light's sub-lights. kind: 0 for the transmittance, 1 for the light at the outside of
  * surfaces. */
 DEVICE void mean_of_sublights(GLOBAL const plan_light *light, const light_buffers *buffers, vector position,
@@ -166,10 +163,11 @@ DEVICE void mean_of_sublights(GLOBAL const plan_light *light, const light_buffer
                                 taps.row * light->sublight_stride + taps.column;
       GLOBAL const word16 *below = at + light->sublight_stride;
       const float between = between_taps(&taps, (float)at[0], (float)at[1], (float)below[0], (float)below[1]);
-      mean[c] = mean[c] + (taps.inside ? between : 65535.0f);
+      mean[c] = mean[c] + (taps.inside ? between : (float)SUBLIGHT_ONE);
     }
   }
-  for (int c = 0; c < CHANNELS; c++) mean[c] = divided(mean[c], 65535.0f * (float)light->sublights);
+  for (int c = 0; c < CHANNELS; c++)
+    mean[c] = divided(mean[c], (float)SUBLIGHT_ONE * (float)light->sublights);
 }
 
 #endif
@@ -300,8 +298,8 @@ DEVICE near_pixels pixels_around(GLOBAL const plan_light *light, const light_buf
   if (light->sublights > 0) {
     map = buffers->sublights[0].map;
     for (int i = 0; i < NEAR_PIXELS; i++) {
-      close.u[i] = i % 2 ? SPREAD_OF_SUBLIGHTS : -SPREAD_OF_SUBLIGHTS;
-      close.v[i] = i / 2 ? SPREAD_OF_SUBLIGHTS : -SPREAD_OF_SUBLIGHTS;
+      close.u[i] = i % 2 ? SUBLIGHT_SPREAD : -SUBLIGHT_SPREAD;
+      close.v[i] = i / 2 ? SUBLIGHT_SPREAD : -SUBLIGHT_SPREAD;
     }
   }
 #else

@@ -15,13 +15,9 @@
 
 #if SUBLIGHTS
 
-#define SUBLIGHT_WHOLE  65535.0f /* as SUBLIGHT_ONE */
-#define MOVED_COPIES    3        /* the copies of a slab besides the slab itself */
-#define LEAST_ABSORBED  1e-5f    /* as LEAST_TAKEN in shadow_sublights/sublight_lanes.h */
-#define MOST_TAPS       8        /* as SUBLIGHT_TAPS there */
+#define MOVED_COPIES    3 /* the copies of a slab besides the slab itself */
 #define EVERY_BLOCK     0xffff
 #define BLOCKS_OF_TILE  4 /* along an axis */
-#define SPARE_OF_BLOCK  2 /* as BLOCK_SPARE in shadow_sublights/sublight_blocks.c */
 #define MOST_ROW_BLOCKS 60
 
 /* The marks of a light with sub-lights. */
@@ -204,7 +200,7 @@ DEVICE slab_pixel pixel_of_scaled(const sublight_tile *tile, int column, int row
               start_y = place->scale[1] * ((float)(tile->y * 16) + 0.5f) + place->shift[1] - 0.5f;
   const int begin = half_apart(place->scale[0], start_x, 0), end = half_apart(place->scale[0], start_x, 15),
             least = begin < end ? begin : end, taps = (begin < end ? end : begin) - least + 1;
-  const int weighs = taps <= MOST_TAPS && least >= -56 && (float)least <= 2.0f * width + 16.0f;
+  const int weighs = taps <= SUBLIGHT_TAPS && least >= -56 && (float)least <= 2.0f * width + 16.0f;
   const int half_x = weighs ? 2 * column + half_apart(place->scale[0], start_x, column)
                             : nearest_half(place->scale[0], start_x, width, column),
             half_y = nearest_half(place->scale[1], start_y, height, row);
@@ -331,7 +327,7 @@ DEVICE void find_dark(GLOBAL const device_sweep *plan, GLOBAL const plan_pass *p
     int lit = 0;
     for (int i = 0; i < 16 * CHANNELS && !lit; i++)
       lit = (float)at[i / 16 * (wide)light->sublight_plane + i % 16 / 4 * light->sublight_stride + i % 4] >=
-            DARK * SUBLIGHT_WHOLE;
+            DARK * (float)SUBLIGHT_ONE;
     if (lit) continue;
     dark |= 1 << block;
     darken_block_of(light, first);
@@ -355,7 +351,7 @@ DEVICE blocks_below blocks_of_tile(GLOBAL const plan_sublight_maps *maps, int ax
   const int end = tiles * BLOCKS_OF_TILE;
   blocks_below under;
   for (int i = 0; i < BLOCKS_OF_TILE; i++) {
-    const float from = (float)(tile * 16 + i * 4 - SPARE_OF_BLOCK), to = from + (4 + 2 * SPARE_OF_BLOCK);
+    const float from = (float)(tile * 16 + i * 4 - BLOCK_SPARE), to = from + (4 + 2 * BLOCK_SPARE);
     const int first = segment_at(lesser(maps->near_scale[axis] * (from - maps->near_shift[axis]),
                                         maps->far_scale[axis] * (from - maps->far_shift[axis])),
                                  end),
