@@ -67,6 +67,26 @@ typedef struct plan_cap {
   float middle[3], spread[6];
 } plan_cap;
 
+/* One level of the image that a light projects: the members of texture_level (light/light_texture.h). */
+typedef struct plan_texture_level {
+  unsigned begin; /* the number of the level's first float among the floats of all images */
+  int width, height;
+  float scale[2], shift[2];
+} plan_texture_level;
+
+#define PLAN_TEXTURE_LEVELS 24
+
+/* The image that a light projects: the members of light_texture. The width of `image` is 0 if the light
+ * projects no image; its scale and shift are not used. */
+typedef struct plan_texture {
+  plan_texture_level image;
+  float map[3][4], sharpness[2], beyond[4];
+  int parallel;
+  float first, edge[2];
+  int level_count;
+  plan_texture_level level[PLAN_TEXTURE_LEVELS];
+} plan_texture;
+
 /* A light, and the shadow buffer of a light that casts shadows. */
 typedef struct plan_light {
   int parallel, shadowed, inverse_square, nearest, cubic;
@@ -320,6 +340,7 @@ typedef struct plan_variant {
   int paper;     /* some lights are convolved by the paper's method */
   int phases;    /* the volume has a table of its phase function */
   int sublights; /* some lights have sub-lights */
+  int textures;  /* some lights project images */
   int sky;       /* whether the sky's light is added in this sweep */
   int maximum;   /* whether the picture is a maximum projection */
   int back_to_front;

@@ -114,6 +114,19 @@ typedef struct gpu_phases {
   const float *caps;              /* [PLAN_PHASE_CAPS][PLAN_PHASE_COLUMNS][2]; null if they are not read */
 } gpu_phases;
 
+/* The pixels of an image, or of a blurred level of an image, that a light projects; borrowed. */
+typedef struct gpu_pixels {
+  const float *pixels; /* [floats] */
+  size_t floats;
+} gpu_pixels;
+
+/* The images that lights project; borrowed. */
+typedef struct gpu_textures {
+  const plan_texture *list; /* [lights]; null if no light projects an image */
+  const gpu_pixels *parts;  /* [part_count]; the parts follow each other on the device */
+  size_t part_count;
+} gpu_textures;
+
 /* A sweep as plain data; borrowed until hl_gpu_read(). */
 typedef struct gpu_sweep gpu_sweep;
 struct gpu_sweep {
@@ -127,6 +140,7 @@ struct gpu_sweep {
   gpu_sky sky;
   gpu_sublights sublights;
   gpu_phases phases;
+  gpu_textures textures;
   const float *shown_values; /* [PLAN_TABLE_ROWS][4]; the table of shown values of a maximum projection; null
                               * for other pictures */
   size_t plane_floats;       /* number of floats of the planes of all lights together */

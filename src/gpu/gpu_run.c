@@ -110,6 +110,23 @@ static bool upload_phases(hl_gpu *gpu, const gpu_sweep *sweep) {
   return done;
 }
 
+/* Brings the images that lights project to the device: their descriptions, then their pixels. */
+static bool upload_textures(hl_gpu *gpu, const gpu_sweep *sweep) {
+  const gpu_textures *textures = &sweep->textures;
+  const size_t list = textures->list == NULL ? 0 : (size_t)sweep->plan->light_count * sizeof *textures->list;
+  size_t bytes = list;
+  for (size_t i = 0; i < textures->part_count; i++) bytes += textures->parts[i].floats * sizeof(float);
+  bool done = hl_gpu_reserve(gpu, BUFFER_TEXTURES, bytes);
+  if (done && list > 0) done = hl_gpu_upload(gpu, BUFFER_TEXTURES, 0, textures->list, list);
+  size_t at = list;
+  for (size_t i = 0; i < textures->part_count && done; i++) {
+    const gpu_pixels *part = &textures->parts[i];
+    done = hl_gpu_upload(gpu, BUFFER_TEXTURES, at, part->pixels, part->floats * sizeof(float));
+    at += part->floats * sizeof(float);
+  }
+  return done;
+}
+
 /* Brings the cells of the sky's field to the device, unless the device has them already. */
 static bool prepare_sky(hl_gpu *gpu, const gpu_sky *sky) {
   if (sky->cells == NULL || sky->version == gpu->sky_version) return hl_gpu_reserve(gpu, BUFFER_SKY, 0);
@@ -137,7 +154,7 @@ static bool make_room(hl_gpu *gpu, const gpu_sweep *sweep) {
               hl_gpu_reserve(gpu, BUFFER_MASKS, 2 * tiles * 256 * sizeof(uint32_t)) &&
               hl_gpu_reserve(gpu, BUFFER_CUTS, sweep->cut_count * sizeof *sweep->cuts) &&
               make_soft_room(gpu, sweep) && make_sublight_room(gpu, sweep) && upload_phases(gpu, sweep) &&
-              prepare_sky(gpu, &sweep->sky) &&
+              upload_textures(gpu, sweep) && prepare_sky(gpu, &sweep->sky) &&
               (sweep->passes == NULL || hl_gpu_upload_passes(gpu, sweep->passes));
   if (done && sweep->shown_from != NULL)
     done = hl_gpu_upload(gpu, BUFFER_SHOWN_FROM, 0, sweep->shown_from, tiles * 16 * sizeof(int32_t));
@@ -203,6 +220,7 @@ static bool launch_kernel(hl_gpu *gpu, const gpu_program *program, int kernel, s
                                     hl_gpu_memory(gpu, BUFFER_OF_SUBLIGHTS),
                                     hl_gpu_memory(gpu, BUFFER_SUBLIGHT_MARKS),
                                     hl_gpu_memory(gpu, BUFFER_PHASES),
+                                    hl_gpu_memory(gpu, BUFFER_TEXTURES),
                                     hl_gpu_number(run.first),
                                     hl_gpu_number(run.end),
                                     hl_gpu_number(run.number)};

@@ -33,7 +33,8 @@ frame_light hl_frame_light(const framed_scene *framed, size_t index) {
                        .sun_part = framed->sun_parts[index],
                        .is_wide = hl_light_shape(scene).is_wide,
                        .is_inverse_square = scene->falloff == HL_FALLOFF_INVERSE_SQUARE,
-                       .has_image = scene->texture.pixels != NULL || scene->emission.pixels != NULL,
+                       .projects_image = scene->texture.pixels != NULL,
+                       .shows_image = scene->emission.pixels != NULL,
                        .has_colored_image = hl_light_emission_colored(scene),
                        .intensity = scene->intensity};
   memcpy(light.color, scene->color, sizeof light.color);

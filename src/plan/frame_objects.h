@@ -48,7 +48,8 @@ typedef struct frame_light {
   /* whether the light that a sample receives is the intensity divided by the square of the sample's
    * distance */
   bool is_inverse_square;
-  bool has_image; /* whether the light projects a picture, or shows a picture on its surface */
+  bool projects_image, shows_image; /* whether the light projects a picture, and whether it shows one on its
+                                     * surface */
   /* whether the light shows a picture of several colours on its surface, so that its colours come from
    * different places */
   bool has_colored_image;

@@ -37,7 +37,7 @@ static json_t *volume_of(const frame_plan *plan, int index) {
 
 static json_t *whole_light_of(const frame_light *light) {
   return json_pack("{s: i, s: b, s: b, s: b}", "light", light->index, "sun", light->sun_part > 0, "wide",
-                   light->is_wide, "image", light->has_image);
+                   light->is_wide, "image", light->projects_image || light->shows_image);
 }
 
 /* Makes the JSON text of a mesh. placed: the same mesh among the frame's surfaces. */

@@ -350,6 +350,7 @@ static plan_variant variant_of(const sweep_task *task, const device_sweep *plan)
                         .paper = any_light(task, hl_is_convolved),
                         .phases = shade->phase_once != NULL,
                         .sublights = any_light(task, hl_has_sublights),
+                        .textures = hl_project_images(task->plan),
                         .sky = task->constants->shade.sky != NULL,
                         .maximum = shade->shown != NULL,
                         .colored = shade->colors.voxels != NULL,
@@ -424,6 +425,8 @@ hl_status hl_plan_sweep(const sweep_means *means, const frame_plan *frame_plan, 
   if (status == HL_OK && planned->sweep.variant.sublights)
     status = hl_device_sublights_begin(context, of, plan, planned->rays, &planned->sublights,
                                        &planned->passes, &planned->sweep, error);
+  if (status == HL_OK && planned->sweep.variant.textures)
+    status = hl_device_textures_begin(context, frame_plan, of, &planned->textures, &planned->sweep, error);
   return status == HL_OK ? plan_cuts(context, task, planned, error) : status;
 }
 
@@ -434,6 +437,7 @@ void hl_plan_release(hl_context *context, planned_sweep *planned) {
   hl_device_cascades_release(&planned->cascades);
   hl_known_passes_release(&planned->passes);
   hl_device_sublights_release(context, &planned->sublights);
+  hl_device_textures_release(context, &planned->textures);
   planned->memory = NULL;
   planned->rays = NULL;
   planned->cuts = NULL;

@@ -8,6 +8,7 @@
 #include "render/device_cascade.h"
 #include "render/device_paper.h"
 #include "render/device_sublights.h"
+#include "render/device_textures.h"
 #include "render/device_volume.h"
 #include "render/sweep_constants.h"
 
@@ -22,6 +23,7 @@ typedef struct planned_sweep {
   device_cascades cascades;
   known_passes passes;
   device_sublights sublights;
+  device_textures textures;
 } planned_sweep;
 
 /* Describes a sweep of a plan by the numbers that a device reads. shown_from: the first visible slab of each

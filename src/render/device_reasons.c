@@ -50,9 +50,9 @@ static bool masks_thick_slabs(const frame_plan *plan) {
   return false;
 }
 
-static bool has_images(const frame_plan *plan) {
+static bool shows_images(const frame_plan *plan) {
   for (int i = 0; i < plan->light_count; i++)
-    if (plan->lights[i].has_image) return true;
+    if (plan->lights[i].shows_image) return true;
   return false;
 }
 
@@ -75,7 +75,7 @@ static const struct {
     {has_second_volume, "a function of two volumes' values"},
     {masks_thick_slabs, "a mask with sheets more than 1.5 voxels apart"},
     {has_many_sublights, "more than 16 x 16 sub-lights"},
-    {has_images, "lights with images"},
+    {shows_images, "lights that show images on their surfaces"},
 };
 
 const char *hl_reason_for_processors(const frame_plan *plan) {

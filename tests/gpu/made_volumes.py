@@ -1,7 +1,8 @@
-"""Files of volumes that the tests of devices make: particles, voxels with colours, labels, a mesh of cells."""
+"""Files that the tests of devices make: particles, voxels with colours, labels, a mesh of cells, and a light's image."""
 import itertools
 import math
 import random
+import struct
 
 
 def write_grains(path):
@@ -26,6 +27,15 @@ def write_colors(path):
     header = ("NRRD0004\ntype: uint8\ndimension: 4\nsizes: 4 %d %d %d\nkinds: RGBA-color space space space\n"
               "encoding: raw\n\n" % size)
     path.write_bytes(header.encode() + voxels)
+
+
+def write_slide(path):
+    """An image of 40 x 30 pixels: stripes and a fine checkerboard, in three colours."""
+    pixels = [value for y, x in itertools.product(range(30), range(40))
+              for value in (0.1 + 0.9 * (x // 5 % 2), 0.2 + y / 30, float((x + y) % 2))]
+    header = f"{{'descr': '<f4', 'fortran_order': False, 'shape': (30, 40, 3), }}"
+    header += " " * (117 - len(header)) + "\n"
+    path.write_bytes(b"\x93NUMPY\x01\x00" + struct.pack("<H", len(header)) + header.encode() + struct.pack(f"<{len(pixels)}f", *pixels))
 
 
 def write_labels(path):

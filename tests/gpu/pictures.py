@@ -60,6 +60,9 @@ LAMP = {"type": "point", "position": [40, 50, -50], "radius": 9}
 TILTED = {"type": "rect", "position": [30, 40, -40], "edge1": [14, 0, 6], "edge2": [0, 12, 16]}
 WITHIN = {"type": "point", "position": [4, 3, -5], "radius": 3}
 FORWARDS, BACKWARDS = ({"scattering": {"anisotropy": g, "albedo": [0.9, 0.7, 0.5]}} for g in (0.7, -0.4))
+SLIDE = {"file": "slide.npy", "screen": {"center": [20, 26, -26], "right": [9, 0, 6], "up": [-2, 7, 5]}}
+WIDE_SLIDE = {"file": "slide.npy", "screen": {"center": [-16, 28, -20], "right": [12, 0, -9.6], "up": [4.5, 9.7, 10]}}
+SHOWN = {"file": "slide.npy"}
 BEHIND = {**SUN, "direction": [0.2, -0.3, -0.9]}
 EVEN_SKY = {"type": "uniform", "color": [0.6, 0.8, 1], "strength": 0.8}
 SKY = {"type": "gradient", "zenith": [0.36, 0.4, 0.5], "horizon": [0.32, 0.33, 0.36], "ground": [0.16, 0.14, 0.12]}
@@ -199,6 +202,11 @@ MADE = {
     "forward scattering under a sky, soft shadows": scene(sky=SKY, shadows="soft", light=SUN, volume={**FORWARDS, "cuts": [BALL]}),
     "backward scattering under a sky, no shadows received": scene(sky=EVEN_SKY, light=TILTED,
                                                                   volume={**BACKWARDS, "receives_shadow": False}),
+    "a projected image, parallel light without shadows": scene(shadows="off", light={"type": "directional", "direction": [0.4, -0.7, 0.5], "texture": WIDE_SLIDE}),
+    "a projected image, a sun's soft shadows, surfaces": scene(shadows="soft", shading="phong", opacity=LAYERS, light={**SUN, "texture": WIDE_SLIDE}),
+    "a projected image, a lamp's hard shadows, colours": scene(shading="phong", light={**LAMP, "texture": SLIDE}, volume={"attenuation_color": [1, 0.5, 0.2]}),
+    "a projected image, sub-lights, cuts, a sky": scene(sky=SKY, shadows="soft", shading="phong", opacity=DENSE, light={**LAMP, "texture": SLIDE},
+                                                         volume={"cuts": [BALL]}, render=SUBLIGHTS),
     "an even sky": scene(sky=EVEN_SKY),
     "a sky, surfaces": scene(sky=SKY, shading="phong", opacity=DENSE),
     "a sky, soft shadows of surfaces, colours": scene(sky=SKY, shadows="soft", shading="phong", opacity=LAYERS, light=SUN,
@@ -241,9 +249,11 @@ LARGE = scene(volume={"file": "large.nrrd"}, render={"sheet_spacing": 4},
 FEW = ("medium", "a field at levels, surfaces", "gradient opacity, cuts, light from behind", "coloured voxels", "labels", "a projection of cuts",
        "the paper's soft shadows of surfaces, colours, near light", "a sky, soft shadows of surfaces, colours",
        "sub-lights of a tilted light, dense", "forward scattering under a sky, soft shadows",
+       "a projected image, a sun's soft shadows, surfaces",
        "soft shadows of surfaces in layers, a mask, cuts, light from behind")
 LEFT = {
     "more than 16 x 16 sub-lights": scene(shadows="soft", light=SUN, render={**SUBLIGHTS, "light_samples": 17}),
+    "lights that show images on their surfaces": scene(shadows="soft", light={**TILTED, "emission": SHOWN}),
     "meshes or isosurfaces": {**scene(), "meshes": [{"spheres": [[0, -12, 0, 3]]}]},
     "a mask with sheets more than 1.5 voxels apart": scene(volume={"mask": ORGANS}, render={"sheet_spacing": 1.6}),
     "splatting in place of gathering": scene(render={"reconstruction": "splat"}),
@@ -307,6 +317,7 @@ def main():
         devices = json.loads(listed.stdout)
         done = run(folder, "make", "cloud", "--size", 32, "-o", "cloud.nrrd", "--quiet")
         assert done.returncode == 0, done.stderr
+        made_volumes.write_slide(folder / "slide.npy")
         made_volumes.write_grains(folder / "grains.csv")
         made_volumes.write_colors(folder / "colors.nrrd")
         made_volumes.write_labels(folder / "labels.nrrd")

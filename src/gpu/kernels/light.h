@@ -43,6 +43,9 @@ typedef struct light_buffers {
   GLOBAL const plan_sublight *sublights; /* [sublights] */
   GLOBAL const word16 *of_sublights;     /* the sub-lights' planes of the sheet before the slab */
 #endif
+#if TEXTURES
+  GLOBAL const plan_texture *textures; /* [lights]; the images that lights project */
+#endif
 } light_buffers;
 
 /* ---- the buffer's pixels around a sample ---- */

@@ -8,6 +8,7 @@
 #include "gpu/kernels/phase.h"
 #include "gpu/kernels/sky.h"
 #include "gpu/kernels/surface.h"
+#include "gpu/kernels/texture.h"
 
 /* ---- where the slab is seen ---- */
 
@@ -234,7 +235,14 @@ DEVICE void add_light(GLOBAL const device_sweep *plan, const volume_data *volume
   float facing = dot3(s->normal, towards), medium = 1.0f - s->surface;
   if (!(s->surface < 1.0f || facing > 0.0f)) return;
   arriving_light arriving;
-  for (int c = 0; c < 3; c++) arriving.on_medium[c] = arriving.on_surface[c] = strength * light->color[c];
+  for (int c = 0; c < 3; c++) arriving.on_medium[c] = strength * light->color[c];
+#if TEXTURES
+  float pattern[3];
+  if (pattern_of_texture(buffers->textures, plan->light_count, (int)(light - plan->lights), s->position,
+                         pattern))
+    for (int c = 0; c < 3; c++) arriving.on_medium[c] = arriving.on_medium[c] * pattern[c];
+#endif
+  for (int c = 0; c < 3; c++) arriving.on_surface[c] = arriving.on_medium[c];
 #if SHADOWED
   if (light->shadowed && matter->receives_shadow &&
       (arriving.on_medium[0] > 0.0f || arriving.on_medium[1] > 0.0f || arriving.on_medium[2] > 0.0f))
@@ -312,6 +320,9 @@ DEVICE vector color_of_slab(GLOBAL const device_sweep *plan, const volume_data *
     own.planes = buffers->planes + (wide)light->planes * 16 +
                  (wide)slot * (wide)(light->plane * PLANES_OF_SHEET);
     own.young = SOFT ? rays[(3 + 2 * i) * plan->sheets].young : 0.0f;
+#if TEXTURES
+    own.textures = buffers->textures;
+#endif
 #if SUBLIGHTS
     own.sublights = buffers->sublights + light->first_sublight;
     own.of_sublights = buffers->of_sublights + (wide)light->sublight_planes * 16 +

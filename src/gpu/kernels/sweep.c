@@ -62,7 +62,8 @@ spread_distances(GLOBAL const byte *from, GLOBAL byte *to, unsigned x, unsigned 
       GLOBAL const plan_brick *APART directory, GLOBAL const byte *APART colors, GLOBAL float *APART soft, \
       GLOBAL int *APART touched, GLOBAL const short *APART sky, GLOBAL const byte *APART mask,             \
       GLOBAL const plan_sublight *APART sublights, GLOBAL const word16 *APART of_sublights,                \
-      GLOBAL int *APART sublight_marks_of_all, GLOBAL const float *APART phases, int first, int end, int run
+      GLOBAL int *APART sublight_marks_of_all, GLOBAL const float *APART phases,                           \
+      GLOBAL const plan_texture *APART textures, int first, int end, int run
 
 DEVICE sweep_data sweep_of(SWEEP_ARGUMENTS) {
   sweep_data sweep;
@@ -78,6 +79,7 @@ DEVICE sweep_data sweep_of(SWEEP_ARGUMENTS) {
   sweep.volume.colors = colors;
   sweep.volume.mask = mask;
   sweep.volume.phases = phases;
+  sweep.textures = textures;
   sweep.pixels = pixels;
   sweep.soft = soft;
   sweep.touched = touched;
@@ -102,7 +104,7 @@ DEVICE sweep_data sweep_of(SWEEP_ARGUMENTS) {
 #define SWEEP_OF_ARGUMENTS                                                                            \
   sweep_of(plan, rays, voxels, distances, cell_bits, tables, pixels, planes, light_state, changed,    \
            shown_from, counts, slots, list, masks, cuts, directory, colors, soft, touched, sky, mask, \
-           sublights, of_sublights, sublight_marks_of_all, phases, first, end, run)
+           sublights, of_sublights, sublight_marks_of_all, phases, textures, first, end, run)
 
 /* Lists the samples that the picture's pixels may see in slabs first to end - 1. In a maximum projection,
  * finds the greatest values in these slabs instead; there the next two kernels have nothing to do. */

@@ -112,6 +112,7 @@ typedef struct sweep_data {
                        * chunk's beginning */
   GLOBAL const plan_sublight *sublights; /* [sub-lights of all lights] */
   GLOBAL const word16 *of_sublights;     /* the planes of all sub-lights */
+  GLOBAL const plan_texture *textures;   /* [lights]; read only if some light projects an image */
   GLOBAL int *touched;                   /* [light tiles]; the last chunk whose slabs absorbed light there */
   GLOBAL const short *sky; /* the cells of the sky's field; read only if the variant has a sky */
   GLOBAL int *changed;     /* [light tiles][256 pixels]; the last sheet at which the pixel's light changed */
@@ -321,6 +322,9 @@ DEVICE void shade_slot(const sweep_data *sweep, unsigned slot, int run_first) {
 #if SUBLIGHTS
   buffers.sublights = sweep->sublights;
   buffers.of_sublights = sweep->of_sublights;
+#endif
+#if TEXTURES
+  buffers.textures = sweep->textures;
 #endif
   vector lit = color_of_slab(plan, volume, sweep->sky, &buffers, rays - plan->sheets,
                              (sheet - 1) % plan->ring, &s);
