@@ -38,7 +38,8 @@ static const uint32_t BESIDE = UINT32_MAX;
 
 /* The levels of mean optical depth, as fractions of the greatest cell's depth, beyond which cells belong to
  * bodies. At the first level even faint holders are seen. At the second level, foam and clothes no longer
- * join a holder to the object. */
+ * join a holder to the object. Each level is searched, because one part of a holder may be free at the first
+ * level, while foam joins another part to the object there. */
 static const double levels[] = {0.02, 0.1};
 
 /* A list of cells of a body: either the two end cells of each of the body's rows of cells, or all of its
@@ -59,7 +60,7 @@ typedef struct side {
 typedef struct search {
   hl_context *context;
   const hl_data_analysis *analysis;
-  const hl_seen *seen;
+  hl_seen *seen;         /* borrowed; cells that planes have cut off are made clear before the next level */
   affine3 cell_to_world; /* maps whole numbers of cells to their centres */
   hl_bodies bodies;
   side sides[DIRECTIONS];
@@ -71,6 +72,7 @@ typedef struct search {
   float faint;    /* mean depth of the cells in the faintest rims */
   side planes[HL_HOLDER_PLANES];
   size_t plane_count;
+  size_t kept; /* the number of planes that were found at earlier levels */
 } search;
 
 /* ---- bodies ---- */
@@ -306,8 +308,8 @@ static hl_status is_holder(search *s, uint32_t body, bool *is_one, hl_error *err
   double left = 1;
   hl_status status = find_ends(s, body, &ends, error);
   if (status == HL_OK && ends.at_border && is_long_and_thin(s, &ends))
-    status = cut_off(s, body, FOR_EACH, &left, error);
-  s->plane_count = 0;
+    status = cut_off(s, body, s->kept + FOR_EACH, &left, error);
+  s->plane_count = s->kept;
   if (status == HL_OK && left <= LEFT) status = holds_dense_matter(s, body, &dense, error);
   *is_one = left <= LEFT && !dense;
   cells_release(s->context, &ends);
@@ -319,7 +321,7 @@ static hl_status is_met(const search *s, uint32_t body, bool *met, hl_error *err
   body_cells ends;
   hl_status status = find_ends(s, body, &ends, error);
   for (size_t n = 0; status == HL_OK && n < ends.count && !*met; n++)
-    for (size_t p = 0; p < s->plane_count && !*met; p++) {
+    for (size_t p = s->kept; p < s->plane_count && !*met; p++) {
       const side *plane = &s->planes[p];
       *met = vec3_dot(ends.point[n], plane->direction) > plane->hull + (RIM - 0.5) * plane->cell_width;
     }
@@ -378,7 +380,7 @@ static hl_status find_holders(search *s, unsigned char *other, bool *any, hl_err
   return status;
 }
 
-/* Finds the planes at one level. In doubt, there are none. */
+/* Finds further planes at one level. In doubt, there are none. */
 static hl_status find_planes(search *s, double level, hl_error *error) {
   bool is_one = false, any = false, doubt = false;
   hl_status status = find_object(s, level, &is_one, error);
@@ -390,7 +392,7 @@ static hl_status find_planes(search *s, double level, hl_error *error) {
   if (status == HL_OK && any) status = cut_holders_off(s, other, error);
   for (uint32_t b = 1; status == HL_OK && any && b <= s->bodies.count; b++)
     if (other[b] && b != s->bodies.largest) status = is_met(s, b, &doubt, error);
-  if (doubt) s->plane_count = 0;
+  if (doubt) s->plane_count = s->kept;
   cells_release(s->context, &s->object);
   hl_release(s->context, other);
   return status;
@@ -406,6 +408,21 @@ static void set_out(search *s, affine3 index_to_world) {
   s->cell_to_world.offset = affine3_apply(index_to_world, (vec3){middle, middle, middle});
   for (int a = 0; a < 3; a++)
     s->grid_length += s->seen->size[a] * vec3_length(mat3_column(s->cell_to_world.linear, a));
+}
+
+/* Makes the cells clear whose centres the planes of the last level cut off, and keeps these planes. */
+static void keep_planes(search *s) {
+  const int *n = s->seen->size;
+  float *mean = s->seen->mean;
+  for (int k = 0; k < n[2] && s->kept < s->plane_count; k++)
+    for (int j = 0; j < n[1]; j++)
+      for (int i = 0; i < n[0]; i++, mean++)
+        for (size_t p = s->kept; p<s->plane_count && * mean> 0; p++) {
+          const side *plane = &s->planes[p];
+          if (vec3_dot(center_of(s, i, j, k), plane->direction) > plane->hull + RIM * plane->cell_width)
+            *mean = 0;
+        }
+  s->kept = s->plane_count;
 }
 
 static void make_cuts(const search *s, hl_cut planes[HL_HOLDER_PLANES]) {
@@ -431,8 +448,9 @@ hl_status hl_holders_find(const hl_scene_volume *volume, const hl_data_analysis 
   if (status == HL_OK && any) {
     *s = (search){.context = context, .analysis = analysis, .seen = &seen, .densest = NAN};
     set_out(s, volume->volume->index_to_world);
-    for (size_t n = 0; n < sizeof levels / sizeof *levels && s->plane_count == 0 && status == HL_OK; n++) {
+    for (size_t n = 0; n < sizeof levels / sizeof *levels && status == HL_OK; n++) {
       status = find_planes(s, levels[n], error);
+      keep_planes(s);
       hl_bodies_release(context, &s->bodies);
       s->densest = NAN;
     }

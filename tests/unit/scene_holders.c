@@ -67,6 +67,18 @@ static double on_board_with_piece(int i, int j, int k) {
   return in_upper_piece(i, j, k) ? 80 + 4 * noise(i, j, k) : on_board(i, j, k);
 }
 
+/* A board below, and one above that foam joins to the ball. The foam is so faint that it belongs to no body
+ * at the second level of cells. */
+static bool in_foamed_board(int i, int j, int k) {
+  (void)i;
+  return j >= 26 && j < 38 && k >= 58 && k < 60;
+}
+static double between_boards(int i, int j, int k) {
+  const bool foam = hypot(i - 32, j - 32) < 6 && k >= 32 && k < 58;
+  if (in_foamed_board(i, j, k)) return 80 + 4 * noise(i, j, k);
+  return foam ? fmax(45, on_board(i, j, k)) : on_board(i, j, k);
+}
+
 /* A board below, and 16 crumbs of 5 x 5 x 5 voxels in a ring around the ball. A plane that touches the ball's
  * hull cuts off one or two of them. */
 static bool in_crumb(int i, int j, int k) {
@@ -149,6 +161,20 @@ static void one_plane_cuts_a_board_off(void **state) {
   hl_context_destroy(context);
 }
 
+/* A board that foam joins to the object goes, although a free board was found before it. */
+static void both_boards_are_cut_away(void **state) {
+  (void)state;
+  hl_context *context = make_context();
+  hl_scene *scene = make_scene(context, between_boards, straight);
+  const hl_scene_volume *volume = &hl_scene_describe(scene)->volumes[0];
+  const counts below = count_left(context, volume, in_board),
+               above = count_left(context, volume, in_foamed_board);
+  assert_int_equal(above.all, 12 * 2 * N);
+  assert_true(below.left * 100 <= below.all && above.left * 100 <= above.all);
+  hl_scene_release(scene);
+  hl_context_destroy(context);
+}
+
 /* Crumbs all around the object go with its holder, although each plane cuts off only a few of them. */
 static void crumbs_go_with_the_board(void **state) {
   (void)state;
@@ -193,8 +219,8 @@ static void other_bodies_stay(void **state) {
 
 int main(void) {
   const struct CMUnitTest tests[] = {
-      cmocka_unit_test(boards_are_cut_away), cmocka_unit_test(one_plane_cuts_a_board_off),
-      cmocka_unit_test(planes_spare_other_bodies), cmocka_unit_test(crumbs_go_with_the_board),
-      cmocka_unit_test(other_bodies_stay)};
+      cmocka_unit_test(boards_are_cut_away),        cmocka_unit_test(both_boards_are_cut_away),
+      cmocka_unit_test(one_plane_cuts_a_board_off), cmocka_unit_test(planes_spare_other_bodies),
+      cmocka_unit_test(crumbs_go_with_the_board),   cmocka_unit_test(other_bodies_stay)};
   return cmocka_run_group_tests(tests, NULL, NULL);
 }
