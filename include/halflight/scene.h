@@ -47,8 +47,11 @@ typedef struct hl_material {
  * its normal. */
 typedef struct hl_isosurface {
   double value;
-  double color[3]; /* linear RGB */
-  double opacity;  /* 0 to 1 */
+  double color[3];  /* linear RGB */
+  double opacity;   /* 0 to 1 */
+  int second_color; /* non-zero if the surface has the colours that the curves of the volume's transfer
+                     * function give to the values of a second volume (HL_SECOND_VOLUME); `color` stands in
+                     * where the volume keeps its own colour. Without such curves, the surface has `color` */
 } hl_isosurface;
 
 /* The shapes of cuts. A cut removes the matter inside its shape, or with HL_CUT_KEEP_INSIDE the matter

@@ -79,6 +79,11 @@ typedef struct hl_function_curves {
   size_t opacity_count;
   const hl_color_point *color; /* sorted by the second number; linear RGB */
   size_t color_count;
+  /* Where the second number lies between own_between[0] and own_between[1], the volume keeps a colour of its
+   * own, which depends on its value: own_color. If both are equal, this is nowhere. */
+  double own_between[2];
+  const hl_color_point *own_color; /* sorted by value; linear RGB; without points, white */
+  size_t own_color_count;
 } hl_function_curves;
 
 /* The part of a transfer function that depends on two numbers. */

@@ -151,6 +151,7 @@ def _options(settings: Mapping[str, Any], volumes: Sequence[Volume], flags: int)
             options[word] = str(settings[word])
     if settings.get("density") is not None:
         options["density"] = repr(_settings.number("density", settings["density"]))
+    _option_color_by(settings, options)
     if (at := settings.get("slice")) is not None:
         if not isinstance(at, str):
             raise TypeError(f"slice: {at!r} is no text such as 'z=0.5' or 'z=40mm'")
@@ -165,6 +166,18 @@ def _options(settings: Mapping[str, Any], volumes: Sequence[Volume], flags: int)
     elif (flags & lib.HL_COMPOSE_CUT or _have_labels_within(volumes, flags)) and (look := volumes[0]._changes.get("look")) not in (None, "mip"):
         options["look"] = str(look)
     return options
+
+
+def _option_color_by(settings: Mapping[str, Any], options: dict[str, str]) -> None:
+    """Add the options that give volumes the colours of another volume."""
+    by, threshold = settings.get("color_by"), settings.get("color_by_threshold")
+    if by is not None:
+        if not isinstance(by, str):
+            raise TypeError(f"color_by: {by!r} is no text such as 'zmap.nii.gz:hot:0,7'")
+        options["color-by"] = by
+    if threshold is not None:
+        ends = [threshold] if isinstance(threshold, (int, float)) else _settings.numbers_of("color_by_threshold", threshold, 2)
+        options["color-by-threshold"] = ",".join(repr(_settings.number("color_by_threshold", end)) for end in ends)
 
 
 def _have_labels_within(volumes: Sequence[Volume], flags: int) -> bool:

@@ -17,7 +17,7 @@ __all__ = ["Plane"]
 _BOX = {"value": None, "second": None, "color": (1.0, 1.0, 1.0), "opacity": 0.5, "edge": (0.0, 0.0), "sigma": 0.0}
 _POLYGON = {"vertices": None, "apex": None, "color": (1.0, 1.0, 1.0), "opacity": 0.5, "falloff": 1.0}
 _IMAGE = {"pixels": None, "value": None, "second": None}
-_CURVES: dict[str, Any] = {"opacity": None, "color": ()}
+_CURVES: dict[str, Any] = {"opacity": None, "color": (), "own_color": (), "own_between": (0.0, 0.0)}
 
 
 def _parts(place: str, given: Any, standard: Mapping[str, Any], optional: Sequence[str] = ()) -> dict[str, Any]:
@@ -78,7 +78,9 @@ def _points(place: str, given: Any, width: int) -> list[tuple[float, ...]]:
 
 def _curves(place: str, given: Any) -> dict[str, Any]:
     parts = _parts(place, given, _CURVES)
-    return {"opacity": _points(f"{place}: opacity", parts["opacity"], 2), "color": _points(f"{place}: color", parts["color"], 4)}
+    return {"opacity": _points(f"{place}: opacity", parts["opacity"], 2), "color": _points(f"{place}: color", parts["color"], 4),
+            "own_color": _points(f"{place}: own_color", parts["own_color"], 4),
+            "own_between": tuple(numbers_of(f"{place}: own_between", parts["own_between"], 2))}
 
 
 class Plane:
@@ -140,6 +142,9 @@ class Plane:
             keep.append(color := ffi.new("hl_color_point[]", [(row[0], row[1:]) for row in self.curves["color"]]))
             struct.curves.opacity, struct.curves.opacity_count = opacity, len(self.curves["opacity"])
             struct.curves.color, struct.curves.color_count = color, len(self.curves["color"])
+            keep.append(own := ffi.new("hl_color_point[]", [(row[0], row[1:]) for row in self.curves["own_color"]]))
+            struct.curves.own_color, struct.curves.own_color_count = own, len(self.curves["own_color"])
+            struct.curves.own_between = self.curves["own_between"]
         if self.image is not None:
             pixels = self.image["pixels"]
             keep.append(pixels)
@@ -169,7 +174,9 @@ def plane_from(struct: Any) -> Plane:
         image = {"pixels": pixels, "value": (low[0], high[0]), "second": (low[1], high[1])}
     curves = None
     if struct.curves.opacity_count > 0:
-        opacity, color = struct.curves.opacity, struct.curves.color
+        opacity, color, own = struct.curves.opacity, struct.curves.color, struct.curves.own_color
         curves = {"opacity": [(opacity[n].value, opacity[n].opacity) for n in range(struct.curves.opacity_count)],
-                  "color": [(color[n].value, *color[n].color) for n in range(struct.curves.color_count)]}
+                  "color": [(color[n].value, *color[n].color) for n in range(struct.curves.color_count)],
+                  "own_color": [(own[n].value, *own[n].color) for n in range(struct.curves.own_color_count)],
+                  "own_between": tuple(struct.curves.own_between)}
     return Plane("TransferFunction: ", second, boxes, polygons, image, curves)

@@ -306,12 +306,14 @@ class Asked(FurtherSettings, total=False):
     sky: Any
     slice: str
     density: float
+    color_by: str
+    color_by_threshold: float | Sequence[float]
 
 
 _PLACE = ("spacing", "origin", "direction", "affine", "axes", "array", "component", "series", "time", "channel", "level", "smooth")
 _MATERIAL = ("ambient", "diffuse", "specular", "shininess", "iso", "cuts", "mask", "look",
              *(word for word in FurtherSettings.__annotations__ if word in Look.__annotations__))
-_SETTINGS = ("shadows", "lights", "camera", "size", "background", "threads", "meshes", "sky", "slice", "density",
+_SETTINGS = ("shadows", "lights", "camera", "size", "background", "threads", "meshes", "sky", "slice", "density", "color_by", "color_by_threshold",
              *(word for word in FurtherSettings.__annotations__ if word in Settings.__annotations__))
 
 
@@ -347,7 +349,8 @@ def render(volume: Source = None, *, spacing: arrays.Spacing | None = None, orig
            channel: int | str | Sequence[int | str] | None = None, level: int | None = None, smooth: float | None = None,
            meshes: Mesh | Sequence[Mesh] | None = None, iso: Any = None, cuts: Any = None, mask: Any = None,
            labels: Any = None, look: Looked | None = None, sky: Any = None, slice: str | None = None,
-           density: float | None = None, **further: Unpack[FurtherSettings]) -> Image:
+           density: float | None = None, color_by: str | None = None, color_by_threshold: float | Sequence[float] | None = None,
+           **further: Unpack[FurtherSettings]) -> Image:
     """A picture of a volume, in one call.
 
     An array's axes, and `spacing`, are in the order ``axes="zyx"``: ``array[z][y][x]``, spacing ``(dz, dy, dx)``.
@@ -426,6 +429,9 @@ def render(volume: Source = None, *, spacing: arrays.Spacing | None = None, orig
         unit "z=40u". Its values are grey, or as `cmap` and `clim` say; labels of `labels` or `mask` lie over them.
     density : float, optional
         All matter is so many times as dense: 3 makes smoke and glass thicker, 0.3 thinner.
+    color_by, color_by_threshold : str; float or (float, float), optional
+        The colours of another volume's values at the same place, ``FILE[:ARRAY][:MAP[:LO,HI]]``, as "zmap.nii.gz:hot:0,7". Matter
+        keeps its own colour where the other values are below the threshold, or between two numbers.
     **further : FurtherSettings
         What `Volume` and `Scene` take besides: `exposure`, `soft_method`, `anisotropy`, ...
 
@@ -447,7 +453,8 @@ def render(volume: Source = None, *, spacing: arrays.Spacing | None = None, orig
         specular=specular, shininess=shininess, tf=tf, shadows=shadows, lights=lights, camera=camera, size=size,
         background=background, threads=threads, array=array, component=component, series=series, time=time,
         channel=channel, level=level, smooth=smooth, meshes=meshes, iso=iso, cuts=cuts, mask=mask, labels=labels, look=look, sky=sky,
-        slice=slice, density=density, **further)
+        slice=slice, density=density, color_by=color_by,
+        color_by_threshold=color_by_threshold, **further)
     with told(progress):
         scene = scene_for(volume, **asked)
     return Renderer(device).render(scene, layers=layers, progress=progress)

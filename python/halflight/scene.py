@@ -51,6 +51,11 @@ class Settings(PictureSettings, RenderSettings, total=False):
         What is cut out of all volumes, in the world: as `cuts` of a `Volume`.
     density : float
         All matter is so many times as dense: 3 makes smoke and glass thicker, 0.3 thinner. Labels keep their opacities.
+    color_by : str
+        Another volume, whose values at the same place give the volumes their colours: ``FILE[:ARRAY][:MAP[:LO,HI]]``, as
+        "zmap.nii.gz:hot:0,7".
+    color_by_threshold : float or (float, float)
+        With `color_by`, matter keeps its own colour where the other values are below this number, or between these two.
     slice : str
         A slice across x, y or z, as in radiology, seen straight on: "z=0.5" is a fraction, "z=40mm" a place in the world. Its
         values are grey, or as `cmap` and `clim` of `halflight.render` say, and labels lie over them.
@@ -72,6 +77,8 @@ class Settings(PictureSettings, RenderSettings, total=False):
     meshes: Mesh | Sequence[Mesh]
     cuts: Any
     density: float
+    color_by: str
+    color_by_threshold: float | Sequence[float]
     slice: str
     marks: Any
     sky: float | Sequence[float] | str | Mapping[str, Any]

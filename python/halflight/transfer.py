@@ -57,7 +57,8 @@ class TransferFunction:
         row; ``value`` and ``second``, the ranges that it covers.
     curves : dict
         ``opacity``, a sequence of (value, opacity), and ``color``, a sequence of (second number, r, g, b): one volume in
-        the colours of another.
+        the colours of another. Where the second number lies between the two numbers of ``own_between``, the colour is
+        ``own_color``, a sequence of (value, r, g, b).
 
     Examples
     --------

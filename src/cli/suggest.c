@@ -59,6 +59,8 @@ static const struct {
      "matter, or --tf FILE for values",
      "opacity alpha transparency translucency"},
     {"color-by", "color-array colour-by colour-array color-volume texture-by coloring scalar-array"},
+    {"color-by zmap.nii.gz:hot:2.5,7 and --color-by-threshold 2.5",
+     "overlay stat-map statmap zmap z-map overlay-threshold activation statistic"},
     {"colormap",
      "cmap color-map colourmap lut palette colors colours color colour color-table lookup-table colorscale"},
     {"range 1%,99%", "percentile percentiles quantile quantiles auto-contrast autoscale robust"},

@@ -60,6 +60,7 @@ const hl_option_row hl_option_rows[HL_ASK_COUNT] = {
     TEXTS(HL_ASK_TF, "tf"),
     TEXTS(HL_ASK_COLORMAP, "colormap"),
     TEXT(HL_ASK_COLOR_BY, "color-by"),
+    [HL_ASK_COLOR_BY_THRESHOLD] = {.name = "color-by-threshold", .kind = HL_OPTION_NUMBERS, .count = 2, .separator = ',', .even = true},
     NAMED(HL_ASK_RANGE, "range", 2, .separator = ',', .percent = true),
     CHOICE(HL_ASK_RANGE_SCALE, "range-scale", .choices = range_scales),
     NAMED(HL_ASK_THRESHOLD, "threshold", 1, .separator = ','),

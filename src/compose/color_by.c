@@ -1,6 +1,7 @@
 /* compose/color_by.c - applies the option "color-by" FILE[:ARRAY][:MAP[:LO,HI]]: the volumes keep their
  * opacities, and get the colours of the values that another volume has at the same place. The other volume
- * joins the scene, and is not visible. ARRAY alone is an array of a volume's own file.
+ * joins the scene, and is not visible. ARRAY alone is an array of a volume's own file. With
+ * "color-by-threshold", the volumes also keep their own colours where the other values are small.
  *
  * The value is read from its end. A last part of two numbers is the range, and then a last part that is the
  * name of a colormap is the map. What is left is the name of a file, if a file has this name. Otherwise
@@ -24,6 +25,9 @@
 #include "volume/load_beside.h"
 
 enum { NAME_BYTES = 64 };
+
+/* The number that stands for no end of a range of second numbers in a transfer function. */
+#define NO_END 1e30
 
 static const char *const colormap_of_fields = "viridis";
 
@@ -132,6 +136,37 @@ static hl_status read_coloring(const hl_composer *composer, const hl_scene_descr
                  "--color-by: '%.200s' is neither a file nor an array of the input: %s", typed->text, mend);
 }
 
+/* Reads "color-by-threshold": the volumes keep their own colours where the other volume's values lie between
+ * two numbers, or below one. */
+static hl_status read_threshold(const hl_composer *composer, double own[2]) {
+  const hl_asked *asked = &composer->asked[HL_ASK_COLOR_BY_THRESHOLD];
+  own[0] = own[1] = 0;
+  if (!asked->given) return HL_OK;
+  if (!(fabs(asked->number[0]) < NO_END && fabs(asked->number[1]) < NO_END) ||
+      asked->number[0] > asked->number[1])
+    return hl_fail(composer->error, HL_ERROR_ARGUMENT, "--color-by-threshold: '%.200s': LO must be below HI",
+                   asked->text);
+  own[0] = asked->number[0] < asked->number[1] ? asked->number[0] : -NO_END;
+  own[1] = asked->number[1];
+  return HL_OK;
+}
+
+/* Logs that most values of the other volume lie below the typed range, so that they have the map's first
+ * colour. */
+static hl_status tell_of_ends(const hl_composer *composer, const typed_coloring *typed,
+                              const hl_scene_volume *other) {
+  const double half = 50;
+  double middle = 0;
+  if (!(typed->range[0] < typed->range[1]) || composer->asked[HL_ASK_COLOR_BY_THRESHOLD].given) return HL_OK;
+  hl_status status = hl_volume_percentiles(other->volume, &half, 1, &middle, composer->error);
+  if (status == HL_OK && middle < typed->range[0])
+    hl_log(composer->context, HL_LOG_INFO,
+           "values of %s below %.9g have the first colour of %s: --color-by-threshold %.9g keeps the own "
+           "colour of matter there",
+           other->name, typed->range[0], typed->map, typed->range[0]);
+  return hl_blame_options(status);
+}
+
 /* Refuses scenes whose matter cannot have the colours of another volume. */
 static hl_status check_scene(const hl_composer *composer, const hl_scene_description *description) {
   size_t colored = 0;
@@ -142,11 +177,6 @@ static hl_status check_scene(const hl_composer *composer, const hl_scene_descrip
   for (size_t v = 0; v < description->volume_count; v++) {
     const hl_scene_volume *volume = &description->volumes[v];
     colored += volume->label_count == 0;
-    if (volume->iso_count > 0)
-      return hl_fail(composer->error, HL_ERROR_ARGUMENT,
-                     "--color-by colours matter, and an isosurface has one colour: in place of --iso give "
-                     "--threshold %.9g",
-                     volume->iso[0].value);
   }
   if (colored == 0)
     return hl_fail(composer->error, HL_ERROR_ARGUMENT,
@@ -198,7 +228,7 @@ static hl_status load(const hl_composer *composer, const hl_scene_description *d
 
 /* Gives a volume its own opacities, and the colours of the other volume's values. */
 static void color_by(const hl_scene_volume *other, const hl_transfer_function *colors,
-                     hl_scene_volume *volume) {
+                     const double own_between[2], hl_scene_volume *volume) {
   hl_transfer_function *function = &volume->transfer_function;
   function->plane = (hl_function_plane){.second = HL_SECOND_VOLUME,
                                         .volume = other->name,
@@ -206,6 +236,29 @@ static void color_by(const hl_scene_volume *other, const hl_transfer_function *c
                                                    .opacity_count = function->opacity_count,
                                                    .color = colors->color,
                                                    .color_count = colors->color_count}};
+  hl_function_curves *curves = &function->plane.curves;
+  if (!(own_between[0] < own_between[1])) return;
+  curves->own_color = function->color;
+  curves->own_color_count = function->color_count;
+  memcpy(curves->own_between, own_between, sizeof curves->own_between);
+}
+
+/* Gives the isosurfaces of the volumes the colours of the other volume. */
+static hl_status color_surfaces(const hl_composer *composer, size_t volumes, hl_coloring *made) {
+  size_t count = 0;
+  for (size_t v = 0; v < volumes; v++) count += made->volumes[v].iso_count;
+  if (count == 0) return HL_OK;
+  hl_isosurface *surface = made->surfaces = hl_allocate(composer->context, count, sizeof *surface);
+  if (surface == NULL) return hl_fail_memory(composer->error, count * sizeof *surface, "isosurfaces");
+  for (size_t v = 0; v < volumes; v++) {
+    hl_scene_volume *volume = &made->volumes[v];
+    if (volume->iso_count == 0) continue;
+    memcpy(surface, volume->iso, volume->iso_count * sizeof *surface);
+    for (size_t i = 0; i < volume->iso_count; i++) surface[i].second_color = 1;
+    volume->iso = surface;
+    surface += volume->iso_count;
+  }
+  return HL_OK;
 }
 
 hl_status hl_compose_color_by(const hl_composer *composer, hl_scene_description *description,
@@ -213,9 +266,14 @@ hl_status hl_compose_color_by(const hl_composer *composer, hl_scene_description 
   const hl_asked *asked = &composer->asked[HL_ASK_COLOR_BY];
   const size_t count = description->volume_count;
   typed_coloring typed;
+  double own_between[2];
   *made = (hl_coloring){0};
+  if (!asked->given && composer->asked[HL_ASK_COLOR_BY_THRESHOLD].given)
+    return hl_fail(composer->error, HL_ERROR_ARGUMENT,
+                   "--color-by-threshold says where --color-by colours: add --color-by FILE:MAP:LO,HI");
   if (!asked->given) return HL_OK;
-  hl_status status = check_scene(composer, description);
+  hl_status status = read_threshold(composer, own_between);
+  if (status == HL_OK) status = check_scene(composer, description);
   if (status != HL_OK) return status;
   status = read_coloring(composer, description, asked->text, &typed);
   made->text = typed.text;
@@ -228,6 +286,8 @@ hl_status hl_compose_color_by(const hl_composer *composer, hl_scene_description 
   status = load(composer, description, &typed, made->name, other);
   if (status != HL_OK) return status;
   made->other = other->volume;
+  status = tell_of_ends(composer, &typed, other);
+  if (status != HL_OK) return status;
   double range[2] = {other->volume->minimum, other->volume->maximum};
   if (typed.range[0] < typed.range[1]) memcpy(range, typed.range, sizeof range);
   if (!(range[0] < range[1])) range[1] = nextafter(range[0], INFINITY);
@@ -235,7 +295,8 @@ hl_status hl_compose_color_by(const hl_composer *composer, hl_scene_description 
                                          composer->error);
   for (size_t v = 0; v < count && status == HL_OK; v++)
     if (made->volumes[v].label_count == 0 && !hl_has_plane(&made->volumes[v].transfer_function))
-      color_by(other, &made->colors, &made->volumes[v]);
+      color_by(other, &made->colors, own_between, &made->volumes[v]);
+  if (status == HL_OK) status = color_surfaces(composer, count, made);
   description->volumes = made->volumes;
   description->volume_count = count + 1;
   return status;
@@ -245,5 +306,6 @@ void hl_coloring_release(hl_context *context, hl_coloring *made) {
   hl_transfer_function_release(context, &made->colors);
   hl_volume_release(made->other);
   hl_release(context, made->volumes);
+  hl_release(context, made->surfaces);
   hl_release(context, made->text);
 }

@@ -1,4 +1,5 @@
-/* compose/color_by.h - applies the option "color-by": matter in the colours of another volume's values. */
+/* compose/color_by.h - applies the options "color-by" and "color-by-threshold": matter in the colours of
+ * another volume's values. */
 #ifndef HL_COMPOSE_COLOR_BY_H
 #define HL_COMPOSE_COLOR_BY_H
 
@@ -10,6 +11,7 @@ typedef struct hl_coloring {
   hl_volume *other;         /* owned */
   char *text;               /* owned; the names of the file and the array */
   char name[64];
+  hl_isosurface *surfaces;     /* owned; the isosurfaces of all volumes, in the colours of the other volume */
   hl_transfer_function colors; /* owned; the colours of the other volume's values */
 } hl_coloring;
 

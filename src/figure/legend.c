@@ -8,6 +8,7 @@
 
 #include "figure/overlay.h"
 #include "figure/strip.h"
+#include "scene/function/function_plane.h"
 #include "scene/function/transfer_function.h"
 #include "text/plain.h"
 #include "text/stem.h"
@@ -225,6 +226,17 @@ static void draw_rows(legend *made, const hl_scene_volume *volume) {
 
 /* ---- the strip ---- */
 
+/* Cuts the ends of a range at which neither colour nor opacity changes: the values beyond the outermost
+ * points of a function that has several colours. A strip then ends where the range of a function ends. */
+static void cut_even_ends(const hl_transfer_function *function, double range[2]) {
+  const size_t colors = function->color_count, opacities = function->opacity_count;
+  if (colors < 2 || opacities == 0) return;
+  const double low = fmin(function->color[0].value, function->opacity[0].value),
+               high = fmax(function->color[colors - 1].value, function->opacity[opacities - 1].value);
+  if (fmax(range[0], low) < fmin(range[1], high))
+    range[0] = fmax(range[0], low), range[1] = fmin(range[1], high);
+}
+
 /* Finds the range of values along a volume's strip: the visible values, or the values of its colours. */
 static hl_status find_scale(const legend *made, const hl_scene_volume *volume, hl_strip_scale *scale,
                             hl_error *error) {
@@ -234,6 +246,7 @@ static hl_status find_scale(const legend *made, const hl_scene_volume *volume, h
   const bool even = hl_strip_is_even(function);
   hl_status status = hl_transfer_function_visible_range(volume->volume, function, range, error);
   if (status != HL_OK) return status;
+  if (!even) cut_even_ends(function, range);
   if (even) {
     range[0] = function->color[0].value;
     range[1] = function->color[function->color_count - 1].value;
@@ -241,6 +254,12 @@ static hl_status find_scale(const legend *made, const hl_scene_volume *volume, h
   /* the range that the overlay states is a range of matter: colours that a second volume gives have their own
    */
   *scale = hl_strip_scale_of(function, !even && stated[0] < stated[1] ? stated : range);
+  if (hl_curves_have_own(&function->plane.curves)) {
+    memcpy(scale->own, function->plane.curves.own_between, sizeof scale->own);
+    hl_transfer_function_color(&(hl_transfer_function){.color = function->plane.curves.own_color,
+                                                       .color_count = function->plane.curves.own_color_count},
+                               0, scale->own_color);
+  }
   return HL_OK;
 }
 
@@ -317,29 +336,53 @@ static hl_status draw_volume(legend *made, const hl_scene_volume *volume, bool f
   return status;
 }
 
+/* A volume that gives another volume its colours. */
+typedef struct other_volume {
+  hl_scene_volume volume; /* its function has the colours of the other volume's function */
+  hl_color_point own;     /* the colour that the surface of the other volume has where it keeps its own */
+} other_volume;
+
+/* Finds the colour of a volume's surface: of its first isosurface, or of the least value that has half of the
+ * greatest opacity. */
+static void own_color(const hl_scene_volume *volume, double color[3]) {
+  const hl_function_curves *curves = &volume->transfer_function.plane.curves;
+  const hl_transfer_function own = {.color = curves->own_color, .color_count = curves->own_color_count};
+  double greatest = 0;
+  size_t n = 0;
+  for (size_t p = 0; p < curves->opacity_count; p++) greatest = fmax(greatest, curves->opacity[p].opacity);
+  while (curves->opacity[n].opacity < greatest / 2) n++;
+  if (volume->iso_count > 0) memcpy(color, volume->iso[0].color, 3 * sizeof *color);
+  else hl_transfer_function_color(&own, curves->opacity[n].value, color);
+}
+
 /* The volume whose values a volume's colours stand for: itself, or the one that gives its colours, which
  * *other then holds with these colours. */
 static const hl_scene_volume *volume_of_colors(const hl_scene_description *scene,
-                                               const hl_scene_volume *volume, hl_scene_volume *other) {
+                                               const hl_scene_volume *volume, other_volume *other) {
   static const hl_opacity_point opaque = {0, 1};
   const hl_function_plane *plane = &volume->transfer_function.plane;
-  if (plane->second != HL_SECOND_VOLUME || plane->curves.opacity_count == 0) return volume;
+  if (!hl_has_second_colors(&volume->transfer_function)) return volume;
   for (size_t v = 0; v < scene->volume_count; v++)
     if (scene->volumes[v].name != NULL && strcmp(scene->volumes[v].name, plane->volume) == 0) {
-      *other = scene->volumes[v];
-      other->transfer_function = (hl_transfer_function){.unit_distance = 1,
-                                                        .opacity = &opaque,
-                                                        .opacity_count = 1,
-                                                        .color = plane->curves.color,
-                                                        .color_count = plane->curves.color_count};
-      return other;
+      other->volume = scene->volumes[v];
+      own_color(volume, other->own.color);
+      other->own.value = 0;
+      other->volume.transfer_function = (hl_transfer_function){.unit_distance = 1,
+                                                               .opacity = &opaque,
+                                                               .opacity_count = 1,
+                                                               .color = plane->curves.color,
+                                                               .color_count = plane->curves.color_count,
+                                                               .plane.curves = plane->curves};
+      hl_function_curves *curves = &other->volume.transfer_function.plane.curves;
+      curves->own_color = &other->own, curves->own_color_count = 1;
+      return &other->volume;
     }
   return volume;
 }
 
 hl_status hl_overlay_legend(const hl_ink *ink, const hl_overlay_place *place, hl_error *error) {
   const hl_scene_description *scene = place->scene;
-  hl_scene_volume other;
+  other_volume other;
   const double height = place->legend.height;
   size_t strips = 0, lines = 0;
   for (size_t v = 0; v < scene->volume_count; v++) {

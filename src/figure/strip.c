@@ -86,6 +86,20 @@ static cairo_pattern_t *make_pattern(const hl_transfer_function *function, const
   return pattern;
 }
 
+/* Draws the part of the strip at which matter has its own colour. */
+static void draw_own(const hl_ink *ink, const hl_strip_scale *scale, double x, double bottom, double top) {
+  double ends[2];
+  for (int n = 0; n < 2; n++) {
+    const double part = part_of(scale, fmin(fmax(scale->own[n], scale->low), scale->high));
+    ends[n] = bottom + part * (top - bottom);
+  }
+  if (!(ends[1] < ends[0])) return;
+  cairo_rectangle(ink->cairo, x - strip_width * ink->size, ends[1], strip_width * ink->size,
+                  ends[0] - ends[1]);
+  hl_ink_source(ink->cairo, scale->own_color, 1);
+  cairo_fill(ink->cairo);
+}
+
 /* Draws the curve of opacity, to the left of the place x. */
 static void draw_curve(const hl_ink *ink, const hl_transfer_function *function, const hl_strip_scale *scale,
                        double x, double bottom, double top) {
@@ -225,5 +239,6 @@ void hl_strip_draw(const hl_ink *ink, const hl_transfer_function *function, cons
   cairo_set_source(cairo, pattern);
   cairo_fill(cairo);
   cairo_pattern_destroy(pattern);
+  draw_own(ink, scale, x, bottom, top);
   draw_numbers(ink, scale, x, bottom, top, true);
 }

@@ -1,11 +1,12 @@
 /* isosurface/isosurface.c - makes an isosurface (isosurface.h) in these steps: the cells of a lattice are cut
  * into triangles; edges of triangles are halved where the surface bends; the triangles are cut at the
- * volume's box and at cuts; caps are added at the faces of the box and of cuts; all triangles are moved to
- * the world. */
+ * volume's box and at cuts; caps are added at the faces of the box and of cuts; vertices may get colours; all
+ * triangles are moved to the world. */
 #include "isosurface/isosurface.h"
 
 #include <string.h>
 
+#include "core/memory.h"
 #include "isosurface/caps.h"
 #include "isosurface/clip.h"
 #include "isosurface/triangles.h"
@@ -59,11 +60,14 @@ static hl_status place(hl_pool *pool, const hl_scene_volume *volume, const grid 
   return HL_OK;
 }
 
-static hl_status mesh_of(hl_context *context, iso_triangles *made, hl_mesh **mesh, hl_error *error) {
+/* Makes the mesh. colors: owned by the mesh, also after a failure. */
+static hl_status mesh_of(hl_context *context, iso_triangles *made, float (*colors)[4], hl_mesh **mesh,
+                         hl_error *error) {
   mesh_parts parts = {.context = context,
                       .path = "an isosurface",
                       .positions = made->positions,
                       .normals = made->normals,
+                      .colors = colors,
                       .triangles = made->triangles,
                       .vertex_count = made->vertex_count,
                       .triangle_count = made->triangle_count};
@@ -74,7 +78,8 @@ static hl_status mesh_of(hl_context *context, iso_triangles *made, hl_mesh **mes
 }
 
 hl_status hl_isosurface_create(hl_pool *pool, const hl_scene_volume *volume, const grid *grid,
-                               const kernel *kernel, double value, hl_mesh **mesh, hl_error *error) {
+                               const kernel *kernel, double value, const iso_coloring *coloring,
+                               hl_mesh **mesh, hl_error *error) {
   hl_context *context = volume->volume->context;
   lattice lattice;
   iso_triangles made = {0};
@@ -87,8 +92,11 @@ hl_status hl_isosurface_create(hl_pool *pool, const hl_scene_volume *volume, con
   if (status == HL_OK) status = hl_iso_cap(pool, &lattice, &made, error);
   hl_lattice_release(&lattice);
   if (status == HL_OK && made.triangle_count > 0) {
-    status = place(pool, volume, grid, &made, error);
-    if (status == HL_OK) status = mesh_of(context, &made, mesh, error);
+    float(*colors)[4] = NULL;
+    if (coloring != NULL) status = hl_iso_color_vertices(pool, volume, grid, coloring, &made, &colors, error);
+    if (status == HL_OK) status = place(pool, volume, grid, &made, error);
+    if (status != HL_OK) hl_release(context, colors);
+    if (status == HL_OK) status = mesh_of(context, &made, colors, mesh, error);
     if (status == HL_OK) (*mesh)->is_cut = true;
     if (status == HL_OK && hl_iso_capped_faces(grid) == ISO_ALL_CAPPED) hl_mesh_take_as_closed(*mesh);
   }
@@ -104,7 +112,8 @@ hl_scene_mesh hl_scene_mesh_of_iso(const hl_scene_volume *volume, size_t i, hl_m
   memcpy(made.rotate_axis, volume->rotate_axis, sizeof made.rotate_axis);
   made.rotate_angle_deg = volume->rotate_angle_deg;
   memcpy(made.translate, volume->translate, sizeof made.translate);
-  memcpy(made.color, volume->iso[i].color, sizeof made.color);
+  for (int c = 0; c < 3; c++) /* the vertices have the colours of a second volume */
+    made.color[c] = hl_iso_has_second_color(volume, i) ? 1 : volume->iso[i].color[c];
   made.opacity = volume->iso[i].opacity;
   made.material = volume->material;
   if (volume->shading == HL_SHADING_FLAT) made.material = (hl_material){.emission = 1};

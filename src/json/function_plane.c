@@ -107,7 +107,7 @@ static hl_status read_image(hl_json_reader *reader, const json_t *value, hl_func
 }
 
 static hl_status read_curves(hl_json_reader *reader, const json_t *value, hl_function_curves *curves) {
-  static const char *const keys[] = {"opacity", "color", NULL};
+  static const char *const keys[] = {"opacity", "color", "own_color", "own_between", NULL};
   double *rows = NULL;
   if (value == NULL) return HL_OK;
   size_t mark = hl_json_enter(reader, "curves");
@@ -120,6 +120,11 @@ static hl_status read_curves(hl_json_reader *reader, const json_t *value, hl_fun
     status = hl_json_read_rows(reader, value, "color", 4, &rows, &curves->color_count);
     if (status == HL_OK) curves->color = (hl_color_point *)rows;
   }
+  if (status == HL_OK && json_object_get(value, "own_color") != NULL) {
+    status = hl_json_read_rows(reader, value, "own_color", 4, &rows, &curves->own_color_count);
+    if (status == HL_OK) curves->own_color = (hl_color_point *)rows;
+  }
+  if (status == HL_OK) status = hl_json_numbers(reader, value, "own_between", 2, curves->own_between);
   if (status == HL_OK) hl_json_leave(reader, mark);
   return status;
 }

@@ -115,8 +115,8 @@ static void write_opacity(hl_json_writer *w, const char *key, const hl_opacity_p
   hl_json_close(w, "]");
 }
 
-static void write_colors(hl_json_writer *w, const hl_color_point *points, size_t count) {
-  hl_json_open(w, "color", "[");
+static void write_colors(hl_json_writer *w, const char *key, const hl_color_point *points, size_t count) {
+  hl_json_open(w, key, "[");
   for (size_t p = 0; p < count; p++) {
     const hl_color_point *point = &points[p];
     hl_json_write_row(w, NULL, (double[4]){point->value, point->color[0], point->color[1], point->color[2]},
@@ -169,7 +169,11 @@ static void write_plane(hl_json_writer *w, const hl_function_plane *plane) {
   if (plane->curves.opacity_count > 0) {
     hl_json_open(w, "curves", "{");
     write_opacity(w, "opacity", plane->curves.opacity, plane->curves.opacity_count);
-    write_colors(w, plane->curves.color, plane->curves.color_count);
+    write_colors(w, "color", plane->curves.color, plane->curves.color_count);
+    if (hl_curves_have_own(&plane->curves)) {
+      write_colors(w, "own_color", plane->curves.own_color, plane->curves.own_color_count);
+      hl_json_write_row(w, "own_between", plane->curves.own_between, 2);
+    }
     hl_json_close(w, "}");
   }
   if (plane->image.pixels == NULL) return;
@@ -198,7 +202,7 @@ static void write_transfer_function(hl_json_writer *w, const hl_transfer_functio
   write_opacity(w, "opacity", function->opacity, function->opacity_count);
   if (function->gradient_opacity_count > 0)
     write_opacity(w, "gradient_opacity", function->gradient_opacity, function->gradient_opacity_count);
-  write_colors(w, function->color, function->color_count);
+  write_colors(w, "color", function->color, function->color_count);
   hl_json_close(w, "}");
 }
 

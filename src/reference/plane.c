@@ -25,6 +25,17 @@ plane_sum hl_reference_plane_sum(const reference_volume *volume, double value, v
   return hl_plane_mean(function, &at);
 }
 
+void hl_reference_iso_color(const reference_hit *hit, vec3 point, double color[3]) {
+  const reference_volume *volume = hit->volume;
+  const hl_transfer_function *function = &volume->described->transfer_function;
+  memcpy(color, hit->iso->color, 3 * sizeof *color);
+  if (!hit->iso->second_color || !hl_has_second_colors(function)) return;
+  const vec3 index = affine3_apply(volume->world_to_index, point);
+  const double second = hl_reference_value(volume->second, affine3_apply(volume->index_to_second, index));
+  hl_curves_color(&function->plane.curves, second * hl_plane_second_scale(&function->plane), hit->iso->color,
+                  color);
+}
+
 void hl_reference_color(const reference_volume *volume, double value, vec3 point, double color[3]) {
   const hl_transfer_function *function = &volume->described->transfer_function;
   if (!hl_has_plane(function)) {

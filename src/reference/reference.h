@@ -460,6 +460,8 @@ void hl_reference_iso_next(const reference *all, reference_role role, const refe
 /* The unit normal of an isosurface at a point of the world. It points to the side where values are
  * smaller. */
 vec3 hl_reference_iso_normal(const reference_hit *hit, vec3 point);
+/* The colour of an isosurface at a point of the world. */
+void hl_reference_iso_color(const reference_hit *hit, vec3 point, double color[3]);
 /* The fractions of red, green and blue light that pass all surfaces on a ray. The ray may begin on a
  * surface. */
 void hl_reference_surfaces_passing(const reference *all, const reference_ray *ray, double passing[3]);

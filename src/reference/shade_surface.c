@@ -112,7 +112,8 @@ static void find_iso_point(const reference_hit *hit, reference_surface_point *at
   const hl_scene_volume *volume = hit->volume->described;
   at->normal = hl_reference_iso_normal(hit, at->point);
   if (vec3_dot(at->normal, at->to_eye) < 0) at->normal = vec3_scale(at->normal, -1);
-  for (int c = 0; c < 3; c++) at->color[c] = hit->iso->color[c], at->behind[c] = 1 - hit->opacity;
+  hl_reference_iso_color(hit, at->point, at->color);
+  for (int c = 0; c < 3; c++) at->behind[c] = 1 - hit->opacity;
   at->material = volume->shading == HL_SHADING_FLAT ? (hl_material){.emission = 1} : volume->material;
   at->receives_shadow = volume->receives_shadow && volume->shading != HL_SHADING_FLAT;
 }

@@ -22,7 +22,7 @@ static hl_status make_mesh(hl_pool *pool, const hl_scene_volume *seen, double va
   if (status == HL_OK) status = hl_pool_check(pool, "preparing", error);
   if (status == HL_OK && !hl_grid_place(&grid, source.index_to_frame))
     status = hl_fail(error, HL_ERROR_INPUT, "a volume's axes are singular: the three must span space");
-  if (status == HL_OK) status = hl_isosurface_create(pool, seen, &grid, kernel, value, mesh, error);
+  if (status == HL_OK) status = hl_isosurface_create(pool, seen, &grid, kernel, value, NULL, mesh, error);
   hl_grid_release(context, &grid);
   return status;
 }

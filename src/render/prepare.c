@@ -259,28 +259,49 @@ hl_status hl_prepare_volumes(hl_context *context, hl_pool *pool, const hot_funct
 
 /* ---- isosurfaces ---- */
 
-/* Finds the isosurface of the frame before that has the same value, axes and caps as the wanted surface; null
- * if there is none. If voxels, clip box or cuts have changed, prepare_volume() has already released all
+/* Finds the coloring of isosurface i of a volume. Returns a hash of what it follows from; 0 if the surface
+ * has none. */
+static uint64_t find_coloring(const hl_scene_volume *second, const prepared_volume *prepared, size_t i,
+                              iso_coloring *coloring) {
+  const hl_scene_volume *scene = prepared->scene;
+  if (second == NULL || !hl_iso_has_second_color(scene, i)) return 0;
+  affine3 to_index;
+  if (!affine3_invert(hl_scene_volume_index_to_world(second), &to_index)) return 0;
+  *coloring = (iso_coloring){
+      .second = second,
+      .index_to_second = affine3_multiply(to_index, hl_scene_volume_index_to_world(scene)),
+      .own_color = scene->iso[i].color};
+  const uint64_t parts[] = {prepared->plane_mark, (uint64_t)(uintptr_t)second->volume,
+                            hl_key_mark(&coloring->index_to_second, sizeof coloring->index_to_second),
+                            hl_key_mark(scene->iso[i].color, sizeof scene->iso[i].color)};
+  return hl_key_mark(parts, sizeof parts) | 1;
+}
+
+/* Finds the isosurface of the frame before that has the same value, axes, caps and colours as the wanted one;
+ * null if there is none. If voxels, clip box or cuts have changed, prepare_volume() has already released all
  * surfaces of the frame before. */
 static const prepared_iso *known_iso(const prepared_volume *prepared, const prepared_iso *wanted) {
   for (size_t i = 0; i < prepared->iso_count; i++) {
     const prepared_iso *known = &prepared->iso[i];
-    if (known->value == wanted->value && known->capped == wanted->capped &&
+    if (known->value == wanted->value && known->capped == wanted->capped && known->colors == wanted->colors &&
         memcmp(known->axis_scale, wanted->axis_scale, sizeof wanted->axis_scale) == 0)
       return known;
   }
   return NULL;
 }
 
-/* Prepares the isosurfaces of a volume. grid: the prepared grid, whose faces are open where another volume
- * continues the matter. */
-static hl_status prepare_iso(hl_context *context, hl_pool *pool, const hl_scene_volume *scene,
+/* Prepares the isosurfaces of a volume. second: the volume of its function's second number; may be null.
+ * grid: the prepared grid, whose faces are open where another volume continues the matter. */
+static hl_status prepare_iso(hl_context *context, hl_pool *pool, const hl_scene_volume *second,
                              const grid *grid, prepared_volume *prepared, hl_error *error) {
+  const hl_scene_volume *scene = prepared->scene;
   prepared_iso *made = hl_allocate_zeroed(context, scene->iso_count, sizeof *made);
   hl_status status = HL_OK;
   if (made == NULL) return hl_fail_memory(error, scene->iso_count * sizeof *made, "isosurfaces");
   for (size_t i = 0; i < scene->iso_count && status == HL_OK; i++) {
+    iso_coloring coloring;
     made[i].value = scene->iso[i].value;
+    made[i].colors = find_coloring(second, prepared, i, &coloring);
     made[i].capped = hl_iso_capped_faces(grid);
     memcpy(made[i].axis_scale, scene->axis_scale, sizeof made[i].axis_scale);
     const prepared_iso *known = known_iso(prepared, &made[i]);
@@ -289,7 +310,7 @@ static hl_status prepare_iso(hl_context *context, hl_pool *pool, const hl_scene_
       hl_mesh_retain(known->mesh);
     } else {
       status = hl_isosurface_create(pool, scene, grid, hl_kernel_get(prepared->kernel), made[i].value,
-                                    &made[i].mesh, error);
+                                    made[i].colors != 0 ? &coloring : NULL, &made[i].mesh, error);
     }
   }
   release_iso(context, prepared);
@@ -318,7 +339,7 @@ hl_status hl_prepare_isosurfaces(hl_context *context, hl_pool *pool, const hl_sc
   for (size_t i = 0; i < scene->volume_count && status == HL_OK; i++) {
     if (scene->volumes[i].iso_count == 0 && prepared[i].iso_count == 0) continue;
     const grid grid = grid_with_open_faces(scene, prepared, i);
-    status = prepare_iso(context, pool, &scene->volumes[i], &grid, &prepared[i], error);
+    status = prepare_iso(context, pool, second_of(scene, &scene->volumes[i]), &grid, &prepared[i], error);
   }
   return status;
 }

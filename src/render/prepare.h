@@ -14,6 +14,7 @@ typedef struct prepared_iso {
   double value;
   double axis_scale[3]; /* the volume's axes */
   uint8_t capped;       /* the faces of the volume's box that have caps (hl_iso_capped_faces) */
+  uint64_t colors;      /* a hash of what the colours of its vertices follow from; 0 if they have none */
   hl_mesh *mesh;        /* owned; if null, the surface is empty */
 } prepared_iso;
 

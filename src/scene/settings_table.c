@@ -295,7 +295,10 @@ static const hl_setting iso_rows[] = {
      .mend = "give linear RGB, each from {low} to {high}"},
     {.key = "opacity", FIELD(hl_isosurface, opacity), .type = HL_SETTING_NUMBER, .unit = "", .high = 1,
      .standard = {1}, .sentence = "The fraction of light that the surface stops, from any angle.",
-     .mend = "give a fraction from {low} to {high}"}};
+     .mend = "give a fraction from {low} to {high}"},
+    {.key = "second_color", FIELD(hl_isosurface, second_color), A_FLAG, .option = "color-by",
+     .sentence = "Whether the surface has the colours that the curves of the volume's transfer function give to "
+                 "another volume's values."}};
 
 static const hl_setting cut_rows[] = {
     {.key = "type", FIELD(hl_cut, type), A_CHOICE(cut_types), .sentence = "The shape of the cut."},

@@ -65,7 +65,7 @@ static hl_mesh *mesh_beside(const stage *set, double value, bool goes_on) {
   hl_status status = hl_pool_create(set->context, 1, &pool, &error);
   if (status == HL_OK) status = hl_grid_create(set->context, pool, functions, &source, &grid, &error);
   if (status == HL_OK && goes_on) grid.face_high[0] = FACE_FAR_OUT;
-  if (status == HL_OK) status = hl_isosurface_create(pool, volume, &grid, kernel, value, &mesh, &error);
+  if (status == HL_OK) status = hl_isosurface_create(pool, volume, &grid, kernel, value, NULL, &mesh, &error);
   if (status != HL_OK) fail_msg("%s", error.message);
   hl_grid_release(set->context, &grid);
   hl_pool_destroy(pool);
@@ -265,7 +265,7 @@ static void test_cancelled(void **state) {
   while (status == HL_ERROR_CANCELLED) {
     all.asked = 0;
     hl_pool_resume(pool);
-    status = hl_isosurface_create(pool, volume, &grid, kernel, -12 * 12 - 1, &mesh, NULL);
+    status = hl_isosurface_create(pool, volume, &grid, kernel, -12 * 12 - 1, NULL, &mesh, NULL);
     assert_true(status == HL_OK || (status == HL_ERROR_CANCELLED && mesh == NULL));
     all.stop_at++;
   }

@@ -169,6 +169,7 @@ CASES = {
     "tf": ["--tf look.json", "--tf ct-bone"],
     "colormap": ["--colormap viridis", "--colormap viridis --look mip"],
     "color-by": [".slope.nrrd --color-by part_1.slope.nrrd:inferno:20,90"],
+    "color-by-threshold": [".slope.nrrd --color-by part_1.slope.nrrd:inferno:20,90 --color-by-threshold 60"],
     "range": ["--range 20,150", "--range 1%,99%", "--labels map.nrrd --range map=0,9"],
     "range-scale": ["--range 20,150 --range-scale log"],
     "threshold": ["--threshold 80"],

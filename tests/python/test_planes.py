@@ -60,6 +60,18 @@ def test_curves_of_another_volume(ramp):
         assert color == pytest.approx([1 - t, 0.5 * t, t], abs=0.02)
 
 
+def test_matter_keeps_its_own_color(ramp):
+    """Where the other volume's values lie between two numbers, the colour follows from the own value."""
+    other = np.broadcast_to(np.arange(32, dtype=np.uint8)[:, None], (32, 32, 32)).copy()
+    curves = {"opacity": [(30, 0), (60, 0.05)], "color": [(0, 1, 0, 0)], "own_color": [(0, 0, 0, 1)], "own_between": (10, 20)}
+    function = TransferFunction(second={"volume": "other"}, curves=curves)
+    pixels = picture(Volume(ramp, transfer_function=function, shading="flat"),
+                     Volume(other, name="other", visible=False, casts_shadow=False))
+    for row in (3, 8, 13, 16, 19, 24, 28):
+        own = 10 < 31 - row < 20
+        assert pixels[row, 26, :3] / pixels[row, 26, 3] == pytest.approx([not own, 0, own], abs=1e-3)
+
+
 def test_functions_come_back(ramp, tmp_path, program):
     cone = {"vertices": [(10, 1), (50, 1), (30, 6)], "color": "red", "falloff": 0.5}
     function = TransferFunction(second="gradient", boxes=[HOLDS, {**MISSES, "edge": (3, 1)}], polygons=[cone],
@@ -70,7 +82,7 @@ def test_functions_come_back(ramp, tmp_path, program):
     assert Scene.from_json(scene.to_json()).volumes[0].look["transfer_function"] == function
     assert "opacity" not in json.loads(scene.to_json())["volumes"][0]["transfer_function"]
     assert repr(function) == repr(eval(repr(function)))  # noqa: S307
-    curves = TransferFunction(second={"volume": "b"}, curves={"opacity": [(0, 0), (9, 0.5)], "color": [(1, 0, 1, 0)]})
+    curves = TransferFunction(second={"volume": "b"}, curves={"opacity": [(0, 0), (9, 0.5)], "color": [(1, 0, 1, 0)], "own_color": [(2, 1, 0, 0)], "own_between": (-1, 3)})
     both = Scene([Volume(str(tmp_path / "ramp.npy"), transfer_function=curves, shading="flat"),
                   Volume(str(tmp_path / "ramp.npy"), name="b", transfer_function=TransferFunction([(0, 0.1)]), visible=False)],
                  **LOOK)
@@ -98,3 +110,16 @@ def test_wrong_functions():
                            ({"opacity": [(0, 1)], "second": "gradient", "boxes": [HOLDS]}, "exclude each other")):
         with pytest.raises((TypeError, ValueError), match=message):
             TransferFunction(**given)
+
+
+def test_color_by_is_the_program_s(tmp_path, program):
+    """Keywords that give a volume the colours of another one make the program's picture."""
+    z, y, x = np.mgrid[0:16, 0:16, 0:16]
+    np.save(tmp_path / "ball.npy", (255 * np.clip(1 - np.sqrt((x - 7.5)**2 + (y - 7.5)**2 + (z - 7.5)**2) / 8, 0, 1)).astype(np.uint8))
+    np.save(tmp_path / "heat.npy", (10 * x).astype(np.uint8))
+    options = ["--color-by", "heat.npy:inferno:20,150", "--color-by-threshold", "60,100", "--size", "32", "--quiet"]
+    subprocess.run([program, "render", "ball.npy", *options, "-o", "a.npy"], check=True, cwd=tmp_path)
+    picture = halflight.render(tmp_path / "ball.npy", color_by=f"{tmp_path}/heat.npy:inferno:20,150", color_by_threshold=(60, 100), size=32)
+    assert np.array_equal(np.load(tmp_path / "a.npy"), np.asarray(picture))
+    with pytest.raises(TypeError, match="color_by"):
+        halflight.render(tmp_path / "ball.npy", color_by=7, size=8)

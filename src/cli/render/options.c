@@ -206,6 +206,17 @@ const cli_option render_options[RENDER_OPTION_COUNT] = {
                  "opacity stays; ARRAY, of FILE, or alone of\nthe input; MAP: a colormap (default "
                  "viridis) over the\nvalues LO to HI (default: all)",
          .hint = ", as temperature.nrrd:inferno:300,2000"},
+    [RENDER_COLOR_BY_THRESHOLD] =
+        {.name = "color-by-threshold",
+         .kind = OPTION_NUMBERS,
+         .argument = "T|LO,HI",
+         .help = "with --color-by, matter keeps its own colour where the\nother values are below T, or "
+                 "between LO and HI: a\nstatistical map on a surface (2.5, or -2.5,2.5)",
+         .count = 2,
+         .separator = ',',
+         .even = true,
+         .low = -INFINITY,
+         .high = INFINITY},
     [RENDER_RANGE] = {.name = "range",
                       .kind = OPTION_NUMBERS,
                       .argument = "[NAME=]LO,HI",

@@ -138,8 +138,12 @@ static void add_image(const hl_transfer_function *function, const double at[2], 
   add(sum, share * extinction_of(pixel[3], function->unit_distance), color);
 }
 
-/* Adds the mean extinction over the values of a part of the plane, in the mean colour over its second
- * numbers. */
+void hl_curves_color(const hl_function_curves *curves, double second, const double own[3], double color[3]) {
+  if (hl_curves_keep_own(curves, second)) memcpy(color, own, 3 * sizeof *color);
+  else hl_points_color(curves->color, curves->color_count, second, color);
+}
+
+/* Adds the mean extinction over the values of a part of the plane, in the mean colour over the part. */
 static void add_curves(const hl_transfer_function *function, const plane_box *part, int samples,
                        plane_sum *sum) {
   const hl_function_curves *curves = &function->plane.curves;
@@ -147,12 +151,13 @@ static void add_curves(const hl_transfer_function *function, const plane_box *pa
   if (curves->opacity_count == 0 || isnan(part->low[0])) return;
   for (int n = 0; n < samples; n++) {
     const double along = (n + 0.5) / samples;
-    double at[2], one[3];
+    double at[2], own[3], one[3];
     for (int axis = 0; axis < 2; axis++)
       at[axis] = part->low[axis] + (part->high[axis] - part->low[axis]) * along;
     const double opacity = hl_points_opacity(curves->opacity, curves->opacity_count, at[0]);
     extinction += extinction_of(opacity, function->unit_distance) / samples;
-    hl_points_color(curves->color, curves->color_count, at[1], one);
+    hl_points_color(curves->own_color, curves->own_color_count, at[0], own);
+    hl_curves_color(curves, at[1], own, one);
     for (int c = 0; c < 3; c++) color[c] += one[c] / samples;
   }
   add(sum, extinction, color);
@@ -180,6 +185,9 @@ plane_sum hl_plane_mean(const hl_transfer_function *function, const plane_box *p
 
 /* ---- the box around all shapes ---- */
 
+/* Ends of own_between from this number on stand for no end. */
+#define UNBOUNDED 1e30
+
 static void join(plane_box *bounds, const double low[2], const double high[2]) {
   for (int a = 0; a < 2; a++) {
     bounds->low[a] = fmin(bounds->low[a], low[a]);
@@ -200,6 +208,10 @@ static void join_curves(const hl_function_curves *curves, plane_box *bounds) {
   const double high[2] = {end < curves->opacity_count ? points[end].value : INFINITY,
                           colors > 0 ? curves->color[colors - 1].value : 0};
   join(bounds, low, high);
+  for (int side = 0; side < 2 && hl_curves_have_own(curves); side++) {
+    const double border = curves->own_between[side];
+    if (fabs(border) < UNBOUNDED) join(bounds, (double[2]){low[0], border}, (double[2]){high[0], border});
+  }
 }
 
 bool hl_plane_bounds(const hl_function_plane *plane, plane_box *bounds) {
@@ -244,7 +256,8 @@ static void note_image(const hl_function_image *image, double from, double to, c
     }
 }
 
-/* Notes the greatest opacity of the curves from `from` to `to`, in the mean of all colours. */
+/* Notes the greatest opacity of the curves from `from` to `to`, in the volume's own colour, or in the mean of
+ * all colours of the second number. */
 static void note_curves(const hl_function_curves *curves, double from, double to, column *column) {
   double greatest = 0, color[3] = {1, 1, 1};
   if (curves->opacity_count == 0) return;
@@ -255,6 +268,8 @@ static void note_curves(const hl_function_curves *curves, double from, double to
     greatest = fmax(greatest, hl_points_opacity(curves->opacity, curves->opacity_count, end ? to : from));
   for (size_t n = 0; n < curves->color_count; n++)
     for (int c = 0; c < 3; c++) color[c] += ((double)curves->color[n].color[c] - color[c]) / (double)(n + 1);
+  if (hl_curves_have_own(curves))
+    hl_points_color(curves->own_color, curves->own_color_count, (from + to) / 2, color);
   if (greatest > 0) note(column, greatest, color);
 }
 

@@ -16,6 +16,25 @@ static inline double hl_plane_second_scale(const hl_function_plane *plane) {
   return plane->second_scale == 0 ? 1 : plane->second_scale;
 }
 
+/* Whether the function's colours are curves over the values of a second volume. */
+static inline bool hl_has_second_colors(const hl_transfer_function *function) {
+  return function->plane.second == HL_SECOND_VOLUME && function->plane.curves.opacity_count > 0;
+}
+
+/* Whether a volume keeps a colour of its own at some second numbers. */
+static inline bool hl_curves_have_own(const hl_function_curves *curves) {
+  return curves->own_between[0] < curves->own_between[1];
+}
+
+/* Whether the volume keeps its own colour at a second number. */
+static inline bool hl_curves_keep_own(const hl_function_curves *curves, double second) {
+  return second > curves->own_between[0] && second < curves->own_between[1];
+}
+
+/* Finds the colour of the curves at a second number. own: linear RGB; the volume's own colour, which it may
+ * keep there. */
+void hl_curves_color(const hl_function_curves *curves, double second, const double own[3], double color[3]);
+
 /* The keys under which a scene file has the ranges of the two axes: "value" and "second". */
 extern const char *const hl_plane_range_keys[2];
 

@@ -116,6 +116,20 @@ static hl_status check_order(const hl_checker *check, const char *key, const voi
   return status;
 }
 
+/* Checks the colours that the volume keeps. */
+static hl_status check_own(const hl_checker *check, const hl_function_curves *curves) {
+  hl_status status = check_order(check, "own_color", curves->own_color, curves->own_color_count,
+                                 sizeof *curves->own_color);
+  for (size_t n = 0; n < curves->own_color_count && status == HL_OK; n++)
+    status = hl_check_point_color(check, "own_color", n, curves->own_color[n].color);
+  for (int end = 0; end < 2 && status == HL_OK; end++)
+    status = hl_check_range(check, end ? "own_between/1" : "own_between/0", curves->own_between[end], -1e30,
+                            1e30, "give a second number");
+  if (status == HL_OK && curves->own_between[0] > curves->own_between[1])
+    status = hl_check_refuse(check, "own_between", "ends below its beginning: give [LO, HI]");
+  return status;
+}
+
 static hl_status check_curves(const char *place, const hl_function_curves *curves, hl_error *error) {
   hl_checker check = {error, ""};
   snprintf(check.place, sizeof check.place, "%s/curves", place);
@@ -131,7 +145,7 @@ static hl_status check_curves(const char *place, const hl_function_curves *curve
     status = hl_check_point_opacity(&check, "opacity", n, curves->opacity[n].opacity);
   for (size_t n = 0; n < curves->color_count && status == HL_OK; n++)
     status = hl_check_point_color(&check, "color", n, curves->color[n].color);
-  return status;
+  return status == HL_OK ? check_own(&check, curves) : status;
 }
 
 hl_status hl_plane_check(const hl_function_plane *plane, const char *place, hl_error *error) {
@@ -181,6 +195,7 @@ void hl_plane_release(hl_context *context, hl_function_plane *plane) {
   hl_release(context, (void *)plane->boxes);
   hl_release(context, (void *)plane->curves.opacity);
   hl_release(context, (void *)plane->curves.color);
+  hl_release(context, (void *)plane->curves.own_color);
   hl_release(context, (void *)plane->volume);
   hl_release(context, (void *)plane->image.file);
   hl_release(context, (void *)plane->image.pixels);
@@ -231,9 +246,12 @@ hl_status hl_plane_copy(hl_context *context, const hl_function_plane *from, hl_f
                                sizeof *from->curves.opacity);
   to->curves.color = copy_of(context, from->curves.color, from->curves.color_count,
                              sizeof *from->curves.color);
+  to->curves.own_color = copy_of(context, from->curves.own_color, from->curves.own_color_count,
+                                 sizeof *from->curves.own_color);
   bool whole = (from->box_count == 0 || to->boxes != NULL) &&
                (from->curves.opacity_count == 0 || to->curves.opacity != NULL) &&
                (from->curves.color_count == 0 || to->curves.color != NULL) &&
+               (from->curves.own_color_count == 0 || to->curves.own_color != NULL) &&
                (image->pixels == NULL || to->image.pixels != NULL) &&
                copy_text(context, image->file, &to->image.file) &&
                (from->second != HL_SECOND_VOLUME || copy_text(context, from->volume, &to->volume)) &&
@@ -260,12 +278,16 @@ uint64_t hl_plane_mark(const hl_function_plane *plane) {
                             image->low[0],
                             image->low[1],
                             image->high[0],
-                            image->high[1]};
+                            image->high[1],
+                            plane->curves.own_between[0],
+                            plane->curves.own_between[1]};
   const hl_function_curves *curves = &plane->curves;
   add_block(&mark, numbers, sizeof numbers);
   if (curves->opacity_count > 0)
     add_block(&mark, curves->opacity, curves->opacity_count * sizeof *curves->opacity);
   if (curves->color_count > 0) add_block(&mark, curves->color, curves->color_count * sizeof *curves->color);
+  if (curves->own_color_count > 0)
+    add_block(&mark, curves->own_color, curves->own_color_count * sizeof *curves->own_color);
   if (plane->box_count > 0) add_block(&mark, plane->boxes, plane->box_count * sizeof *plane->boxes);
   for (size_t p = 0; p < plane->polygon_count; p++) {
     const hl_function_polygon *polygon = &plane->polygons[p];

@@ -51,10 +51,54 @@ for by in OHH flame.vti:OHH; do
   halflight render flame.vti --array heat --color-by $by -o no.png 2>message || code=$?
   echo $code "$(cut -c12-200 message)"
 done
-for wrong in "no.nrrd" "heat.nrrd:90,20" "heat.nrrd --look mip" "heat.nrrd --iso 90" "heat.nrrd:infernoo" "heat.nrrd:hot:1"; do
+for wrong in "no.nrrd" "heat.nrrd:90,20" "heat.nrrd --look mip" "heat.nrrd:infernoo" "heat.nrrd:hot:1"; do
   code=0
   ball --color-by $wrong -o no.png 2>message || code=$?
   echo $code "$(cut -c12-180 message)"
+done
+# Below a threshold, and between two numbers, the matter keeps its own colours.
+flat() { ball --shading flat --kernel linear --ortho --view front --size 64 "$@"; }
+flat -o own.npy
+flat --color-by heat.nrrd:inferno:20,150 -o mapped.npy
+flat --color-by heat.nrrd:inferno:20,150 --color-by-threshold 80 -o above.npy
+flat --color-by heat.nrrd:inferno:20,150 --color-by-threshold 60,100 -o beside.npy
+"$PYTHON" - <<'END'
+import numpy as np
+own, mapped, above, beside = (np.load(name + ".npy") for name in ("own", "mapped", "above", "beside"))
+seen = own[..., 3] > 0.5
+x = np.nonzero(seen.any(axis=0))[0]
+low, high = x.min(), x.max() + 1
+heat = (np.arange(64) + 0.5 - low) / (high - low) * 150  # where the ball is seen, up to a few pixels
+same = lambda a, b, columns: bool(np.abs(a - b)[:, columns].max() < 2e-3)
+print(same(above, own, heat < 60), same(above, mapped, heat > 100), same(above, own, heat > 100))
+print(same(beside, mapped, heat < 40), same(beside, own, abs(heat - 80) < 5), same(beside, mapped, heat > 120))
+END
+ball --color-by heat.nrrd:inferno:20,150 --color-by-threshold 80 --print-scene >kept.json
+tool json kept.json "(lambda c: (c['own_between'], len(c['own_color']) > 0))(d['volumes'][0]['transfer_function']['curves'])"
+ball --color-by heat.nrrd:inferno:20,150 --color-by-threshold 80 --size 12 --sky 0 --shadows off -o sheets.npy
+ball --color-by heat.nrrd:inferno:20,150 --color-by-threshold 80 --size 12 --sky 0 --shadows off --reference -o exact.npy
+halflight diff exact.npy sheets.npy --max-rmse 0.02 >/dev/null
+for wrong in "--color-by-threshold 80" "--color-by heat.nrrd --color-by-threshold 9,2"; do
+  code=0
+  ball $wrong -o no.png 2>message || code=$?
+  echo $code "$(cut -c12-180 message)"
+done
+ball --color-by heat.nrrd:hot:100,150 --size 8 --print-scene >first.json 2>message
+halflight render ball_16x16x16_uint8.raw --color-by heat.nrrd:hot:100,150 --size 8 -o first.png 2>message
+grep threshold message
+# An isosurface has the colours, too, or its own one below the threshold: the reference's, but for the pixels of edges.
+for threshold in "" "--color-by-threshold 80"; do
+  iso() { ball --iso 90:gold --color-by heat.nrrd:inferno:20,150 $threshold --size 24 --sky 0 --shadows off --shading flat --ortho --view front "$@"; }
+  iso -o sheets.npy
+  iso --reference -o exact.npy
+  "$PYTHON" -c "import numpy as np
+exact, sheets = np.load('exact.npy'), np.load('sheets.npy')
+apart = np.abs(exact - sheets)[(exact[..., 3] == 1) & (sheets[..., 3] == 1)].max(axis=1)
+print(len(apart) > 200, np.median(apart) < 2e-3, (apart > 0.03).mean() < 0.1)"
+  iso --print-scene >iso.json
+  tool json iso.json "d['volumes'][0]['iso']"
+  halflight render iso.json --quiet -o again.npy
+  cmp sheets.npy again.npy
 done
 # The legend's colours go over their own values, also where --range tells the values of matter.
 ball --color-by heat.nrrd:inferno --range 20,255 --legend "Heat (K)" --size 200 -o ranged.png

@@ -14,3 +14,8 @@ for words in '' '--colormap viridis'; do
   halflight render ct_24x24x24_int16.raw --slice z=0.5 $words --legend auto --place legend=below --size 200 --quiet -o slice.pdf
   pdftotext -layout slice.pdf - | grep -oE '[0-9]+' | sort -n | tr '\n' ' '; echo
 done
+# A range of one volume ends this volume's legend, too.
+for range in 40,120 a_16x16x16_uint8=40,120; do
+  halflight render a_16x16x16_uint8.raw --size 160x160 --colormap turbo --range $range --legend auto --no-metadata --quiet -o ranged-${range%=*}.png
+done
+cmp ranged-40,120.png ranged-a_16x16x16_uint8.png
