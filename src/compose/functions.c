@@ -465,13 +465,14 @@ static hl_status spread(const hl_composer *composer, const hl_volume *volume, co
   return hl_blame_options(status);
 }
 
-/* Gives all values one colour. ramp: for maximum projections, the colours go from black at range[0] to this
- * colour at range[1]. */
+/* Gives all values one colour. ramp: for maximum projections, the colours go from the background at range[0]
+ * to this colour at range[1]. */
 static hl_status color_plainly(const hl_composer *composer, const double color[3], bool ramp,
                                const double range[2], hl_transfer_function *function) {
-  hl_color_point points[2] = {{range[0], {0}}, {range[1], {0}}};
-  for (int c = 0; c < 3; c++) points[1].color[c] = color[c];
-  const hl_transfer_function colors = {.color = ramp ? points : points + 1, .color_count = ramp ? 2 : 1};
+  hl_color_point points[HL_RAMP_POINTS];
+  const size_t count = hl_projection_ramp(composer, color, range, points);
+  const hl_transfer_function colors = {.color = ramp ? points : &points[count - 1],
+                                       .color_count = ramp ? count : 1};
   return replace(composer, &colors, function);
 }
 

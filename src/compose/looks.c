@@ -12,10 +12,6 @@
 #include "image/srgb.h"
 #include "scene/function/transfer_function.h"
 
-/* The linear value of middle grey. On a background brighter than this, a maximum projection ends in black,
- * and the matter of a film is black. */
-#define MIDDLE_GREY 0.18
-
 static bool is_maximum(const hl_asked *asked) {
   return asked[HL_ASK_LOOK].given && asked[HL_ASK_LOOK].choice == HL_LOOK_MIP;
 }
@@ -77,17 +73,13 @@ static void mix_encoded(const double from[3], const double to[3], double t, doub
   }
 }
 
-static bool is_bright(const double color[3]) {
-  return 0.2126 * color[0] + 0.7152 * color[1] + 0.0722 * color[2] > MIDDLE_GREY;
-}
-
 /* Derived: a grey of the preset, when encoded, lies at the fraction t of the way from black to white. The new
  * colour lies at the same fraction of the way from the background to the end colour, also in encoded values.
  * For a black background and a white end, the new colour is the grey itself. */
 void hl_fit_projection(const hl_composer *composer, hl_transfer_function *function) {
   double from[3];
   if (!composer->asked[HL_ASK_BACKGROUND].given || !find_background(composer, from)) return;
-  const double end = is_bright(from) ? 0 : 1;
+  const double end = hl_color_is_bright(from) ? 0 : 1;
   for (size_t n = 0; n < function->color_count; n++) {
     double *color = ((hl_color_point *)function->color)[n].color;
     mix_encoded(from, (double[3]){end, end, end}, hl_srgb_encode_number(color[0]), color);
@@ -100,7 +92,7 @@ bool hl_is_film(const hl_composer *composer, const hl_scene_description *descrip
                                        : description->background_transparent || description->background_sky;
   const hl_scene_volume *volume = &description->volumes[index];
   return look->given && look->choice == HL_LOOK_XRAY && !keyed && volume->label_count == 0 &&
-         is_bright(background->given ? background->number : description->background) &&
+         hl_color_is_bright(background->given ? background->number : description->background) &&
          hl_text_for(composer, HL_ASK_COLORMAP, volume, index) == NULL &&
          hl_text_for(composer, HL_ASK_TF, volume, index) == NULL;
 }
@@ -113,7 +105,7 @@ void hl_make_film(hl_transfer_function *function) {
       if (function->color[n].color[c] != 1) return;
   for (size_t n = 0; n < function->color_count; n++)
     for (int c = 0; c < 3; c++) ((hl_color_point *)function->color)[n].color[c] = 0;
-  function->unit_distance *= hl_log2(1 - MIDDLE_GREY) / hl_log2(MIDDLE_GREY);
+  function->unit_distance *= hl_log2(1 - HL_MIDDLE_GREY) / hl_log2(HL_MIDDLE_GREY);
 }
 
 /* Returns whether a colour is nearly the background's, so that a map that begins with it fades by itself. */
@@ -178,14 +170,40 @@ void hl_tell_of_function(const hl_composer *composer) {
                                      : "the shading and the light are those of the look");
 }
 
+/* On a background, the ramp goes from the background's colour to the volume's, evenly in encoded values, as
+ * the greys of one volume do. */
+size_t hl_projection_ramp(const hl_composer *composer, const double color[3], const double range[2],
+                          hl_color_point ramp[HL_RAMP_POINTS]) {
+  double from[3];
+  const bool lies = !composer->asked[HL_ASK_SLICE].given && find_background(composer, from) &&
+                    from[0] + from[1] + from[2] > 0;
+  const size_t count = lies ? HL_RAMP_POINTS : 2;
+  for (size_t n = 0; n < count; n++) {
+    const double t = (double)n / (double)(count - 1);
+    ramp[n].value = range[0] + t * (range[1] - range[0]);
+    for (int c = 0; c < 3; c++) ramp[n].color[c] = t * color[c];
+    if (lies) mix_encoded(from, color, hl_srgb_encode_number(t), ramp[n].color);
+  }
+  return count;
+}
+
 void hl_tell_of_background(const hl_composer *composer, const hl_scene_description *description) {
   double color[3];
+  bool mapped = false;
   if (!composer->bare || description->volume_count < 2 || !hl_is_maximum(composer, description) ||
       !find_background(composer, color) || color[0] + color[1] + color[2] == 0)
     return;
-  hl_log(composer->context, HL_LOG_INFO,
-         "maximum projections of several volumes add up as light, so that small values are black before this "
-         "background: --background black has no such border");
+  for (size_t v = 0; v < description->volume_count; v++) mapped |= hl_has_colormap(composer, description, v);
+  if (mapped)
+    hl_log(composer->context, HL_LOG_INFO,
+           "the colormaps of several maximum projections add up as light, and do not begin with this "
+           "background: "
+           "give colours, as --colormap green,magenta, or --background black");
+  else if (hl_color_is_bright(color))
+    hl_log(composer->context, HL_LOG_INFO,
+           "before a bright background the projections darken each other like inks: --background black lets "
+           "them "
+           "shine");
 }
 
 void hl_compose_look(const hl_composer *composer, hl_scene_description *description) {

@@ -43,7 +43,15 @@ hl_status hl_fade_projection(const struct hl_composer *composer, const hl_volume
  * "look". */
 void hl_tell_of_function(const struct hl_composer *composer);
 
-/* Logs that a maximum projection of several bare volumes does not suit a background that is not black. */
+enum { HL_RAMP_POINTS = 33 };
+
+/* Makes the colours of a volume's maximum projection from a colour: they go from black, or from the
+ * background if it is given, at range[0] to the colour at range[1]. color: linear RGB. Returns the number of
+ * points. */
+size_t hl_projection_ramp(const struct hl_composer *composer, const double color[3], const double range[2],
+                          hl_color_point ramp[HL_RAMP_POINTS]);
+
+/* Logs how maximum projections of several bare volumes lie before a background that is not black. */
 void hl_tell_of_background(const struct hl_composer *composer, const hl_scene_description *description);
 
 /* Makes the picture a maximum projection, or a picture with light, as "look" asks. */

@@ -105,10 +105,24 @@ static double greatest_along(const crossing *whole, double step) {
   return greatest;
 }
 
+/* Returns whether the colours of all visible volumes begin bright. They then darken each other; else they
+ * brighten each other. */
+static bool all_begin_bright(const hl_scene_description *scene) {
+  bool bright = true;
+  for (size_t v = 0; v < scene->volume_count; v++) {
+    const hl_scene_volume *volume = &scene->volumes[v];
+    double first[3];
+    hl_transfer_function_color(&volume->transfer_function, volume->volume->minimum, first);
+    if (volume->visible) bright = bright && hl_color_is_bright(first);
+  }
+  return bright;
+}
+
 void hl_reference_maximum(const reference *all, vec3 origin, vec3 direction, reference_worker *worker,
                           float rgba[4]) {
   march walk;
   bool orthographic = all->scene->camera.type == HL_CAMERA_ORTHOGRAPHIC;
+  const bool darkens = all_begin_bright(all->scene);
   const reference_ray ray = {origin, direction, orthographic ? -INFINITY : 0, INFINITY};
   for (int c = 0; c < 4; c++) rgba[c] = 0;
   hl_reference_march_begin(all, REFERENCE_SEEN, &ray, worker->eye, &walk);
@@ -117,7 +131,10 @@ void hl_reference_maximum(const reference *all, vec3 origin, vec3 direction, ref
     double greatest = greatest_along(part, all->step), color[3];
     if (!(greatest > -INFINITY)) continue;
     hl_transfer_function_color(&part->volume->described->transfer_function, greatest, color);
-    for (int c = 0; c < 3; c++) rgba[c] = fmaxf(rgba[c], (float)color[c]);
+    for (int c = 0; c < 3; c++)
+      rgba[c] = rgba[3] == 0 ? (float)color[c]
+                : darkens    ? fminf(rgba[c], (float)color[c])
+                             : fmaxf(rgba[c], (float)color[c]);
     rgba[3] = 1;
   }
 }

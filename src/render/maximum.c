@@ -5,6 +5,7 @@
 #include <string.h>
 
 #include "core/memory.h"
+#include "scene/function/transfer_function.h"
 
 static size_t visible_count(const plan_volumes *volumes) {
   size_t count = 0;
@@ -78,11 +79,25 @@ void hl_maximum_take(const maximum_values *maximum, hl_pool *pool, float *pixels
 typedef struct color_job {
   const maximum_values *maximum;
   const plan_volumes *volumes;
+  bool darkens; /* whether the colours of volumes darken each other */
   float *pixels;
 } color_job;
 
-/* Looks up the colours of sixteen pixels of one volume. */
-static void color_block(float (*table)[4], const float *greatest, float *pixels) {
+/* Returns whether the colours of all visible volumes begin bright, as in projections on white paper. The
+ * colours then darken each other; else they brighten each other, as light does. */
+static bool all_begin_bright(const plan_volumes *volumes) {
+  bool bright = true;
+  for (int i = 0; i < volumes->count; i++) {
+    const float *first = volumes->list[i].classifier->color[0];
+    const double color[3] = {(double)first[0], (double)first[1], (double)first[2]};
+    if (volumes->list[i].visible) bright = bright && hl_color_is_bright(color);
+  }
+  return bright;
+}
+
+/* Looks up the colours of sixteen pixels of one volume. Where volumes shine, a pixel's component is the
+ * greatest one of their colours; where they darken each other, it is the least one. */
+static void color_block(float (*table)[4], const float *greatest, bool darkens, float *pixels) {
   for (int lane = 0; lane < BLOCK_PIXELS; lane++) {
     if (!(greatest[lane] >= 0)) continue;
     int entry = (int)greatest[lane];
@@ -90,7 +105,8 @@ static void color_block(float (*table)[4], const float *greatest, float *pixels)
     for (int c = 0; c < 3; c++) {
       float color = table[entry][c] + (table[entry + 1][c] - table[entry][c]) * fraction;
       float *at = &pixels[c * BLOCK_PIXELS + lane];
-      if (color > *at) *at = color;
+      const bool first = pixels[3 * BLOCK_PIXELS + lane] == 0;
+      if (first || (darkens ? color < *at : color > *at)) *at = color;
     }
     pixels[3 * BLOCK_PIXELS + lane] = 1;
   }
@@ -103,14 +119,14 @@ static void color_tile(void *data, size_t tile, int worker) {
   for (int i = 0; i < job->volumes->count; i++) {
     if (!job->volumes->list[i].visible) continue;
     for (int block = 0; block < TILE_BLOCKS; block++)
-      color_block(job->volumes->list[i].classifier->color, values + block * BLOCK_PIXELS,
+      color_block(job->volumes->list[i].classifier->color, values + block * BLOCK_PIXELS, job->darkens,
                   job->pixels + (tile * TILE_BLOCKS + (size_t)block) * 4 * BLOCK_PIXELS);
     values += MAXIMUM_ROWS * TILE_PIXELS;
   }
 }
 
 void hl_maximum_color(const maximum_values *maximum, const frame_plan *of, hl_pool *pool, float *pixels) {
-  color_job job = {maximum, &of->volumes, pixels};
+  color_job job = {maximum, &of->volumes, all_begin_bright(&of->volumes), pixels};
   hl_pool_run(pool, maximum->tiles, color_tile, &job);
 }
 

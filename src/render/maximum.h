@@ -31,7 +31,8 @@ uint32_t hl_maximum_tile(const sweep *sweep, const tile_slab *slab);
 void hl_maximum_take(const maximum_values *maximum, hl_pool *pool, float *pixels);
 
 /* Makes the picture's pixels, [tiles][16][R G B A][16]. Each channel is the greatest among the colours of the
- * volumes. Alpha is 1 where any volume shows something. */
+ * volumes, or the least one if the colours of all volumes begin bright. Alpha is 1 where any volume shows
+ * something. */
 void hl_maximum_color(const maximum_values *maximum, const frame_plan *plan, hl_pool *pool, float *pixels);
 
 #endif

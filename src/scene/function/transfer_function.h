@@ -37,4 +37,12 @@ hl_status hl_transfer_function_copy(hl_context *context, const hl_transfer_funct
 
 static inline bool hl_is_grey(const double color[3]) { return color[0] == color[1] && color[1] == color[2]; }
 
+/* The linear value of middle grey. */
+#define HL_MIDDLE_GREY 0.18
+
+/* Whether a colour is brighter than middle grey. color: linear RGB. */
+static inline bool hl_color_is_bright(const double color[3]) {
+  return 0.2126 * color[0] + 0.7152 * color[1] + 0.0722 * color[2] > HL_MIDDLE_GREY;
+}
+
 #endif
