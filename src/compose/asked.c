@@ -79,6 +79,7 @@ const hl_option_row hl_option_rows[HL_ASK_COUNT] = {
     CHOICE(HL_ASK_SHADING, "shading", .setting_kind = HL_SETTINGS_VOLUME, .setting = "shading"),
     SWITCH(HL_ASK_FLOOR, "floor"),
     SWITCH(HL_ASK_OUTLINE, "outline"),
+    TEXTS(HL_ASK_RULER, "ruler"),
     TEXT(HL_ASK_LABELS, "labels"),
     TEXT(HL_ASK_MASK, "mask"),
     TEXT(HL_ASK_LABEL_TABLE, "label-table"),

@@ -11,6 +11,7 @@
 #include "compose/composer.h"
 #include "compose/lights.h"
 #include "compose/looks.h"
+#include "compose/rulers.h"
 #include "compose/slice.h"
 #include "compose/volumes.h"
 #include "core/context.h"
@@ -25,6 +26,7 @@ typedef struct scene_change {
   hl_changed_volumes volumes;
   hl_scene_volume *channels; /* owned; the volumes, of which some may be translucent; null if none is */
   hl_coloring coloring;      /* owned; the volumes, in the colours of another volume */
+  hl_rulers rulers;          /* owned; the marks, of which the last ones are added rulers */
   hl_light *lights;          /* owned; [description.light_count] */
   hl_scene_mesh *colored; /* owned; the scene's meshes if "colormap" gives some of them colours; else null */
   hl_scene_mesh *meshes;  /* owned; the meshes, of which the last ones are added; null if none is added */
@@ -171,6 +173,7 @@ static hl_status change_all(const hl_composer *composer, scene_change *change) {
   if (status == HL_OK) status = add_floor(composer, change);
   if (status == HL_OK) status = hl_compose_lights(composer, description, &change->lights);
   if (status == HL_OK) status = hl_compose_sky(composer, description, &change->sky);
+  if (status == HL_OK) status = hl_compose_rulers(composer, description, &change->rulers);
   if (status == HL_OK) status = hl_compose_color_by(composer, description, &change->coloring);
   if (status != HL_OK) return status;
   hl_compose_look(composer, description);
@@ -187,6 +190,7 @@ static hl_status change_all(const hl_composer *composer, scene_change *change) {
 static void change_release(hl_context *context, scene_change *change) {
   hl_changed_volumes_release(context, &change->volumes);
   hl_coloring_release(context, &change->coloring);
+  hl_rulers_release(context, &change->rulers);
   hl_release(context, change->channels);
   hl_release(context, change->sky);
   for (size_t n = 1; n <= change->added; n++)
@@ -243,6 +247,7 @@ static hl_status check(const hl_asked *asked, hl_error *error) {
   status = hl_check_slice(asked, error);
   if (status == HL_OK) status = hl_check_clip(&asked[HL_ASK_CLIP], error);
   if (status == HL_OK) status = hl_check_cuts(asked, error);
+  if (status == HL_OK) status = hl_check_rulers(&asked[HL_ASK_RULER], error);
   if (status == HL_OK) status = hl_check_isosurfaces(&asked[HL_ASK_ISO], error);
   return status == HL_OK ? hl_check_sky(&asked[HL_ASK_SKY], error) : status;
 }

@@ -131,6 +131,12 @@ bool hl_cuts_bare_volume(const hl_composer *composer, const hl_scene_description
 hl_status hl_compose_cuts(const hl_composer *composer, hl_scene_volume *volume, size_t index, bool alone,
                           hl_cut *cuts);
 
+/* Finds the box around all volumes in the scene's world, which has the unit of the first volume. The scene
+ * must have a volume. */
+struct hl_world_box;
+hl_status hl_scene_world_box(const hl_composer *composer, const hl_scene_description *scene,
+                             struct hl_world_box *box);
+
 /* Adds the options' cuts without a name to a scene's own cuts, which cut all volumes. Numbers without a unit
  * are fractions of the box around all volumes. cuts: an array with room for both; the scene borrows it. */
 hl_status hl_compose_scene_cuts(const hl_composer *composer, hl_scene_description *scene, hl_cut *cuts);

@@ -272,13 +272,20 @@ hl_status hl_compose_cuts(const hl_composer *composer, hl_scene_volume *volume, 
   return status;
 }
 
+hl_status hl_scene_world_box(const hl_composer *composer, const hl_scene_description *scene,
+                             hl_world_box *box) {
+  hl_status status = HL_OK;
+  *box = (hl_world_box){{INFINITY, INFINITY, INFINITY}, {-INFINITY, -INFINITY, -INFINITY}, NULL};
+  for (size_t v = 0; v < scene->volume_count && status == HL_OK; v++)
+    status = extend_box(composer, &scene->volumes[v], v == 0, box);
+  return status;
+}
+
 hl_status hl_compose_scene_cuts(const hl_composer *composer, hl_scene_description *scene, hl_cut *cuts) {
   const cut_target target = {.nameless = true};
-  hl_world_box box = {{INFINITY, INFINITY, INFINITY}, {-INFINITY, -INFINITY, -INFINITY}, NULL};
+  hl_world_box box;
   size_t count = scene->cut_count;
-  hl_status status = HL_OK;
-  for (size_t v = 0; v < scene->volume_count && status == HL_OK; v++)
-    status = extend_box(composer, &scene->volumes[v], v == 0, &box);
+  hl_status status = hl_scene_world_box(composer, scene, &box);
   if (status != HL_OK) return status;
   if (count > 0) memcpy(cuts, scene->cuts, count * sizeof *cuts);
   status = add_cuts(composer, &target, &box, cuts, &count);

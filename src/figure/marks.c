@@ -207,7 +207,8 @@ hl_status hl_overlay_marks(const hl_ink *ink, const hl_overlay_place *place, hl_
   hl_overlay_place own = *place; /* the captions take places, too */
   if (scene->mark_count == 0)
     return hl_fail(error, HL_ERROR_ARGUMENT,
-                   "marks: the scene has none: measure in `halflight view`, and save the scene there");
+                   "marks: the scene has none: measure by --ruler X,Y,Z:X,Y,Z or in `halflight view`, or "
+                   "give the scene \"marks\"");
   cairo_save(ink->cairo);
   cairo_rectangle(ink->cairo, picture.left, picture.top, picture.width, picture.height);
   cairo_clip(ink->cairo);

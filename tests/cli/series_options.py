@@ -193,6 +193,7 @@ CASES = {
                     ".seg.nrrd --label-table table.csv"],
     "show": ["--labels map.nrrd --show 1,2=red:0.5", "--mask map.nrrd --show 2=red:0.5,rest:0.1", ".seg.nrrd --show 2",
              ".seg.nrrd --show left,block=yellow:0.4 --label-table table.csv --clip x=0:0.6"],
+    "ruler": ["--ruler 0,0.5,0.5:1,0.5,0.5:width"],
     "ambient": ["--ambient 0.4"],
     "light-rig": ["--light-rig rim", ".obj --light-rig studio"],
     "scattering": ["--scattering 0.9"],

@@ -350,6 +350,14 @@ const cli_option render_options[RENDER_OPTION_COUNT] = {
                         .kind = OPTION_SWITCH,
                         .help = "the edges of the volumes' boxes as thin grey wires, also\nof the part that "
                                 "cuts take away"},
+    [RENDER_RULER] =
+        {.name = "ruler",
+         .kind = OPTION_TEXT,
+         .argument = "X,Y,Z:X,Y,Z[:TEXT]",
+         .help = "draw the distance between two points (fractions of the\nbox, or lengths such as "
+                 "40mm) with its length, after TEXT;\nthe scene keeps it as a mark; give it again for "
+                 "more",
+         .repeatable = true},
 
     [RENDER_LABELS] = {.name = "labels",
                        .kind = OPTION_TEXT,

@@ -139,7 +139,7 @@ int render_overlay_read(const cli_value *values, cli_overlay *overlay) {
   if (values[RENDER_FONT_SIZE].given) overlay->font_points = values[RENDER_FONT_SIZE].number[0];
   if (values[RENDER_UNIT].given) overlay->overlay.world_unit = values[RENDER_UNIT].text;
   if (values[RENDER_AXES].given) overlay->overlay.axes = (hl_axes)values[RENDER_AXES].choice;
-  overlay->overlay.marks = values[RENDER_MARKS].given;
+  overlay->overlay.marks = values[RENDER_MARKS].given || values[RENDER_RULER].given;
   const cli_value *legend = &values[RENDER_LEGEND];
   overlay->overlay.legend = legend->given;
   if (legend->given && strcmp(legend->text, "auto") != 0) overlay->overlay.legend_title = legend->text;
@@ -148,7 +148,7 @@ int render_overlay_read(const cli_value *values, cli_overlay *overlay) {
   for (int n = 0; n < 2 && for_all && !range->percent[0] && !range->percent[1]; n++)
     overlay->overlay.legend_range[n] = range->number[n];
   overlay->drawn = values[RENDER_SCALE_BAR].given || legend->given || values[RENDER_AXES].given ||
-                   values[RENDER_MARKS].given || values[RENDER_ANNOTATE].given;
+                   overlay->overlay.marks || values[RENDER_ANNOTATE].given;
   int exit_code = EXIT_CODE_OK;
   if (values[RENDER_SCALE_BAR].given) exit_code = read_scale_bar(&values[RENDER_SCALE_BAR], overlay);
   for (int n = 0; n < values[RENDER_ANNOTATE].count && exit_code == EXIT_CODE_OK; n++)
@@ -161,7 +161,8 @@ int render_overlay_read(const cli_value *values, cli_overlay *overlay) {
 /* ---- options that go together ---- */
 
 int render_overlay_check_options(const cli_value *values, const char *path) {
-  static const int drawn[] = {RENDER_SCALE_BAR, RENDER_LEGEND, RENDER_AXES, RENDER_MARKS, RENDER_ANNOTATE};
+  static const int drawn[] = {RENDER_SCALE_BAR, RENDER_LEGEND, RENDER_AXES,
+                              RENDER_MARKS,     RENDER_RULER,  RENDER_ANNOTATE};
   cli_overlay overlay;
   int exit_code = render_overlay_read(values, &overlay);
   for (size_t n = 0; n < sizeof drawn / sizeof *drawn && exit_code == EXIT_CODE_OK; n++) {
@@ -178,7 +179,7 @@ int render_overlay_check_options(const cli_value *values, const char *path) {
   if (exit_code == EXIT_CODE_OK && values[RENDER_FONT_SIZE].given && !overlay.drawn)
     exit_code = fail(EXIT_CODE_USAGE,
                      "--font-size is the size of letters drawn over the picture: add --scale-bar, --legend, "
-                     "--axes, --marks or --annotate");
+                     "--axes, --marks, --ruler or --annotate");
   const cli_value *size = &values[RENDER_SIZE];
   if (exit_code == EXIT_CODE_OK && size->given && overlay.width > 0 && overlay.pixels_per_inch > 0 &&
       fabs(overlay.width / MILLIMETRES_PER_INCH * overlay.pixels_per_inch - size->number[0]) > 0.5)
