@@ -11,6 +11,7 @@
 #include "elementary/elementary.h"
 #include "guess/analysis.h"
 #include "scene/geometry/camera.h"
+#include "scene/geometry/lengths.h"
 #include "text/plain.h"
 #include "volume/in_bricks.h"
 
@@ -130,12 +131,15 @@ hl_status hl_expand_slice(const hl_scene_description *description, hl_asked *ask
   if (planes->count == HL_ASK_MOST_TEXTS)
     return hl_fail(error, HL_ERROR_ARGUMENT, "--slice: there is no room for one more --cut-plane");
   const typed_slice slice = read_slice(asked[HL_ASK_SLICE].text);
+  const bool measured = slice.at[strspn(slice.at, "+-.0123456789")] != '\0'; /* a length, and no fraction */
+  const bool unitless = measured && !asked[HL_ASK_UNIT].given && !(hl_scene_world_metres(description) > 0);
   if (slice.is_of_body && hl_scene_space(description) == HL_SPACE_UNKNOWN)
     return hl_fail(
         error, HL_ERROR_ARGUMENT,
-        "--slice: '%.200s': the file does not tell the body's directions: give an axis, as --slice "
-        "%c=%.60s",
-        asked[HL_ASK_SLICE].text, 'x' + slice.axis, slice.at);
+        "--slice: '%.200s': the file does not tell the body's directions%s: give an axis, as --slice "
+        "%c=%.60s%s",
+        asked[HL_ASK_SLICE].text, unitless ? ", nor its unit of lengths" : "", 'x' + slice.axis, slice.at,
+        unitless ? " --unit mm" : "");
   const slice_sight sight = asked_sight(asked, description);
   /* "z=AT" cuts away all matter from AT on, and "z=:AT" all matter before AT */
   snprintf(plane, HL_SLICE_TEXT, "%c=%s%.*s", 'x' + sight.axis, sight.towards_eye > 0 ? "" : ":",

@@ -267,6 +267,14 @@ static int count_digits(int frames) {
   return digits;
 }
 
+/* Says how a film that nobody can follow gets slower, if no speed was asked for. */
+static void tell_of_short_film(const animate_job *job, int count, double rate) {
+  enum { SLOW_RATE = 2 };
+  if (job->values[ANIMATE_FPS].given || count < 2 || count >= rate) return;
+  say("%s lasts %.2g s: --fps %d shows each of the %d pictures for half a second", job->output, count / rate,
+      SLOW_RATE, count);
+}
+
 /* Joins the pictures to a film, if all of them exist. */
 static int finish(const animate_job *job, const animate_frames *frames) {
   double rate = frames_per_second(job);
@@ -289,6 +297,7 @@ static int finish(const animate_job *job, const animate_frames *frames) {
   if (!job->host.quiet)
     say("%s: %d frames, %.3g s at %.4g a second; %d of them rendered now", job->output, count, count / rate,
         rate, frames->rendered);
+  if (!job->host.quiet) tell_of_short_film(job, count, rate);
   return EXIT_CODE_OK;
 }
 
@@ -324,6 +333,7 @@ static int finish_series(const animate_job *job, const cli_value *values, int co
   int exit_code = animate_join_series(job->folder, count, job->output, frames_per_second(job), quiet);
   if (exit_code == EXIT_CODE_OK && !job->values[ANIMATE_KEEP_FRAMES].given)
     animate_remove_series(job->folder, count);
+  if (exit_code == EXIT_CODE_OK && !quiet) tell_of_short_film(job, count, frames_per_second(job));
   return exit_code;
 }
 

@@ -59,13 +59,15 @@ static int check_options(series_job *job) {
  * be read. */
 static int find_range(series_job *job) {
   cli_value *range = &job->values[RENDER_RANGE];
+  const bool quiet = job->host.quiet;
   if (!job->values[RENDER_RANGE_OF_ALL].given || range->given || job->files.of_meshes) return EXIT_CODE_OK;
+  job->host.quiet = true; /* the first file's warnings are printed when its scene is made */
   for (int n = 0; n < job->files.count; n++) {
     hl_volume *volume = NULL;
     hl_volume_info info = {.struct_size = sizeof info};
     host_draw_bar(&job->host, (double)n / job->files.count, "ranges of all files");
     int exit_code = series_load_volume(job, n, HL_INDEX_DEFAULT, &volume);
-    if (exit_code == EXIT_CODE_INTERRUPTED) return exit_code;
+    if (exit_code == EXIT_CODE_INTERRUPTED) return exit_code; /* the run ends */
     if (volume != NULL && hl_volume_get_info(volume, &info) == HL_OK && info.range[0] < info.range[1]) {
       if (!range->given || info.range[0] < range->number[0]) range->number[0] = info.range[0];
       if (!range->given || info.range[1] > range->number[1]) range->number[1] = info.range[1];
@@ -73,6 +75,7 @@ static int find_range(series_job *job) {
     }
     hl_volume_release(volume);
   }
+  job->host.quiet = quiet;
   if (range->given) memcpy(job->overlay.overlay.legend_range, range->number, sizeof(double[2]));
   return EXIT_CODE_OK;
 }
@@ -157,14 +160,17 @@ static int frame_all(series_job *job) {
   hl_error error = {0};
   size_t count = 0;
   int exit_code = EXIT_CODE_OK;
+  const bool quiet = job->host.quiet;
+  job->host.quiet = true; /* the first file's warnings were printed when it was loaded */
   for (size_t n = 0; n < 3 && exit_code == EXIT_CODE_OK; n++) {
     bool found = false;
     if (n == 0 || numbers[n] != numbers[n - 1])
       exit_code = frame_file(job, numbers[n], &cameras[count], &found);
-    if (n == 0 && !found) return exit_code;
+    if (n == 0 && !found) break;
     count += found;
   }
-  if (exit_code != EXIT_CODE_OK ||
+  job->host.quiet = quiet;
+  if (exit_code != EXIT_CODE_OK || count == 0 ||
       hl_camera_join(cameras, count, (double)changed.width / changed.height, &joined) != HL_OK ||
       show_the_same(&joined, &cameras[0]))
     return exit_code;

@@ -51,7 +51,7 @@ cmp around/000002.png around3/000002.png
 halflight animate 'flame_*.nrrd' --size 16x16 --key lights.7.azimuth=0:1,4:2 -o no 2>&1 || echo $?
 halflight animate rings.nrrd --key lights.7.azimuth=0:1,4:2 -o no 2>&1 || echo $?
 if command -v ffmpeg >/dev/null; then
-  halflight animate 'flame_*.nrrd' --size 16x16 --sheet-spacing 4 -o flames.mp4 2>&1 | tail -1
+  halflight animate 'flame_*.nrrd' --size 16x16 --sheet-spacing 4 -o flames.mp4 2>&1 | grep ' frames, '
   ls | grep flames
 else
   printf 'flames.mp4: 3 frames, 0.1 s at 30 a second\nflames\nflames.mp4\n'

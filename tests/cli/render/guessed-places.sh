@@ -26,7 +26,7 @@ same lps.nhdr "--clip 0:0.5,0:1,0.25:1" "--clip x=0:0.5 --clip y=0:1 --clip z=0.
 same lps.nhdr "--cut-box 0.5:,:0.5,0.5:" "--cut-box x=0.5:,y=:0.5,z=0.5:"
 same lps.nhdr "--iso 30,90,120:gold:0.5" "--iso 30 --iso 90 --iso 120:gold:0.5"
 same lps.nhdr "--iso lps=30,90" "--iso lps=30 --iso lps=90"
-for wrong in "--slice axial" "--slice axial=2" "--slice oblique" "--clip left=0:0.5" "--clip 0:0.5" "--cut-plane anterior" \
+for wrong in "--slice axial" "--slice axial=8mm" "--slice axial=2" "--slice oblique" "--clip left=0:0.5" "--clip 0:0.5" "--cut-plane anterior" \
   "--cut-box upper-left" "--iso 30,90," "--iso 30:gold,90" "--annotate A@upper-left" "--annotate @0.1,0.1"; do
   code=0
   halflight render ball_16x16x16_uint8.raw $wrong --quiet -o no.png 2>message || code=$?
