@@ -31,7 +31,7 @@ def legends():
     Path("short.json").write_text(json.dumps({"opacity": [[110, 0], [120, 1], [230, 1]], "color": [[110, 1, 0, 0], [230, 1, 1, 0]]}))
     halflight("rods.nii", "--tf", "short.json", "--size", "400x110", "--quiet", "--legend", "auto", "-o", "short.pdf")
     numbers = [float(line) for line in words("short.pdf").split("\n") if re.fullmatch(r"[\d.]+", line)]
-    check(sorted(numbers) == [150, 200, 250], f"a short strip has two numbers at least: {numbers}")
+    check(sorted(numbers) == [150, 200], f"a short strip has two numbers at least, and ends with the function: {numbers}")
     for name, greatest in ("part_0.nii", 199.9), ("part_1.nii", 200):
         nifti(name, np.minimum(rods, greatest), 1.0)
     halflight("part_*.nii", "--range-of-all", "--size", "400x200", "--quiet", "--legend", "auto", "-o", "%s.png")
@@ -92,7 +92,7 @@ def logarithmic_strips():
         halflight("kept.png", "--quiet", "--legend", "auto", "-o", "kept.pdf")
         seen, kept = (words(name).translate(str.maketrans("\u2070\u00b9\u00b2\u00b3\u2074\u2075", "012345")).split() for name in ("log.pdf", "kept.pdf"))
         check(all(number in seen for number in wanted), f"{low} to {high}: {seen}")
-        check(all(re.fullmatch("10\u207b?[0-9]", number) for number in kept), f"the scene of a picture keeps the scale: {kept}")
+        check(sorted(kept) == sorted(seen), f"the scene of a picture keeps the scale and the range: {kept}, not {seen}")
 
 
 def legends_below():
