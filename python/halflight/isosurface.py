@@ -20,8 +20,8 @@ def _parts_of(place: str, given: Any) -> dict[str, Any]:
     """
     if isinstance(given, Mapping):
         for word in given:
-            if word not in _WORDS:
-                raise TypeError(f"{place}: there is no '{word}': use value, color and opacity")
+            if word not in (*_WORDS, "second_color"):
+                raise TypeError(f"{place}: there is no '{word}': use value, color, opacity and second_color")
         parts = dict(given)
     elif isinstance(given, tuple) and 1 <= len(given) <= 3:
         parts = {str(word): one for word, one in zip(_WORDS, given, strict=False)}
@@ -52,10 +52,12 @@ def fill(struct: Any, iso: Any, keep: list[Any], place: str) -> None:
             array[n].color = colors.linear_color(f"{at}: color", parts["color"])
         if parts.get("opacity") is not None:
             array[n].opacity = _settings.number(f"{at}: opacity", parts["opacity"])
+        array[n].second_color = bool(parts.get("second_color", False))
     keep.append(array)
     struct.iso, struct.iso_count = array, len(given)
 
 
-def isosurfaces_from(struct: Any) -> list[tuple[float, tuple[float, ...], float]]:
-    """The isosurfaces of an hl_scene_volume: (value, color, opacity)."""
-    return [(one.value, tuple(one.color), one.opacity) for one in struct.iso[0:struct.iso_count]]
+def isosurfaces_from(struct: Any) -> list[Any]:
+    """The isosurfaces of an hl_scene_volume: (value, color, opacity), or a mapping of one in another volume's colours."""
+    return [{"value": one.value, "color": tuple(one.color), "opacity": one.opacity, "second_color": True} if one.second_color
+            else (one.value, tuple(one.color), one.opacity) for one in struct.iso[0:struct.iso_count]]

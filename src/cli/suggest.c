@@ -60,7 +60,7 @@ static const struct {
      "matter, or --tf FILE for values",
      "opacity alpha transparency translucency"},
     {"color-by zmap.nii.gz:hot:2.5,7 and --color-by-threshold 2.5",
-     "overlay stat-map statmap zmap z-map overlay-threshold activation statistic"},
+     "stat-map statmap zmap z-map overlay-threshold activation statistic"},
     {"color-by", "color-array colour-by colour-array color-volume texture-by coloring scalar-array"},
     {"colormap",
      "cmap color-map colourmap lut palette colors colours color colour color-table lookup-table colorscale"},

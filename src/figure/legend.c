@@ -1,7 +1,7 @@
 /* figure/legend.c - draws the legend, which explains the colours of the picture. Each visible volume has a
  * part: a strip with its transfer function's colours and opacity over its values, or rows for its isosurfaces
- * or its labels. The range of a strip begins at the least value with opacity and ends at the greatest, or where
- * the function's points end, unless the overlay states it. */
+ * or its labels. The range of a strip begins at the least value with opacity and ends at the greatest, or
+ * where the function's points end, unless the overlay states it. */
 #include <inttypes.h>
 #include <stdio.h>
 #include <string.h>

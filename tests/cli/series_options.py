@@ -257,7 +257,7 @@ def compare(case):
     again = [os.stat(f"two/{n}.png").st_ino for n in range(2)]
     run("render", f"part_?{ending}", *operands, "-o", "two/%d.png", *options)
     # A picture without its scene does not tell that it is the right one, nor does a scene what is drawn over it.
-    figure = {"--width", "--dpi", "--scale-bar", "--legend", "--axes", "--marks", "--annotate"}
+    figure = {"--width", "--dpi", "--scale-bar", "--legend", "--axes", "--marks", "--ruler", "--annotate"}
     told = "--no-metadata" not in options and not figure & set(options)
     if (again == [os.stat(f"two/{n}.png").st_ino for n in range(2)]) != told:
         return "the pictures of the series were " + ("made again" if told else "taken for those that were there")

@@ -123,3 +123,17 @@ def test_color_by_is_the_program_s(tmp_path, program):
     assert np.array_equal(np.load(tmp_path / "a.npy"), np.asarray(picture))
     with pytest.raises(TypeError, match="color_by"):
         halflight.render(tmp_path / "ball.npy", color_by=7, size=8)
+
+
+def test_colored_isosurfaces_come_back(tmp_path, program):
+    """A scene keeps the isosurfaces that have another volume's colours."""
+    z, y, x = np.mgrid[0:16, 0:16, 0:16]
+    np.save(tmp_path / "ball.npy", (255 * np.clip(1 - np.sqrt((x - 7.5)**2 + (y - 7.5)**2 + (z - 7.5)**2) / 8, 0, 1)).astype(np.uint8))
+    np.save(tmp_path / "heat.npy", (10 * x).astype(np.uint8))
+    options = ["--iso", "90", "--color-by", "heat.npy:inferno", "--size", "24", "--print-scene"]
+    made = subprocess.run([program, "render", "ball.npy", *options], check=True, cwd=tmp_path, capture_output=True)
+    (tmp_path / "a.json").write_bytes(made.stdout)
+    scene = Scene.load(tmp_path / "a.json")
+    again = Scene(list(scene.volumes), camera=scene.camera, lights=list(scene.lights), size=scene.size)
+    assert again.volumes[0].look["iso"] == scene.volumes[0].look["iso"]
+    assert scene.volumes[0].look["iso"][0]["second_color"] is True
