@@ -313,6 +313,8 @@ typedef struct hl_volume_selection {
   int time, channel, level;
   int aim; /* the resolution that the options for reading ask for. It differs from `level` if a coarser one
             * was read for a first picture (hl_volume_load_options.preview_pixels) */
+  int level_is_named; /* non-zero if the caller has named the resolution (hl_volume_load_options.level) */
+  int is_part;        /* non-zero if voxels out of sight were interpolated (hl_volume_load_options.seen) */
 } hl_volume_selection;
 
 HL_API HL_WARN_UNUSED hl_status hl_volume_get_selection(const hl_volume *volume,

@@ -7,6 +7,7 @@
 #include <fcntl.h>
 #include <halflight/grids.h>
 #include <halflight/particles.h>
+#include <halflight/resolutions.h>
 #include <math.h>
 #include <poll.h>
 #include <stdio.h>
@@ -288,9 +289,11 @@ static hl_status load_picture_scene(hl_context *context, const cli_input *input,
   hl_status status = hl_image_find_scene(context, input->title, input->bytes, input->length, &text, error);
   if (folder != NULL) folder[base_name(folder) - folder] = '\0';
   if (status == HL_OK)
-    status = hl_scene_from_json(context, text, strlen(text), folder, input->title, scene, error);
+    status = hl_scene_from_json_coarse(context, text, strlen(text), folder, input->title, input->first_pixels,
+                                       scene, error);
   if (status == HL_ERROR_IO && folder != NULL && folder[0] != '\0' &&
-      hl_scene_from_json(context, text, strlen(text), NULL, input->title, scene, &of_folder) == HL_OK)
+      hl_scene_from_json_coarse(context, text, strlen(text), NULL, input->title, input->first_pixels, scene,
+                                &of_folder) == HL_OK)
     status = HL_OK;
   hl_text_release(context, text);
   free(folder);
@@ -302,9 +305,10 @@ hl_status input_load(hl_context *context, const cli_input *input, const hl_volum
   if (input->kind == INPUT_VOLUME) return load_volume_scene(context, input, options, scene, error);
   if (input->kind == INPUT_PICTURE && input->bytes != NULL)
     return load_picture_scene(context, input, scene, error);
-  if (input->bytes == NULL) return hl_scene_load(context, input->path, scene, error);
-  return hl_scene_from_json(context, (const char *)input->bytes, input->length, NULL, input->title, scene,
-                            error);
+  if (input->bytes == NULL)
+    return hl_scene_load_coarse(context, input->path, input->first_pixels, scene, error);
+  return hl_scene_from_json_coarse(context, (const char *)input->bytes, input->length, NULL, input->title,
+                                   input->first_pixels, scene, error);
 }
 
 bool is_mesh_file(hl_context *context, const char *path) {

@@ -4,11 +4,13 @@
  * volumes, or the scene, at a finer resolution. A volume is read with the options that the scene names, and
  * smoothed as a bare volume is. */
 #include <halflight/resolutions.h>
+#include <math.h>
 #include <string.h>
 
 #include "core/context.h"
 #include "core/door.h"
 #include "core/memory.h"
+#include "elementary/elementary.h"
 #include "guess/analysis.h"
 #include "guess/for_volume.h"
 #include "scene/geometry/placement.h"
@@ -65,9 +67,60 @@ static hl_status find_seen(hl_context *context, const hl_scene_description *desc
   return status;
 }
 
+/* ---- which resolution ---- */
+
+/* The number of pixels of a camera's picture that the longest axis of a volume would cover at the camera's
+ * target. */
+static double pixels_along(const hl_scene_description *description, const hl_scene_volume *volume,
+                           const hl_camera *camera) {
+  const affine3 placed = hl_scene_volume_index_to_world(volume);
+  const double tall = camera->type == HL_CAMERA_PERSPECTIVE
+                          ? 2 * hl_tan(camera->fovy_deg * HL_PI / 360) *
+                                vec3_length(vec3_subtract(vec3_of(camera->target), vec3_of(camera->position)))
+                          : camera->height;
+  double longest = 0;
+  for (int axis = 0; axis < 3; axis++)
+    longest = fmax(longest,
+                   (double)volume->volume->dimension[axis] * vec3_length(mat3_column(placed.linear, axis)));
+  return longest / tall * description->height;
+}
+
+/* The coarsest resolution that has a voxel for each pixel of the cameras' pictures; the resolution of the
+ * scene's volume if it has. */
+static int level_for_pixels(const hl_scene_description *description, const hl_scene_volume *volume,
+                            const hl_camera *cameras, size_t count, int level) {
+  const hl_resolutions *known = &volume->volume->resolutions;
+  double pixels = 0;
+  for (size_t n = 0; n < count; n++) pixels = fmax(pixels, pixels_along(description, volume, &cameras[n]));
+  while (level > known->finest && level < HL_RESOLUTIONS_MOST && (double)known->longest[level] < pixels)
+    level--;
+  return level;
+}
+
+int hl_volume_level_for(const hl_scene_description *description, size_t number, const hl_camera *cameras,
+                        size_t camera_count) {
+  HL_DOOR;
+  if (description == NULL || cameras == NULL || number >= description->volume_count) return HL_INDEX_DEFAULT;
+  const hl_scene_volume *volume = &description->volumes[number];
+  const int level = volume->volume->selection.level;
+  if (volume->volume->resolutions.is_chosen || volume->label_count > 0 || volume->volume->says_labels)
+    return level;
+  return level_for_pixels(description, volume, cameras, camera_count, level);
+}
+
+/* Finds which resolution is read of a volume. Returns false if the volume has it already. */
+static bool find_level(const hl_scene_description *description, size_t number, const hl_camera *cameras,
+                       size_t count, hl_finer which, hl_volume_selection *read) {
+  const bool is_coarser = is_coarse(&description->volumes[number], read);
+  if (which != HL_FINER_PIXELS) return is_coarser;
+  read->aim = hl_volume_level_for(description, number, cameras, count);
+  return read->level > read->aim;
+}
+
 /* ---- one volume ---- */
 
-/* Finds the options with which a volume is read again. */
+/* Finds the options with which a volume is read again, at the resolution read->aim or at the next finer
+ * one. */
 static void find_options(const hl_scene_volume *volume, const hl_volume_selection *read, bool by_step,
                          hl_volume_load_options *options) {
   hl_volume_load_options_defaults(options);
@@ -102,28 +155,35 @@ static hl_status smooth(const hl_scene_volume *volume, bool projected, hl_volume
 }
 
 hl_status hl_volume_read_finer(hl_context *context, const char *path, const hl_scene_description *description,
-                               size_t number, const hl_camera *cameras, size_t camera_count, int by_step,
+                               size_t number, const hl_camera *cameras, size_t camera_count, hl_finer which,
                                hl_volume **finer, hl_error *error) {
   HL_DOOR;
-  if (context == NULL || description == NULL || finer == NULL || number >= description->volume_count)
+  if (context == NULL || description == NULL || finer == NULL || number >= description->volume_count ||
+      (which == HL_FINER_PIXELS && (cameras == NULL || camera_count == 0)))
     return hl_fail(error, HL_ERROR_ARGUMENT,
-                   "hl_volume_read_finer: null context, description or finer, or no such volume");
+                   "hl_volume_read_finer: null context, description or finer, no such volume, or no camera");
   const hl_scene_volume *volume = &description->volumes[number];
   hl_volume_selection read;
   hl_volume_load_options options;
   double(*seen)[4][4] = NULL;
   *finer = NULL;
   if (path == NULL) path = volume->file;
-  if (path == NULL || !is_coarse(volume, &read)) return HL_OK;
+  if (path == NULL || !find_level(description, number, cameras, camera_count, which, &read)) return HL_OK;
   hl_status status = find_seen(context, description, number, cameras, camera_count, &seen, error);
   if (status == HL_OK) {
-    find_options(volume, &read, by_step != 0, &options);
+    find_options(volume, &read, which == HL_FINER_NEXT, &options);
     options.seen = (const double(*)[4][4])seen;
     options.seen_count = seen != NULL ? camera_count : 0;
     options.coarse = seen != NULL ? volume->volume : NULL;
     status = hl_volume_load_with(context, path, &options, finer, error);
   }
   hl_release(context, seen);
+  if (status == HL_OK) {
+    const bool is_part = (*finer)->resolutions.is_part;
+    (*finer)->resolutions = volume->volume->resolutions;
+    (*finer)->resolutions.is_part = is_part;
+    atomic_store(&(*finer)->smoothing_chosen, atomic_load(&volume->volume->smoothing_chosen));
+  }
   const bool projected = description->render.compositing == HL_COMPOSITING_MAXIMUM;
   return status == HL_OK ? smooth(volume, projected, finer, error) : status;
 }
@@ -145,8 +205,8 @@ static hl_status read_each(hl_context *context, const hl_scene_description *desc
   for (size_t n = 0; n < found->count && status == HL_OK; n++) {
     hl_scene_volume *volume = &found->volumes[n];
     *volume = description->volumes[n];
-    status = hl_volume_read_finer(context, NULL, description, n, cameras, camera_count, 0, &found->read[n],
-                                  error);
+    status = hl_volume_read_finer(context, NULL, description, n, cameras, camera_count, HL_FINER_ASKED,
+                                  &found->read[n], error);
     if (status != HL_OK || found->read[n] == NULL) continue;
     volume->volume = found->read[n];
     if (volume->label_count == 0) continue;

@@ -45,8 +45,9 @@ typedef struct hl_loaded_volume {
   int component, time, channel, level;
   const char *series;
   double spacing[3];
-  double smooth;     /* the standard deviation by which the voxels were smoothed */
-  hl_volume *volume; /* owned; the volume that was read */
+  int preview_pixels; /* see hl_volume_load_options */
+  double smooth;      /* the standard deviation by which the voxels were smoothed */
+  hl_volume *volume;  /* owned; the volume that was read */
 } hl_loaded_volume;
 
 /* The data that the readers of one scene's volumes share. */

@@ -23,6 +23,7 @@ typedef struct hl_json_reader {
   hl_error *error;
   const hl_scene_description *like; /* if it is not null, the reader opens no file, and takes volumes and
                                      * images from this scene */
+  int preview_pixels;               /* see hl_scene_load_coarse(); 0 if volumes are read as the scene says */
   char place[400];                  /* JSON pointer of the value that is being read */
 } hl_json_reader;
 

@@ -3,6 +3,7 @@
  * The image's size, the volumes and the meshes are read before the camera, because by default the camera
  * frames them. Floors are made after the camera is known.
  */
+#include <halflight/resolutions.h>
 #include <string.h>
 
 #include "core/door.h"
@@ -115,6 +116,14 @@ static hl_status read_camera_members(hl_json_reader *reader, const json_t *value
   if (status == HL_OK && has(value, "position")) memcpy(camera->up, (double[3]){0, 0, 1}, sizeof camera->up);
   return status == HL_OK ? hl_json_settings(reader, value, HL_SETTINGS_CAMERA, (int)camera->type, camera)
                          : status;
+}
+
+/* Returns whether a scene says all of its camera, so that the camera does not depend on the volumes. */
+static bool has_whole_camera(const json_t *root) {
+  const json_t *value = json_object_get(root, "camera");
+  const char *type = json_string_value(json_object_get(value, "type"));
+  const char *size = type != NULL && strcmp(type, "orthographic") == 0 ? "height" : "fovy_deg";
+  return has(value, "position") && has(value, "target") && has(value, "up") && has(value, size);
 }
 
 /* Reads the camera when the image's size and the volumes are known. value: the camera's JSON; null if the
@@ -244,6 +253,7 @@ static hl_status read_scene(hl_json_reader *reader, const json_t *root, gathered
     status = hl_json_settings_member(reader, json_object_get(root, "render"), "render", HL_SETTINGS_RENDER,
                                      &d->render);
   if (status == HL_OK) status = hl_json_check_groups(reader, json_object_get(root, "groups"));
+  if (!has_whole_camera(root)) reader->preview_pixels = 0;
   if (status == HL_OK) status = read_volumes(reader, root, g);
   if (status == HL_OK) status = check_volumes(reader, d);
   if (status == HL_OK)
@@ -264,16 +274,10 @@ static hl_status read_scene(hl_json_reader *reader, const json_t *root, gathered
   return status == HL_OK ? read_lights(reader, root, g) : status;
 }
 
-hl_status hl_scene_from_json(hl_context *context, const char *text, size_t length, const char *base_folder,
-                             const char *name, hl_scene **scene, hl_error *error) {
-  HL_DOOR;
-  return hl_scene_from_json_like(context, text, length, base_folder, name, NULL, scene, error);
-}
-
-hl_status hl_scene_from_json_like(hl_context *context, const char *text, size_t length,
-                                  const char *base_folder, const char *name, const hl_scene *like,
-                                  hl_scene **scene, hl_error *error) {
-  HL_DOOR;
+/* Reads a scene from its text. like, preview_pixels: as for the functions below. */
+static hl_status from_json(hl_context *context, const char *text, size_t length, const char *base_folder,
+                           const char *name, const hl_scene *like, int preview_pixels, hl_scene **scene,
+                           hl_error *error) {
   if (context == NULL || text == NULL || scene == NULL)
     return hl_fail(error, HL_ERROR_ARGUMENT, "hl_scene_from_json: null context, text or scene");
   *scene = NULL;
@@ -281,7 +285,8 @@ hl_status hl_scene_from_json_like(hl_context *context, const char *text, size_t 
                            .name = name != NULL ? name : "scene",
                            .folder = base_folder,
                            .error = error,
-                           .like = hl_scene_describe(like)};
+                           .like = hl_scene_describe(like),
+                           .preview_pixels = preview_pixels};
   json_t *root = NULL;
   hl_status status = hl_json_parse(text, length, reader.name, &root, error);
   if (status != HL_OK) return status;
@@ -297,8 +302,28 @@ hl_status hl_scene_from_json_like(hl_context *context, const char *text, size_t 
   return status;
 }
 
-hl_status hl_scene_load(hl_context *context, const char *path, hl_scene **scene, hl_error *error) {
+hl_status hl_scene_from_json(hl_context *context, const char *text, size_t length, const char *base_folder,
+                             const char *name, hl_scene **scene, hl_error *error) {
   HL_DOOR;
+  return from_json(context, text, length, base_folder, name, NULL, 0, scene, error);
+}
+
+hl_status hl_scene_from_json_like(hl_context *context, const char *text, size_t length,
+                                  const char *base_folder, const char *name, const hl_scene *like,
+                                  hl_scene **scene, hl_error *error) {
+  HL_DOOR;
+  return from_json(context, text, length, base_folder, name, like, 0, scene, error);
+}
+
+hl_status hl_scene_from_json_coarse(hl_context *context, const char *text, size_t length,
+                                    const char *base_folder, const char *name, int preview_pixels,
+                                    hl_scene **scene, hl_error *error) {
+  HL_DOOR;
+  return from_json(context, text, length, base_folder, name, NULL, preview_pixels, scene, error);
+}
+
+static hl_status load(hl_context *context, const char *path, int preview_pixels, hl_scene **scene,
+                      hl_error *error) {
   if (context == NULL || path == NULL || scene == NULL)
     return hl_fail(error, HL_ERROR_ARGUMENT, "hl_scene_load: null context, path or scene");
   *scene = NULL;
@@ -308,9 +333,21 @@ hl_status hl_scene_load(hl_context *context, const char *path, hl_scene **scene,
   if (status != HL_OK) return status;
   char *folder = hl_path_folder(context, path);
   if (folder != NULL)
-    status = hl_scene_from_json(context, (const char *)bytes, length, folder, path, scene, error);
+    status = from_json(context, (const char *)bytes, length, folder, path, NULL, preview_pixels, scene,
+                       error);
   else status = hl_fail_memory(error, strlen(path) + 1, "a path");
   hl_release(context, folder);
   hl_release(context, bytes);
   return status;
+}
+
+hl_status hl_scene_load(hl_context *context, const char *path, hl_scene **scene, hl_error *error) {
+  HL_DOOR;
+  return load(context, path, 0, scene, error);
+}
+
+hl_status hl_scene_load_coarse(hl_context *context, const char *path, int preview_pixels, hl_scene **scene,
+                               hl_error *error) {
+  HL_DOOR;
+  return load(context, path, preview_pixels, scene, error);
 }

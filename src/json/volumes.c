@@ -146,7 +146,7 @@ static const hl_loaded_volume *find_loaded(const hl_volume_shelf *shelf, const c
     if (strcmp(loaded->source, source) != 0) continue;
     if (options == NULL) return loaded;
     bool same_step = loaded->time == options->time && loaded->channel == options->channel &&
-                     loaded->level == options->level;
+                     loaded->level == options->level && loaded->preview_pixels == options->preview_pixels;
     if (same_text(loaded->array, options->array) && same_text(loaded->series, options->series) && same_step &&
         loaded->component == options->component && loaded->smooth == smooth &&
         memcmp(loaded->spacing, options->spacing, sizeof loaded->spacing) == 0)
@@ -165,6 +165,7 @@ static const hl_loaded_volume *put_on_shelf(hl_volume_shelf *shelf, char *source
   place->series = options->series;
   place->component = options->component;
   place->time = options->time, place->channel = options->channel, place->level = options->level;
+  place->preview_pixels = options->preview_pixels;
   memcpy(place->spacing, options->spacing, sizeof place->spacing);
   return place;
 }
@@ -321,6 +322,8 @@ static hl_status load(hl_json_reader *reader, const char *file, const hl_volume_
       return status;
     }
     if (smooth > 0) status = smooth_loaded(reader, smooth, &made);
+    /* the scene says how a volume is smoothed, also at a finer resolution */
+    if (status == HL_OK && options->preview_pixels > 0) atomic_store(&made->smoothing_chosen, true);
     if (status != HL_OK) {
       hl_release(reader->context, path);
       return status;
@@ -368,6 +371,25 @@ static hl_status read_shapes(hl_json_reader *reader, const json_t *value, hl_vol
   return HL_OK;
 }
 
+/* Returns whether the range of a transfer function consists of percentiles. */
+static bool is_of_percentiles(const json_t *function) {
+  const json_t *range = json_object_get(function, "range");
+  return range != NULL &&
+         !(json_is_number(json_array_get(range, 0)) && json_is_number(json_array_get(range, 1)));
+}
+
+/* Returns whether nothing in a volume's JSON is found by the voxels, so that a first picture may have other
+ * voxels. */
+static bool is_said(const json_t *value) {
+  static const char *const by_voxels[] = {"labels", "label_table", "scraps", "mask"};
+  const json_t *function = json_object_get(value, "transfer_function");
+  for (size_t n = 0; n < sizeof by_voxels / sizeof *by_voxels; n++)
+    if (json_object_get(value, by_voxels[n]) != NULL) return false;
+  return json_is_array(json_object_get(function, "opacity")) &&
+         json_is_array(json_object_get(function, "color")) && json_object_get(function, "second") == NULL &&
+         !is_of_percentiles(function);
+}
+
 /* over: as for load(). */
 static hl_status read_source(hl_json_reader *reader, const json_t *value, hl_volume_shelf *shelf,
                              const hl_scene_volume *over, hl_scene_volume *volume) {
@@ -390,6 +412,7 @@ static hl_status read_source(hl_json_reader *reader, const json_t *value, hl_vol
   double smooth = 0;
   status = read_load_options(reader, value, &options);
   if (status == HL_OK) status = hl_json_number(reader, value, "smooth", &smooth);
+  if (over == NULL && is_said(value)) options.preview_pixels = reader->preview_pixels;
   return status == HL_OK ? load(reader, file, &options, smooth, shelf, over, volume) : status;
 }
 

@@ -131,8 +131,16 @@ hl_status hl_volume_get_selection(const hl_volume *volume, hl_volume_selection *
   if (volume == NULL || selection == NULL || selection->struct_size != sizeof *selection)
     return HL_ERROR_ARGUMENT;
   const hl_selection *read = &volume->selection;
-  *selection = (hl_volume_selection){sizeof *selection, read->times,   read->channels, read->levels,
-                                     read->time,        read->channel, read->level,    read->aim};
+  *selection = (hl_volume_selection){sizeof *selection,
+                                     read->times,
+                                     read->channels,
+                                     read->levels,
+                                     read->time,
+                                     read->channel,
+                                     read->level,
+                                     read->aim,
+                                     volume->resolutions.is_chosen,
+                                     volume->resolutions.is_part};
   return HL_OK;
 }
 
@@ -169,6 +177,7 @@ hl_status hl_volume_take_about(hl_volume *volume, const hl_volume *from, hl_erro
   volume->says_fog = from->says_fog;
   memcpy(volume->window, from->window, sizeof volume->window);
   volume->selection = from->selection;
+  volume->resolutions = from->resolutions;
   volume->component = from->component;
   void *channels = NULL, *series = NULL;
   hl_status status = copy_array(volume, from->channels, from->selection.channels * sizeof *volume->channels,

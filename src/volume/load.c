@@ -371,6 +371,7 @@ static hl_status finish(hl_load_request *request, const char *path, hl_status st
   (*volume)->unit = request->spacing[0] > 0 ? NULL : request->unit;
   (*volume)->absence = request->absence;
   (*volume)->selection = request->selection;
+  (*volume)->resolutions = request->resolutions;
   (*volume)->series = request->series_list;
   (*volume)->series_count = request->series_count;
   (*volume)->chosen_series = request->chosen_series;

@@ -33,6 +33,16 @@ typedef struct hl_selection {
   int aim; /* the resolution that would be read if no coarser one were wanted for a first picture */
 } hl_selection;
 
+/* The resolutions of a file, of which a volume is one. */
+enum { HL_RESOLUTIONS_MOST = 32 };
+typedef struct hl_resolutions {
+  bool is_chosen;                      /* whether the caller has named the resolution that is read */
+  bool is_part;                        /* whether voxels out of sight were interpolated (beyond.h) */
+  int finest;                          /* the finest resolution that is read where nobody names one */
+  size_t longest[HL_RESOLUTIONS_MOST]; /* the number of voxels along the longest axis of each resolution; 0 if
+                                        * it is unknown */
+} hl_resolutions;
+
 /* The number of chunks of a store on a server, and the number of chunks for which the server has no file. */
 typedef struct hl_absence {
   size_t absent, chunks; /* 0 if the file is not a store on a server */
@@ -124,6 +134,7 @@ struct hl_volume {
   size_t array_count, chosen_array;
   int component; /* index of the component that was read, or HL_COMPONENT_MAGNITUDE */
   hl_selection selection;
+  hl_resolutions resolutions;
   hl_channel *channels;    /* owned; [selection.channels]; null if the file does not describe channels */
   hl_series_entry *series; /* owned; [series_count]; null unless loaded from DICOM files */
   size_t series_count, chosen_series;

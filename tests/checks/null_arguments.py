@@ -43,6 +43,8 @@ hl_scene_from_json name
 hl_scene_from_json_like base_folder
 hl_scene_from_json_like like
 hl_scene_from_json_like name
+hl_scene_from_json_coarse name
+hl_scene_from_json_coarse base_folder
 hl_scene_for_volume file
 hl_volume_guess file
 hl_volume_next_look file

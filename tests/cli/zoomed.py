@@ -7,6 +7,7 @@ import array
 import json
 import os
 import pathlib
+import random
 import shutil
 import sys
 import tempfile
@@ -87,12 +88,35 @@ def write_small_chunks(stores):
     write_several(stores / FIRST, stores / CHANNELS, "c")
 
 
+def finest_alone(store):
+    """A store of the finest level alone, which is read whole."""
+    alone = store.with_suffix(".alone")
+    if not alone.exists():
+        shutil.copytree(store, alone)
+        for name in (".zattrs", "zarr.json"):
+            if (alone / name).exists():
+                text = json.loads((alone / name).read_text())
+                for image in (text if name == ".zattrs" else text["attributes"]["ome"])["multiscales"]:
+                    image["datasets"] = image["datasets"][:1]
+                (alone / name).write_text(json.dumps(text))
+    return alone
+
+
+def of_all_chunks(case, text):
+    """The scene file of a scene's text whose volumes' finest levels are read whole."""
+    scene = json.loads(text)
+    for volume in scene["volumes"]:
+        volume["file"] = str(finest_alone(pathlib.Path(case.folder, volume["file"])))
+        assert volume.pop("level") == 0
+    file = case.folder / "whole.json"
+    file.write_text(json.dumps(scene))
+    return file
+
+
 def whole_picture(case, store, *words):
     """The picture of the same scene, with its camera and look, for which all chunks are read."""
-    scene = case.folder / "whole.json"
     done = case.run("render", store, "--size", "32x32", "--quiet", "--print-scene", *words)
-    scene.write_text(done.stdout)
-    return case.picture(scene)[0]
+    return case.picture(of_all_chunks(case, done.stdout))[0]
 
 
 def levels_asked(server):
@@ -167,6 +191,63 @@ def read_once(case, server):
                 len(next(iter(asked.values()))) in (LEVEL_CHUNKS, LEVEL_CHUNKS // 8), (said, asked.keys()))
 
 
+def write_beam(folder):
+    """A beam of noise, 1024 voxels long, at two resolutions, of which none follows from the other one."""
+    noise = random.Random(1)
+    folder.mkdir()
+    (folder / ".zgroup").write_text('{"zarr_format": 2}')
+    (folder / ".zattrs").write_text(json.dumps({"multiscales": servers.levels_text(2)}))
+    for level in range(2):
+        side = 16 >> level
+        text = {"zarr_format": 2, "shape": [side, side, 1024 >> level], "chunks": [side] * 3, "dtype": "|u1", "order": "C", "filters": None,
+                "compressor": {"id": "zlib", "level": 1}, "fill_value": 0, "dimension_separator": "/"}
+        (folder / str(level) / "0/0").mkdir(parents=True)
+        (folder / str(level) / ".zarray").write_text(json.dumps(text))
+        for x in range(64):
+            (folder / str(level) / "0/0" / str(x)).write_bytes(zlib.compress(noise.randbytes(side**3), 1))
+
+
+BEAM = {"halflight": 1, "image": {"width": 32, "height": 32}, "render": {"shadows": "off"}, "volumes": [{
+            "file": "", "level": 0, "transfer_function": {"opacity": [[0, 0], [255, 0.1]], "color": [[0, 1, 0, 0], [255, 0, 0, 1]]}}],
+        "camera": {"type": "orthographic", "position": [500, -90, 60], "target": [512, 8, 8], "up": [0, 0, 1], "height": 64}}
+
+
+def scenes(case, folder):
+    """A scene file reads what its camera sees of the level that it names. Chunks out of sight may be anything."""
+    damaged, file = folder.with_name("damaged.zarr"), case.folder / "scene.json"
+    write_beam(folder)
+
+    def picture(store, *words, **change):
+        scene = json.loads(json.dumps({**BEAM, **change}))
+        scene["volumes"][0]["file"] = str(store)
+        file.write_text(json.dumps({key: value for key, value in scene.items() if value is not None}))
+        return case.picture(file, *words)
+
+    right = case.picture(of_all_chunks(case, json.dumps({**BEAM, "volumes": [{**BEAM["volumes"][0], "file": str(folder)}]})))[0]
+    case.ok("a scene file: the picture of all chunks", right is not None and picture(folder)[0] == right)
+    shutil.copytree(folder, damaged)
+    for x in (*range(24), *range(40, 64)):
+        (damaged / "0/0/0" / str(x)).write_bytes(b"damaged")
+    made, said = picture(damaged)
+    case.ok("a scene file: chunks out of sight are not read", made == right, said)
+    made, said = picture(damaged, "--shadows", "soft")
+    case.ok("a scene file: other shadows, the same voxels", made is not None and made != right, said)
+    film = case.folder / "film"
+    film.mkdir()
+    done = case.run("animate", file, "--key", "camera.height=0:64,1:66", "--frames", 2, "-o", film)
+    case.ok("a film of a scene file: what its frames see", done.returncode == 0 and len(list(film.iterdir())) == 2, done.stderr)
+    done = case.run("animate", file, "--key", "camera.height=0:64,1:2000", "--frames", 2, "-o", film)
+    case.ok("a film that sees more reads more", done.returncode != 0 and "does not unpack" in done.stderr, done.stderr)
+    of_percentiles = {**BEAM["volumes"][0], "transfer_function": {"preset": "grey", "range": ["1%", "99%"]}}
+    for name, words, change in (("a look that is found", ("--look", "auto"), {}), ("a view that is found", ("--view", "front"), {}),
+                                ("a camera that is found", (), {"camera": None}), ("a function over percentiles", (), {"volumes": [of_percentiles]})):
+        made, said = picture(damaged, *words, **change)
+        case.ok(f"a scene file with {name}: all chunks are read", made is None and "does not unpack" in said, said)
+    (damaged / "0/0/0/32").write_bytes(b"damaged")
+    made, said = picture(damaged)
+    case.ok("a scene file: a damaged chunk that is seen is told", made is None and "does not unpack" in said, said)
+
+
 def doors(case, server):
     """Each way to a picture that is zoomed in: the bytes of a part of the finest level are sent, and pictures are those of all bytes.
     Without shadows a picture of all bytes is that of its scene, which is read whole."""
@@ -197,8 +278,9 @@ def doors(case, server):
 
 
 def whole_of(case, picture):
-    """The pixels of the scene that a picture carries, whose volumes are read whole."""
-    case.run("render", picture, "-o", case.folder / "whole.png", "--quiet")
+    """The pixels of the scene that a picture carries, for which all chunks are read."""
+    done = case.run("render", picture, "--quiet", "--print-scene")
+    case.run("render", of_all_chunks(case, done.stdout), "-o", case.folder / "whole.png", "--quiet")
     return pixels_of(case, case.folder / "whole.png")
 
 
@@ -225,6 +307,7 @@ def main():
         write_small_chunks(stores)
         server = servers.Server(stores)
         doors(case, server)
+        scenes(case, stores / "beam.zarr")
         seen = parts(case, server)
         shards(case, server)
         faults(case, server, seen)

@@ -89,6 +89,7 @@ static int load_each(cli_host *host, const cli_value *values, cli_input *inputs,
   for (size_t n = 0; n < count; n++) {
     hl_error error = {0};
     bool bare = inputs[n].kind == INPUT_VOLUME;
+    inputs[n].first_pixels = render_scene_pixels(values);
     inputs[n].look = values[RENDER_LOOK].given ? values[RENDER_LOOK].text : NULL;
     inputs[n].smooth = values[RENDER_SMOOTH].given  ? &values[RENDER_SMOOTH].number[0]
                        : values[RENDER_SLICE].given ? &unsmoothed

@@ -184,6 +184,8 @@ void render_name_scene(const char *input, bool bare, hl_error *error);
  * made for volume files. flags: further HL_COMPOSE_ flags. Returns the exit code. */
 int render_change_scene(cli_host *host, const cli_value *values, bool bare, unsigned flags, hl_scene **scene);
 
+/* The pixels for which the volumes of a scene are read first (cli_input.first_pixels). */
+int render_scene_pixels(const cli_value *values);
 /* The pixels for which volumes of several resolutions are read first, if pictures show a part of them
  * (--zoom); 0 if they are read once. It becomes host->preview_pixels before volumes are loaded. */
 int render_first_pixels(const cli_value *values);

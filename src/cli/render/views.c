@@ -173,7 +173,7 @@ static int take_volumes(views_job *job, const hl_scene *from, hl_scene **scene) 
 /* Reads the volumes where any of the views sees them. All views share the volumes. */
 static int go_nearer(views_job *job) {
   hl_camera cameras[MOST_VIEWS];
-  if (job->host.preview_pixels == 0) return EXIT_CODE_OK;
+  if (!hl_scene_is_coarse(hl_scene_describe(job->scenes[0]))) return EXIT_CODE_OK;
   for (size_t v = 0; v < job->count; v++) cameras[v] = hl_scene_describe(job->scenes[v])->camera;
   int exit_code = EXIT_CODE_OK;
   for (size_t v = 0; v < job->count && exit_code == EXIT_CODE_OK; v++)

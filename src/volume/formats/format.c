@@ -226,13 +226,18 @@ hl_status hl_channel_find(hl_load_request *request, const char *path, hl_error *
  * would not change a picture that is a thousand pixels wide. */
 static const uint64_t VOXELS_OF_A_PICTURE = (uint64_t)1 << 30;
 
-/* Returns whether a level is fine enough for a picture: the number of voxels along its longest axis is at
- * least the number of pixels along the picture's longer side. */
-static bool fills_picture(const hl_level_size *level, int pixels) {
+/* The number of voxels along the longest axis of a level. */
+static size_t longest_axis(const hl_level_size *level) {
   size_t longest = 0;
   for (int axis = 0; axis < 3; axis++)
     if (level->dimensions[axis] > longest) longest = level->dimensions[axis];
-  return longest >= (size_t)pixels;
+  return longest;
+}
+
+/* Returns whether a level is fine enough for a picture: the number of voxels along its longest axis is at
+ * least the number of pixels along the picture's longer side. */
+static bool fills_picture(const hl_level_size *level, int pixels) {
+  return longest_axis(level) >= (size_t)pixels;
 }
 
 /* The number of voxels of a level; UINT64_MAX on overflow. */
@@ -268,8 +273,12 @@ static void aim_at(hl_load_request *request, const hl_level_size *levels, size_t
 hl_status hl_level_choose(hl_load_request *request, const char *path, const hl_level_size *levels,
                           size_t count, hl_error *error) {
   hl_selection *selection = &request->selection;
+  hl_resolutions *resolutions = &request->resolutions;
   uint64_t limit = request->context->options.memory_limit;
   selection->levels = count;
+  resolutions->is_chosen = request->level >= 0;
+  for (size_t n = 0; n < count && n < HL_RESOLUTIONS_MOST; n++)
+    resolutions->longest[n] = longest_axis(&levels[n]);
   hl_status status = choose_step(path, "level", request->level, count, &selection->level, error);
   if (status != HL_OK || request->level >= 0) {
     aim_at(request, levels, (size_t)selection->level);
@@ -279,6 +288,7 @@ hl_status hl_level_choose(hl_load_request *request, const char *path, const hl_l
   while (level + 1 < count && limit > 0 && level_bytes(&levels[level]) > limit / 2) level++;
   size_t by_memory = level;
   while (level + 1 < count && level_voxels(&levels[level]) > VOXELS_OF_A_PICTURE) level++;
+  resolutions->finest = (int)level;
   level = coarsest_for(request->pixels, levels, count, level);
   aim_at(request, levels, level);
   if (level > 0)

@@ -45,9 +45,10 @@ typedef struct hl_load_request {
   int chosen_component;
   hl_series_entry *series_list; /* owned; [series_count]; DICOM series */
   size_t series_count, chosen_series;
-  bool more;              /* whether the file has more than HL_ARRAYS_MOST arrays */
-  hl_selection selection; /* the numbers of times, channels and levels in the file, which are 1 until the
-                           * reader sets them; also the time, channel and level that are read */
+  bool more;                  /* whether the file has more than HL_ARRAYS_MOST arrays */
+  hl_selection selection;     /* the numbers of times, channels and levels in the file, which are 1 until the
+                               * reader sets them; also the time, channel and level that are read */
+  hl_resolutions resolutions; /* set by hl_level_choose() */
   char array_told[1000], component_told[400],
       selection_told[600]; /* warnings that name the array, the component, and the time and channel that were
                             * chosen by default; "" if there are none */

@@ -569,7 +569,7 @@ static hl_status read_all(reading *r, hl_absence *absence, hl_error *error) {
 
 hl_status hl_zarr_voxels_read(const hl_bundle *bundle, const hl_zarr_array *array,
                               const hl_zarr_choice *choice, const hl_volume_description *grid,
-                              hl_destination *to, hl_absence *absence, hl_error *error) {
+                              hl_destination *to, hl_absence *absence, bool *is_part, hl_error *error) {
   reading r = {.bundle = bundle, .array = array, .choice = choice, .to = to};
   atomic_init(&r.found, 0);
   atomic_init(&r.absent, 0);
@@ -582,6 +582,7 @@ hl_status hl_zarr_voxels_read(const hl_bundle *bundle, const hl_zarr_array *arra
   r.is_filled = hl_destination_is_sparse(to);
   pthread_rwlock_init(&r.lock, NULL); /* this call cannot fail, because the lock has no attributes */
   status = read_all(&r, absence, error);
+  *is_part = atomic_load(&r.beyond) > 0;
   pthread_rwlock_destroy(&r.lock);
   return status;
 }

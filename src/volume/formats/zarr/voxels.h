@@ -22,6 +22,6 @@ typedef struct hl_zarr_choice {
  * store that is on no server. */
 hl_status hl_zarr_voxels_read(const hl_bundle *bundle, const hl_zarr_array *array,
                               const hl_zarr_choice *choice, const hl_volume_description *grid,
-                              hl_destination *to, hl_absence *absence, hl_error *error);
+                              hl_destination *to, hl_absence *absence, bool *is_part, hl_error *error);
 
 #endif

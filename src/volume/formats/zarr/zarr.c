@@ -145,7 +145,8 @@ static hl_status load_image(const hl_bundle *bundle, const hl_zarr_image *image,
   hl_volume_description grid = hl_payload_grid(&payload, request->spacing);
   hl_beyond_prepare(request->coarse, request->seen, request->seen_count, &grid, &choice.beyond);
   hl_destination to = {.context = NULL};
-  status = hl_zarr_voxels_read(bundle, array, &choice, &grid, &to, &request->absence, error);
+  status = hl_zarr_voxels_read(bundle, array, &choice, &grid, &to, &request->absence,
+                               &request->resolutions.is_part, error);
   if (status == HL_OK) status = hl_destination_adopt(&to, &grid, volume, error);
   hl_destination_close(&to);
   return status;
