@@ -56,16 +56,25 @@ bool server_is_outdated(void) {
 
 /* The stage of a frame to which the library has given this name. */
 static frame_stage stage_named(const char *name) {
-  return strcmp(name, "prepare") == 0 ? STAGE_LABELS : strcmp(name, "sky") == 0 ? STAGE_SKY : STAGE_PICTURE;
+  return strcmp(name, "prepare") == 0 ? STAGE_LABELS
+         : strcmp(name, "sky") == 0   ? STAGE_SKY
+         : strcmp(name, "load") == 0  ? STAGE_VOXELS
+                                      : STAGE_PICTURE;
 }
+
+/* Notes how far this thread's frame is, unless the page makes a newer frame. */
+static void note_progress(frame_stage stage, double fraction) {
+  if (current.page == NULL || atomic_load(&current.page->frame) != current.number) return;
+  atomic_store(&current.page->stage, (int)stage);
+  atomic_store(&current.page->frame_part, (int)(1000 * fraction));
+}
+
+void work_enters(frame_stage stage) { note_progress(stage, 0); }
 
 void server_progress(const char *stage, double fraction) {
   if (current.server == NULL || !(fraction >= 0 && fraction <= 1)) return;
   if (current.opening) atomic_store(&current.server->opening_part, (int)(1000 * fraction));
-  else if (current.page != NULL) {
-    atomic_store(&current.page->stage, (int)stage_named(stage));
-    atomic_store(&current.page->frame_part, (int)(1000 * fraction));
-  }
+  else note_progress(stage_named(stage), fraction);
 }
 
 void server_warned(const char *message) {
@@ -76,7 +85,7 @@ void server_warned(const char *message) {
 }
 
 bool pages_begin(server *s) {
-  bool good = pthread_mutex_init(&s->pages_lock, NULL) == 0;
+  bool good = pthread_mutex_init(&s->pages_lock, NULL) == 0 && pthread_mutex_init(&s->seen_lock, NULL) == 0;
   for (int p = 0; p < MOST_PAGES; p++) good &= pthread_mutex_init(&s->pages[p].rendering, NULL) == 0;
   return good;
 }
@@ -103,6 +112,7 @@ void pages_end(server *s) {
     matter_forget(&s->pages[p]);
     pthread_mutex_destroy(&s->pages[p].rendering);
   }
+  seen_forget(s, -1);
   pthread_mutex_destroy(&s->pages_lock);
 }
 
@@ -221,6 +231,7 @@ frame_progress page_progress(server *s, const char *name) {
 /* Frees memory by ending the renderers of all pages that no request holds. The next frames of these pages
  * make new renderers. */
 static void spare_memory(server *s) {
+  seen_forget(s, -1);
   pthread_mutex_lock(&s->pages_lock);
   for (int p = 0; p < MOST_PAGES; p++)
     if (s->pages[p].users == 0) release_page(s, &s->pages[p]);
@@ -266,6 +277,11 @@ static hl_status make_quick(server *s, long long number, hl_scene *scene, hl_sce
   return status;
 }
 
+static hl_status fail_finer(const char *problem, hl_error *error) {
+  snprintf(error->message, sizeof error->message, "only a coarser resolution was read: %.900s", problem);
+  return HL_ERROR_INPUT;
+}
+
 /* Waits until the finest resolutions of an open scene's volumes are read. */
 static hl_status await_finest(server *s, long long number, hl_error *error) {
   const struct timespec moment = {.tv_nsec = 2000000};
@@ -274,11 +290,7 @@ static hl_status await_finest(server *s, long long number, hl_error *error) {
   if (opened == NULL) return HL_OK; /* read_scene() tells it */
   while (atomic_load(&opened->refining) && !server_is_outdated()) nanosleep(&moment, NULL);
   if (atomic_load(&opened->refining)) status = HL_ERROR_CANCELLED;
-  else if (opened->problem[0] != '\0') {
-    snprintf(error->message, sizeof error->message, "only a coarser resolution was read: %.900s",
-             opened->problem);
-    status = HL_ERROR_INPUT;
-  }
+  else if (opened->problem[0] != '\0') status = fail_finer(opened->problem, error);
   opened_leave(s, opened);
   return status;
 }
@@ -383,14 +395,17 @@ static hl_status render(server *s, server_page *page, hl_renderer **renderer, co
   return status;
 }
 
-/* Reads the scene and renders it. The frames of a page are rendered one after the other. */
+/* Reads the scene and renders it. The frames of a page are rendered one after the other. seen: the scene with
+ * the finer voxels that the picture sees; null if the scene's own volumes are shown. */
 static hl_status make_frame(server *s, server_page *page, const frame_request *request,
-                            const film_request *film, server_answer *answer, hl_error *error) {
+                            const film_request *film, const hl_scene *seen, server_answer *answer,
+                            hl_error *error) {
   hl_scene *scene = NULL, *quick = NULL;
   double began = hl_clock_seconds();
   if (server_is_outdated()) return HL_ERROR_CANCELLED;
   hl_status status = request->coarse ? HL_OK : await_finest(s, request->opened, error);
   if (status == HL_OK) status = read_scene(s, request->opened, request->text, request->length, &scene, error);
+  if (status == HL_OK && seen != NULL) status = seen_take(s, seen, &scene, error);
   double parsed = hl_clock_seconds();
   if (status == HL_OK && request->moving) status = make_quick(s, request->opened, scene, &quick, error);
   bool coarser = quick != NULL && quick != scene;
@@ -423,26 +438,73 @@ static bool complete_request(server *s, server_page *page, frame_request *reques
   return *text != NULL;
 }
 
+/* Reads the finer voxels that a picture at rest sees. Meanwhile other frames of the page are rendered. A
+ * frame with a higher number cancels the reading. */
+static hl_status read_seen(server *s, const frame_request *request, hl_scene **seen, hl_error *error) {
+  hl_scene *scene = NULL;
+  hl_status status = read_scene(s, request->opened, request->text, request->length, &scene, error);
+  if (status == HL_OK) status = seen_read(s, request->opened, scene, seen, error);
+  hl_scene_release(scene);
+  return status;
+}
+
+/* Finds the finer voxels of a frame that shows them. If they cannot be read, a picture that is saved fails,
+ * and other pictures are made of coarser voxels; the answer then says why. */
+static hl_status find_seen(server *s, server_page *page, const frame_request *request, hl_scene **seen,
+                           server_answer *answer, hl_error *error) {
+  hl_status status = request->coarse ? HL_OK : await_finest(s, request->opened, error);
+  if (status != HL_OK) return status;
+  status = read_seen(s, request, seen, error);
+  if (status == HL_ERROR_MEMORY) {
+    spare_memory(s);
+    pthread_mutex_lock(&page->rendering);
+    forget_renderers(page);
+    pthread_mutex_unlock(&page->rendering);
+    status = read_seen(s, request, seen, error);
+  }
+  if (status == HL_ERROR_CANCELLED) return status;
+  if (status != HL_OK && !request->coarse) {
+    const hl_error of_voxels = *error;
+    return fail_finer(of_voxels.message, error);
+  }
+  if (status != HL_OK || *seen != NULL)
+    seen_describe(*seen, status != HL_OK ? error->message : "", answer->seen, sizeof answer->seen);
+  return HL_OK;
+}
+
+/* Notes which frame of a page is being made. */
+static void begin_frame(server_page *page, unsigned long long number) {
+  atomic_store(&page->frame_part, 0);
+  atomic_store(&page->stage, STAGE_PICTURE);
+  atomic_store(&page->frame, number);
+}
+
 /* Answers with a frame of a page that this request holds. */
 static void answer_page(server *s, server_page *page, const frame_request *request, const film_request *film,
                         server_answer *answer) {
   hl_error error = {0};
-  pthread_mutex_lock(&page->rendering);
+  hl_scene *seen = NULL;
+  hl_status status = HL_OK;
   current.page = page;
   current.number = request->number;
-  atomic_store(&page->frame_part, 0);
-  atomic_store(&page->stage, STAGE_PICTURE);
-  atomic_store(&page->frame, request->number);
-  hl_status status = make_frame(s, page, request, film, answer, &error);
+  if (film == NULL && (request->seen || !request->coarse)) {
+    if (atomic_load(&page->newest) == request->number) begin_frame(page, request->number);
+    status = find_seen(s, page, request, &seen, answer, &error);
+  }
+  pthread_mutex_lock(&page->rendering);
+  begin_frame(page, request->number);
+  const bool is_read = status == HL_OK;
+  if (is_read) status = make_frame(s, page, request, film, seen, answer, &error);
   /* If memory is short, releases the memory of idle pages and of this page's earlier frames, and tries once
    * more. */
-  if (status == HL_ERROR_MEMORY) {
+  if (is_read && status == HL_ERROR_MEMORY) {
     spare_memory(s);
     forget_renderers(page);
-    status = make_frame(s, page, request, film, answer, &error);
+    status = make_frame(s, page, request, film, seen, answer, &error);
   }
   current.page = NULL;
   pthread_mutex_unlock(&page->rendering);
+  hl_scene_release(seen);
   if (status == HL_OK) answer->status = 200;
   else fail_frame(answer, status, &error);
 }

@@ -44,6 +44,7 @@ static void release_states(opened_state *state) {
 
 static void release(server *s, server_opened *opened) {
   if (opened_now(opened) != NULL) atomic_store(&s->released, true);
+  seen_forget(s, opened->number);
   release_states(atomic_load(&opened->state));
   free(opened->title);
   *opened = (server_opened){0};
@@ -132,7 +133,10 @@ static hl_status refine_once(server *s, server_opened *opened, hl_error *error) 
   hl_status status = s->options.refine(s->options.files_data, now->scene, &scene, error);
   opened_state *finer = scene != NULL ? make_state(s, scene, opened->title, opened->number, now->refined + 1)
                                       : NULL;
-  if (status == HL_OK && finer == NULL) {
+  if (status == HL_OK && scene == NULL) {
+    snprintf(error->message, sizeof error->message, "the file of finer resolutions is not there any more");
+    status = HL_ERROR_INPUT;
+  } else if (status == HL_OK && finer == NULL) {
     snprintf(error->message, sizeof error->message, "out of memory for a finer resolution");
     status = HL_ERROR_MEMORY;
   }
@@ -250,4 +254,5 @@ int opened_count(server *s) {
 void opened_end(server *s) {
   wait_for_preparations(s);
   for (int o = 0; o < MOST_OPENED; o++) release(s, &s->opened[o]);
+  pthread_mutex_destroy(&s->seen_lock);
 }

@@ -24,6 +24,7 @@ enum {
                         * volume */
   MOST_OPENED = 6,     /* the greatest number of open scenes; if there are more, the scene that was not used
                         * for the longest time is closed */
+  MOST_SEEN = 2,       /* the greatest number of views whose finer voxels are kept */
   PATH_BYTES = 4096,   /* the greatest number of bytes of a path, which is Linux's PATH_MAX, as realpath()
                         * requires */
   MOST_FILM_KEYS = 32,
@@ -60,7 +61,12 @@ typedef struct quick_renderer {
 } quick_renderer;
 
 /* The stages of making a frame. Labels and sky are made before the picture. Later frames use them again. */
-typedef enum frame_stage { STAGE_PICTURE = 0, STAGE_LABELS = 1, STAGE_SKY = 2 } frame_stage;
+typedef enum frame_stage {
+  STAGE_PICTURE = 0,
+  STAGE_LABELS = 1,
+  STAGE_SKY = 2,
+  STAGE_VOXELS = 3 /* finer voxels of what the picture sees are read */
+} frame_stage;
 
 /* What the newest picture at rest of a page shows. */
 typedef struct page_matter {
@@ -127,6 +133,14 @@ typedef struct server_opened {
   unsigned long long last_use; /* guarded by server.pages_lock */
 } server_opened;
 
+/* The voxels that pictures at rest see of a view (seen.c). */
+typedef struct seen_voxels {
+  hl_scene *of; /* owned; a scene of the view, with the volumes of the open scene; null: the place is free */
+  hl_scene *with;   /* owned; the same scene with the finer volumes */
+  long long opened; /* the number of the open scene */
+  unsigned long long last_use;
+} seen_voxels;
+
 typedef struct server {
   server_options options;
   hl_context *sealed; /* owned; opens no files; for the scenes that pages send */
@@ -143,6 +157,9 @@ typedef struct server {
   pthread_mutex_t pages_lock;
   server_page pages[MOST_PAGES];
   unsigned long long uses;
+  pthread_mutex_t seen_lock;
+  seen_voxels seen[MOST_SEEN];  /* guarded by seen_lock */
+  unsigned long long seen_uses; /* guarded by seen_lock */
   connection_table connections;
 } server;
 
@@ -160,6 +177,8 @@ typedef struct server_answer {
       is_own_fault; /* whether an error has its cause in the server, as a full disk, and not in the request */
   char notes[1000]; /* the library's warnings about the answer, with "; " between them; "" if there are
                      * none */
+  char seen[3000]; /* facts about the finer voxels that the picture shows, as JSON (seen_describe()); "" if it
+                    * shows none and should show none */
   double seconds_read, seconds_render, seconds_encode; /* the times, in seconds, for reading, rendering and
                                                         * encoding a frame; all 0 if the answer is no frame */
   double seconds_once; /* the part of these times that later frames do not need again: the time for preparing
@@ -186,6 +205,9 @@ typedef struct frame_request {
                      * frame of the scene as it is */
   int coarse;       /* 1 if the frame uses the volumes that were read so far; 0 if the frame waits for the
                      * finest resolutions, and fails if they cannot be read */
+  int seen;         /* 1 if the picture shows what it sees of volumes at the resolutions that it deserves; a
+                     * picture that waits for the finest resolutions does so, too. Where `coarse` is 1 and
+                     * finer voxels cannot be read, the picture is of coarser ones, and the answer says so */
   long long base;   /* 0 if `text` is a whole scene. Any other number is the number of a frame of the page;
                      * `text` is then a difference from that frame's scene */
   const char *text; /* the scene */
@@ -228,6 +250,8 @@ void work_end(void);
 /* Notes that this thread works for an open scene from now on. The work is cancelled when the page that opened
  * the scene was closed. */
 void work_begin_for(server *s, const server_opened *opened);
+/* Notes which stage of its frame this thread begins. */
+void work_enters(frame_stage stage);
 /* This function must be called when a page was closed. It ends the frames of the page and of its lanes
  * (NAME-...), and their renderers. */
 void page_is_gone(server *s, const char *name);
@@ -336,6 +360,21 @@ void opened_close(server *s, long long number);
 server_opened *opened_add(server *s, hl_scene *scene, const char *title);
 int opened_count(server *s);
 void opened_end(server *s);
+
+/* seen.c */
+/* Reads what a picture of a scene sees of its volumes, at the resolutions that the picture deserves, or finds
+ * it among the voxels that are kept. opened: the number of the open scene. *seen: owned by the caller; null
+ * if the scene's own volumes are fine enough, or are still read from coarse to fine. */
+hl_status seen_read(server *s, long long opened, hl_scene *scene, hl_scene **seen, hl_error *error);
+/* Replaces a scene by one that has the volumes of `seen`, which seen_read() has found for a scene of the same
+ * view. */
+hl_status seen_take(server *s, const hl_scene *seen, hl_scene **scene, hl_error *error);
+/* Writes, as JSON, {"problem": TEXT, "volumes": [{"level": N, "absent_chunks": [N, N]}, ...]}. seen: null if
+ * nothing was read. text: [size]; without the volumes if there is no room for them. */
+void seen_describe(const hl_scene *seen, const char *problem, char *text, size_t size);
+/* Releases the voxels that are kept of an open scene. opened: its number; if below 0, the voxels of all
+ * scenes are released. */
+void seen_forget(server *s, long long opened);
 
 /* folder.c */
 bool folder_can_open(const char *name); /* tells by a name's ending whether the file can be opened */

@@ -66,6 +66,7 @@ frame_request query_frame(struct MHD_Connection *connection, const char *text, s
                          .unit = query_text(connection, "unit"),
                          .moving = (int)query_number(connection, "moving", 0, 1, 0),
                          .coarse = (int)query_number(connection, "coarse", 0, 1, 0),
+                         .seen = (int)query_number(connection, "seen", 0, 1, 0),
                          .base = query_number(connection, "base", 1, MOST_NUMBER, 0),
                          .text = text,
                          .length = length};

@@ -53,7 +53,7 @@ static enum MHD_Result send_line(struct MHD_Connection *connection, unsigned sta
 /* Adds a text as a header's value: letters, digits and a few other characters as they are, and the other
  * bytes as %XX. */
 static bool add_encoded(struct MHD_Response *response, const char *name, const char *text) {
-  char encoded[3 * sizeof((server_answer *)0)->notes + 1], *end = encoded;
+  char encoded[3 * sizeof((server_answer *)0)->seen + 1], *end = encoded;
   for (const unsigned char *c = (const unsigned char *)text; *c != '\0' && end < encoded + sizeof encoded - 4;
        c++) {
     const bool is_plain = (*c >= '0' && *c <= '9') || (*c >= 'A' && *c <= 'Z') || (*c >= 'a' && *c <= 'z') ||
@@ -94,6 +94,10 @@ static enum MHD_Result send_answer(server *s, struct MHD_Connection *connection,
   }
   if (response != NULL && answer->notes[0] != '\0' &&
       !add_encoded(response, "Halflight-Note", answer->notes)) {
+    MHD_destroy_response(response);
+    return MHD_NO;
+  }
+  if (response != NULL && answer->seen[0] != '\0' && !add_encoded(response, "Halflight-Seen", answer->seen)) {
     MHD_destroy_response(response);
     return MHD_NO;
   }
@@ -218,8 +222,8 @@ static void answer_film_progress(server *s, struct MHD_Connection *connection, s
 static void answer_progress(server *s, struct MHD_Connection *connection, server_answer *answer) {
   const char *page = query_text(connection, "page");
   char *text = NULL;
-  static const char *const names[] = {"picture", "labels", "sky"}; /* the names of the stages, in the order of
-                                                                    * frame_stage */
+  static const char *const names[] = {"picture", "labels", "sky", "voxels"}; /* the names of the stages, in
+                                                                              * the order of frame_stage */
   const frame_progress progress = page_progress(s, page != NULL ? page : "");
   if (asprintf(&text, "{\"frame\":%llu,\"part\":%.3f,\"stage\":\"%s\",\"others\":%d}", progress.frame,
                progress.part / 1000.0, names[progress.stage], progress.others) < 0)
@@ -295,13 +299,13 @@ static void post_frame(server *s, struct MHD_Connection *connection, const reque
                        server_answer *answer) {
   frame_request wanted = query_frame(connection, r->body, r->length);
   if (names_page(&wanted) && is_picture_format(wanted.format) && wanted.quality > 0 && wanted.metadata >= 0 &&
-      wanted.moving >= 0 && wanted.coarse >= 0 && wanted.base >= 0 &&
+      wanted.moving >= 0 && wanted.coarse >= 0 && wanted.seen >= 0 && wanted.base >= 0 &&
       (wanted.depth == 8 || wanted.depth == 16) && overlay_fits(&wanted))
     answer_frame(s, &wanted, NULL, answer);
   else
     answer_problem(answer, 400,
                    "a frame needs ?page=NAME&number=N&format=jpeg|png|exr|npy (&quality=10..100, "
-                   "&depth=8|16, &metadata=0|1, &moving=0|1, &coarse=0|1, "
+                   "&depth=8|16, &metadata=0|1, &moving=0|1, &coarse=0|1, &seen=0|1, "
                    "&base=N; of a png with 8 bits &scale_bar=0|1, "
                    "&legend=0|1, &marks=0|1, &axes=none|arrows|letters, &unit=TEXT)\n");
 }

@@ -60,7 +60,11 @@ typedef struct server_options {
    * finer one. *finer: the scene with these volumes; null if there is none to read. If the function is null,
    * no scene has finer resolutions. */
   hl_status (*refine)(void *files_data, const hl_scene *scene, hl_scene **finer, hl_error *error);
-  void *files_data;                        /* data for `open` and `refine` */
+  /* Reads what the picture of a scene sees of its volumes, at the resolutions that the picture deserves.
+   * *seen: the scene with these volumes and their levels; null if no volume has finer voxels for the picture.
+   * If the function is null, no scene has. */
+  hl_status (*read_seen)(void *files_data, const hl_scene *scene, hl_scene **seen, hl_error *error);
+  void *files_data;                        /* data for `open`, `refine` and `read_seen` */
   uint64_t most_upload_bytes;              /* the greatest number of bytes of a dropped file; 0 if there is no
                                             * limit */
   int port;                                /* 0 stands for any free port */

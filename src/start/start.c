@@ -134,6 +134,14 @@ static void put_chosen(FILE *out, hl_context *context, const hl_scene_volume *vo
           has_chosen_cuts(context, volume) ? "true" : "false");
 }
 
+/* Writes whether pictures at rest show the volume at the resolution that the view deserves. */
+static void put_resolution(FILE *out, const hl_volume *volume) {
+  hl_volume_selection read = {.struct_size = sizeof read};
+  const bool follows = hl_volume_get_selection(volume, &read) == HL_OK && read.levels > 1 &&
+                       !read.level_is_named;
+  fprintf(out, ",\"level_follows_view\":%s", follows ? "true" : "false");
+}
+
 static void put_volume(FILE *out, hl_context *context, const hl_scene_volume *volume) {
   hl_volume_info info = {.struct_size = sizeof info};
   if (hl_volume_get_info(volume->volume, &info) != HL_OK) {
@@ -148,6 +156,7 @@ static void put_volume(FILE *out, hl_context *context, const hl_scene_volume *vo
   put_histogram(out, &info);
   put_unsmoothed(out, volume->volume);
   put_absence(out, volume);
+  put_resolution(out, volume->volume);
   put_series(out, volume->volume);
   const char *space = hl_space_name(info.space);
   fputs(",\"space\":", out);

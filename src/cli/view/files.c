@@ -9,6 +9,7 @@
 #include "cli/input.h"
 #include "cli/output.h"
 #include "start/joined.h"
+#include "text/plain.h"
 
 /* ---- names ---- */
 
@@ -147,15 +148,18 @@ hl_status view_open_file(void *user_data, const server_file *file, hl_scene **sc
 
 /* ---- finer resolutions ---- */
 
-/* Reads a scene's volume at the next finer resolution, from its absolute path. Nothing outside of the file's
- * folder is read, as when a page opens the file. *finer: null if the volume has the wanted resolution
- * already. */
+/* Reads a scene's volume at a finer resolution, from its absolute path. Nothing outside of the file's folder
+ * is read, as when a page opens the file. *finer: null if the volume has the wanted resolution already. */
 static hl_status read_finer(hl_context *context, const hl_scene_description *scene, size_t number,
-                            hl_volume **finer, hl_error *error) {
+                            hl_finer which, hl_volume **finer, hl_error *error) {
   hl_context *confined = NULL;
   const char *path = scene->volumes[number].file;
-  if (path == NULL || path[0] != '/') /* a URL */
-    return hl_volume_read_finer(context, path, scene, number, NULL, 0, true, finer, error);
+  const hl_camera *camera = which == HL_FINER_PIXELS ? &scene->camera : NULL;
+  const size_t cameras = camera != NULL;
+  if (path == NULL) return HL_OK;
+  if (hl_plain_is_url(path))
+    return hl_volume_read_finer(context, path, scene, number, camera, cameras, which, finer, error);
+  if (path[0] != '/') return HL_OK; /* the file was dropped on the page, and does not exist any more */
   const char *name = base_name(path);
   char *folder = strndup(path, (size_t)(name - path));
   if (folder == NULL) {
@@ -164,28 +168,45 @@ static hl_status read_finer(hl_context *context, const hl_scene_description *sce
   }
   hl_status status = hl_context_confine(context, folder, &confined, error);
   if (status == HL_OK)
-    status = hl_volume_read_finer(confined, name, scene, number, NULL, 0, true, finer, error);
+    status = hl_volume_read_finer(confined, name, scene, number, camera, cameras, which, finer, error);
   hl_context_destroy(confined);
   free(folder);
   return status;
 }
 
-hl_status view_refine_scene(void *user_data, const hl_scene *scene, hl_scene **finer, hl_error *error) {
-  hl_context *context = user_data;
+static int level_of(const hl_volume *volume) {
+  hl_volume_selection read = {.struct_size = sizeof read};
+  return hl_volume_get_selection(volume, &read) == HL_OK ? read.level : HL_INDEX_DEFAULT;
+}
+
+/* Makes a scene whose volumes are read at finer resolutions. *finer: null if no volume was read. */
+static hl_status refine_scene(hl_context *context, const hl_scene *scene, hl_finer which, hl_scene **finer,
+                              hl_error *error) {
   hl_scene_description d = *hl_scene_describe(scene);
   hl_scene_volume *volumes = malloc(d.volume_count * sizeof *volumes + 1);
   hl_volume **read = calloc(d.volume_count + 1, sizeof *read);
+  bool any = false;
   hl_status status = volumes != NULL && read != NULL ? HL_OK : HL_ERROR_MEMORY;
   if (status != HL_OK) snprintf(error->message, sizeof error->message, "out of memory for a list of volumes");
   for (size_t v = 0; status == HL_OK && v < d.volume_count; v++) {
     volumes[v] = d.volumes[v];
-    status = read_finer(context, hl_scene_describe(scene), v, &read[v], error);
+    status = read_finer(context, hl_scene_describe(scene), v, which, &read[v], error);
+    any = any || read[v] != NULL;
     if (read[v] != NULL) volumes[v].volume = read[v];
+    if (read[v] != NULL && which == HL_FINER_PIXELS) volumes[v].level = level_of(read[v]);
   }
   d.volumes = volumes;
-  if (status == HL_OK) status = hl_scene_create(context, &d, finer, error);
+  if (status == HL_OK && any) status = hl_scene_create(context, &d, finer, error);
   for (size_t v = 0; read != NULL && v < d.volume_count; v++) hl_volume_release(read[v]);
   free(read);
   free(volumes);
   return status;
+}
+
+hl_status view_refine_scene(void *user_data, const hl_scene *scene, hl_scene **finer, hl_error *error) {
+  return refine_scene(user_data, scene, HL_FINER_NEXT, finer, error);
+}
+
+hl_status view_read_seen(void *user_data, const hl_scene *scene, hl_scene **seen, hl_error *error) {
+  return refine_scene(user_data, scene, HL_FINER_PIXELS, seen, error);
 }

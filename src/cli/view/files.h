@@ -19,4 +19,8 @@ hl_status view_open_file(void *context, const server_file *file, hl_scene **scen
 /* Reads volumes at their next finer resolutions, as server_options.refine must do. */
 hl_status view_refine_scene(void *context, const hl_scene *scene, hl_scene **finer, hl_error *error);
 
+/* Reads what the picture of a scene sees of its volumes at the resolutions that the picture deserves, as
+ * server_options.read_seen must do. */
+hl_status view_read_seen(void *context, const hl_scene *scene, hl_scene **seen, hl_error *error);
+
 #endif

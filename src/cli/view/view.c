@@ -155,6 +155,7 @@ static int run_view(const cli_value *values, char **inputs) {
                              .folder = getcwd(folder, sizeof folder),
                              .open = view_open_file,
                              .refine = view_refine_scene,
+                             .read_seen = view_read_seen,
                              .files_data = job.host.context,
                              .most_upload_bytes = job.host.memory_limit,
                              .port = port,

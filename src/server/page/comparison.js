@@ -66,7 +66,7 @@ export function comparison({ store, channel, failed, find, report }) {
     if (what === "" || asked === scene) return;
     asked = scene;
     try {
-      const frame = await channel.fetchFrame(other(scene), { quality: 92, lane: "-compared" });
+      const frame = await channel.fetchFrame(other(scene), { quality: 92, lane: "-compared", seen: true });
       if (frame === null || store.scene !== scene || what === "") return;
       const bitmap = await createImageBitmap(frame.blob);
       canvas.width = bitmap.width;

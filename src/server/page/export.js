@@ -106,7 +106,7 @@ export function exportPanel(viewer) {
 
   const save = button("save picture", savePicture, { class: "primary" });
   const saveScene = () => {
-    download(new Blob([sceneText(store.file)], { type: "application/json" }), `${name()}.json`);
+    download(new Blob([sceneText(store.shownFile)], { type: "application/json" }), `${name()}.json`);
     report(`saved ${name()}.json`);
   };
   body.append(
@@ -114,10 +114,10 @@ export function exportPanel(viewer) {
     row(make("label", { for: "transparent" }, "Transparent"), transparent),
     row(make("label", { for: "bare" }, "No metadata"), bare), ...figure.elements, plain, row("", save),
     row(make("span", { class: "name" }, "Scene"), make("span", { class: "buttons" }, button("save scene", saveScene),
-      button("copy scene", () => copy(sceneText(store.file), "the scene")))),
+      button("copy scene", () => copy(sceneText(store.shownFile), "the scene")))),
     row("", make("span", { class: "buttons" },
-      button("copy command", () => copy(commandLine(store.file, store.title, figure.saved()), "the command")),
-      button("copy Python", () => copy(pythonProgram(store.file, store.title, figure.saved()), "the program")))),
+      button("copy command", () => copy(commandLine(store.shownFile, store.title, figure.saved()), "the command")),
+      button("copy Python", () => copy(pythonProgram(store.shownFile, store.title, figure.saved()), "the program")))),
     same);
   function update() {
     followPurpose();

@@ -48,9 +48,10 @@ export class Frames {
   #animation = null; // { change, began: null until its first picture is shown, milliseconds }
   statistics = { previews: 0, cancelled: 0, finals: 0, stage: "start" };
 
-  // report({ stage, state, width, height, spacing, milliseconds, bytes, error }) is told of every frame, and when a picture is begun of a
+  // report({ stage, state, width, height, spacing, milliseconds, bytes, scene, seen, error }) is told of every frame, and when a picture is begun of a
   // scene at rest. state: a number that is another one after each change. stage: "moving" at a change and with each quick picture; "settling"
-  // and "refining" when the first and the final picture at rest are begun, "settled" and "final" when these are there; "failed".
+  // and "refining" when the first and the final picture at rest are begun, "settled" and "final" when these are there; "failed". seen: with "final", of
+  // fetchFrame().
   constructor({ store, start, channel }, canvas, report) {
     this.#measure(start);
     this.#least = channel.leastPixels ?? LEAST_PIXELS;
@@ -214,7 +215,7 @@ export class Frames {
   // before: what is told when the picture is begun.
   async #step(generation, scene, stage, before) {
     const began = performance.now();
-    const options = stage === "final" ? { format: "png" } : { quality: 92, moving: true };
+    const options = stage === "final" ? { format: "png", seen: true } : { quality: 92, moving: true };
     this.#tell(before, scene, began, null);
     const frame = await this.#channel.fetchFrame(scene, options);
     if (generation !== this.#generation) return;
@@ -231,7 +232,7 @@ export class Frames {
       this.statistics.finals++;
       this.statistics.stage = "final";
     }
-    this.#tell(stage, scene, began, frame.blob);
+    this.#tell(stage, scene, began, frame.blob, frame.seen);
   }
 
   async #show(blob, { width, height }) {
@@ -244,11 +245,11 @@ export class Frames {
     bitmap.close();
   }
 
-  #tell(stage, scene, began, blob) {
+  #tell(stage, scene, began, blob, seen = null) {
     const { width, height } = scene.image;
     this.#report({
       stage, state: this.#generation, width, height, spacing: scene.render.sheet_spacing,
-      milliseconds: performance.now() - began, bytes: blob?.size ?? 0,
+      milliseconds: performance.now() - began, bytes: blob?.size ?? 0, scene, seen,
     });
   }
 }

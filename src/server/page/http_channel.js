@@ -15,7 +15,7 @@
 // - overlay(scene, over): what a figure has over the scene's picture (figure_overlay.js), { blob, note }: a transparent PNG, and what the program says
 //   of it, as that a part finds no room; "": nothing.
 // - progress(): how far the frame is that was asked for last, { part, stage, others }: part of the stage, from 0 to 1; stage: what is made,
-//   "labels" (they are smoothed) and "sky" (its light) before the picture, and "picture"; others: frames of other pages under way.
+//   "voxels" (finer ones of what is seen are read), "labels" (they are smoothed) and "sky" (its light) before the picture, and "picture"; others: frames of other pages under way.
 
 import { Lost } from "./connection.js";
 import { HeldScene } from "./held_scene.js";
@@ -54,6 +54,9 @@ function noteOf(response) {
     return ""; // it is cut in the middle of a letter
   }
 }
+
+// What a picture shows of volumes of several resolutions; null: the volumes that are open.
+const seenOf = (response) => JSON.parse(decodeURIComponent(response.headers.get("Halflight-Seen") ?? "null"));
 
 const numbered = (keys) => Object.fromEntries(keys.map((key, n) => [`key${n}`, key]));
 
@@ -145,14 +148,16 @@ export class HttpChannel {
 
   // A picture of the scene: { blob, times, note }, with the program's warnings in `note`, or null where a newer frame of this page has cancelled it. `lane` sets
   // frames apart that do not cancel each other; `moving` makes a quick picture, of coarser volumes where the sheets are wide; `finest`
-  // waits until the finest resolutions that are to be read are there, and fails where they cannot be read.
+  // waits until the finest resolutions that are to be read are there, and fails where they cannot be read. `seen`: volumes of several resolutions
+  // have, where the picture sees them, the voxels that it deserves; the answer then has `seen`, { problem, volumes: [{ level, absent_chunks }] },
+  // with the reason in `problem` where finer voxels were not read; null: the volumes are fine enough. A picture with `finest` does so, too.
   // scaleBar, legend, axes, marks (those of the scene): drawn over a PNG of 8 bits; a bar is refused where neither the scene's files nor `unit` tell a unit of length.
-  async fetchFrame(scene, { format = "jpeg", quality = 85, depth = 8, metadata = true, moving = false, lane = "", finest = false, ...over } = {}) {
-    const query = { page: this.#page + lane, opened: 0, format, quality, depth, metadata: +metadata, moving: +moving, coarse: +!finest, ...overlayQuery(over) };
+  async fetchFrame(scene, { format = "jpeg", quality = 85, depth = 8, metadata = true, moving = false, lane = "", finest = false, seen = false, ...over } = {}) {
+    const query = { page: this.#page + lane, opened: 0, format, quality, depth, metadata: +metadata, moving: +moving, coarse: +!finest, seen: +seen, ...overlayQuery(over) };
     const ask = (number, body, base) => this.#ask("frame", { ...query, number, ...(base === undefined ? {} : { base }) }, { method: "POST", body });
     const response = await (lane === "" ? this.#held.send(scene, moving, ask) : ask(++this.#number, JSON.stringify(scene)));
     if (response.status === 204) return null;
-    return { blob: await response.blob(), times: parseTimes(response.headers.get("Server-Timing")), note: noteOf(response) };
+    return { blob: await response.blob(), times: parseTimes(response.headers.get("Server-Timing")), note: noteOf(response), seen: seenOf(response) };
   }
 
   // What is drawn over the scene's picture: { blob, note }, a transparent PNG of its size; null: it was cancelled.

@@ -15,6 +15,24 @@ export function absenceOf(volume) {
 export const absenceIn = ({ volumes, scene }) => volumes.map((volume, v) => [absenceOf(volume), (scene.volumes?.[v]?.file ?? "").split("/").pop()])
   .filter(([line]) => line !== "").map(([line, name]) => `${name}: ${line}`).join("; ");
 
+// The line about the resolution of the picture. of(text): what is to be told of the voxels that are open; seen(frame): a picture of frames.js,
+// whose finer voxels go before, as long as it is the picture that is shown. warn(text) and failed(error) are told once for each new line.
+export function resolutionLine(element, { warn, failed }) {
+  let open = "", finer = "", told = "";
+  const show = () => { element.textContent = element.title = finer || open; };
+
+  function seen({ stage, seen: read }) {
+    if (stage !== "final" && stage !== "moving") return;
+    const problem = read?.problem ?? "";
+    finer = problem ? `a coarser resolution is shown: ${problem}` : (read?.volumes ?? []).map(absenceOf).filter(Boolean).join("; ");
+    show();
+    if (stage !== "final") return;
+    if (finer !== "" && finer !== told) problem ? failed(new Error(problem)) : warn(finer);
+    told = finer;
+  }
+  return { seen, of: (text) => { open = text; show(); } };
+}
+
 // whole: start.json, whose volumes the viewer's panels have; its entries are changed in place. tell(text): shows what the picture is
 // of, "" for the voxels that it shall be of. warn(text): called once for each line about voxels that a server lacks. renew(): called when
 // the volumes have changed. Returns end().

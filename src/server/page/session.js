@@ -36,9 +36,15 @@ export const isOfSameFiles = (scene, other) => {
   return names.every((kind, k) => kind.length === others[k].length && begins(kind, others[k]));
 };
 
+// A scene whose volumes have the resolutions of what is open, where the resolution follows the view: a scene file has those of its picture.
+export const atOpenLevels = (scene, { scene: { volumes: open = [] }, volumes: about }) => ({
+  ...scene, volumes: (scene.volumes ?? []).map((volume, v) => (about[v]?.level_follows_view && open[v]?.file === volume.file ? { ...volume, level: open[v].level } : volume)),
+});
+
 // Whether a scene is of what is open: of all of it, or of what was open before the last files were added.
-export const isOfOpen = (scene, { scene: whole }) => {
-  const [names, all] = [namesOf(scene), namesOf(whole)];
+// Volumes whose resolution follows the view have the one that is open.
+export const isOfOpen = (scene, start) => {
+  const [names, all] = [namesOf(atOpenLevels(scene, start)), namesOf(start.scene)];
   return names.flat().length > 0 && names.every((kind, k) => begins(kind, all[k]));
 };
 
@@ -101,7 +107,7 @@ export async function restoreFrom(file, { store, start }, channel, reopen = () =
   }
   const session = readSession(object), scene = session?.scene ?? object;
   if (session === null && object?.halflight === undefined) throw new Error(`${file.name} is neither a session nor a scene`);
-  if (isOfOpen(scene, start)) store.replace({ ...session, source: session?.own ?? store.source, scene: await channel.completeScene(scene) });
+  if (isOfOpen(scene, start)) store.replace({ ...session, source: session?.own ?? store.source, scene: await channel.completeScene(atOpenLevels(scene, start)) });
   else if (session === null) return "other";
   else if (!(await reopen(session))) throw new Error(`the session is of ${session.title}, and ${store.title} is open: open that first`);
   return "opened";

@@ -6,7 +6,7 @@ import { make } from "./controls.js";
 // Milliseconds until the progress of a picture is first asked for, and between such questions.
 const ASK_AFTER = 600, ASK_EVERY = 400;
 // What is waited for before the picture is begun, for each stage of progress() of the channel.
-const AWAITED = { labels: "smoothing labels", sky: "light of the sky" };
+const AWAITED = { voxels: "finer voxels are being read", labels: "smoothing labels", sky: "light of the sky" };
 // The names of the stages of frames.js. A coarse picture is at rest, while finer voxels are still to come.
 const STAGES = { moving: "moving", settling: "refining", settled: "refining", refining: "refining", final: "final", coarse: "refining" };
 // The parts of the way to the final picture that are left behind when the quick pictures, the first picture at rest and the final one are there.

@@ -46,6 +46,7 @@ export class Store {
   #holds = false; // a gesture is under way
   #last = { name: "", gesture: -1 };
   #lastCamera = -1; // number of the gesture in which the camera was last moved
+  #shown = { scene: null, levels: [] }; // the resolutions of the volumes in the picture of this scene
   isDue = false; // the scene of the film's frame is still to come
 
   // scene: a scene file, which may have marks. marks: a person's measures and texts (marks.js) in place of those of the file. page: settings that are no part of pictures: layout,
@@ -62,6 +63,17 @@ export class Store {
   // The scene file: the scene with its marks.
   get file() {
     return this.marks.length > 0 ? { ...this.scene, marks: this.marks } : this.scene;
+  }
+
+  // The scene file of the picture that is shown, whose volumes have the resolutions of the picture (frames.js).
+  get shownFile() {
+    const { file } = this, levels = this.#shown.scene === this.scene ? this.#shown.levels : [];
+    return levels.some((level) => level >= 0) ? { ...file, volumes: file.volumes.map((volume, v) => (levels[v] >= 0 ? { ...volume, level: levels[v] } : volume)) } : file;
+  }
+
+  // A picture of a scene is shown whose volumes have these resolutions; below 0: a volume has one alone.
+  showsLevels(scene, levels) {
+    this.#shown = { scene, levels };
   }
 
   // listener(scene, name, frame) is called after every change. frame: after undo or redo, the frame of the film whose scene this is; the film

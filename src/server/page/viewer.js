@@ -24,9 +24,9 @@ import { openPanel } from "./open_panel.js";
 import { Overlay } from "./overlay.js";
 import { Pointer } from "./pointer.js";
 import { Probe } from "./probe.js";
-import { followRefinement } from "./refinement.js";
+import { followRefinement, resolutionLine } from "./refinement.js";
 import { seriesOf } from "./series.js";
-import { isOfSameFiles, startOf } from "./session.js";
+import { atOpenLevels, isOfSameFiles, startOf } from "./session.js";
 import { helpSheet, installShortcuts } from "./shortcuts.js";
 import { sessionPanel } from "./session_panel.js";
 import { skyPanel } from "./sky_panel.js";
@@ -223,6 +223,7 @@ function followFiles(store, whole, source, reopen) {
 // chooser. address: the part of a link before its end. Returns { store, start, frames, overlay, probe, slices, marking,
 // report, adds, end }; end() stops all of it.
 export function mount(element, channel, whole, { keyboard = element, reopen = () => {}, source = null, kept = null, restore = null, startAfresh = () => {}, choose = null, address = "" } = {}) {
+  if (kept !== null) kept = { ...kept, scene: atOpenLevels(kept.scene, whole) };
   element.innerHTML = MARKUP;
   const root = element.firstElementChild, find = (id) => root.querySelector(`#${id}`);
   const ended = new AbortController();
@@ -272,12 +273,14 @@ export function mount(element, channel, whole, { keyboard = element, reopen = ()
   viewer.slices.update();
   followLayout();
   followSize(store, find("view"), ended.signal); // once all stands where it is to be
-  const status = statusLine(find, channel);
+  const status = statusLine(find, channel), resolution = resolutionLine(find("resolution"), { warn: (line) => report(line, WARNING_TIME), failed: viewer.failed });
   const frames = new Frames(viewer, find("picture"), (frame) => {
     // A picture is not final as long as finer voxels are still to come.
     status.show(frame.stage === "final" && whole.refining ? { ...frame, stage: "coarse" } : frame);
     if (frame.error) viewer.failed(frame.error);
+    resolution.seen(frame);
     if (frame.stage === "final") {
+      store.showsLevels(frame.scene, (frame.seen?.volumes ?? []).map(({ level }) => level));
       viewer.probe.rest();
       viewer.atRest.forEach((rest) => rest());
     }
@@ -293,7 +296,7 @@ export function mount(element, channel, whole, { keyboard = element, reopen = ()
   followFiles(store, whole, source, reopen);
   update();
   const endRefinement = followRefinement(whole, channel, {
-    tell: (text) => { find("resolution").textContent = find("resolution").title = text; }, warn: (line) => report(line, WARNING_TIME), failed: viewer.failed,
+    tell: resolution.of, warn: (line) => report(line, WARNING_TIME), failed: viewer.failed,
     renew: () => {
       frames.refine(start);
       viewer.slices.refine();
