@@ -285,7 +285,7 @@ def page(server, url):
         server.hold = hold
         browser.run(nearer)
         browser.wait("document.getElementById('progress').textContent.includes('finer voxels are being read')")
-        check(reached.is_set() and not browser.run(rest), "the page says what it waits for")
+        check(reached.wait(20) and not browser.run(rest), "the page says what it waits for")
         server.hold = None
         released.set()
         browser.wait(rest)
