@@ -277,6 +277,28 @@ def doors(case, server):
         case.ok(f"{name}: the pictures of all chunks", made == [whole_of(case, path) for path in sorted(others.iterdir())], len(made))
 
 
+def faults_at_doors(case, server):
+    """Where chunks of the finest level do not come as they are, no door makes a picture of them, and the program says why."""
+    url, off, pictures = server.url, ("--zoom", 8, "--shadows", "off", "--size", "32x32", "--quiet"), case.folder / "pictures"
+    one, two, times = f"{url}/{FIRST}", f"{url}/{SECOND}", (f"{url}/{TIMES}", "--time", "all")
+    for name, store, left, words in (
+            ("several volumes", SECOND, 0, ("render", one, two, *off, "-o", pictures / "a.png")),
+            ("several channels", CHANNELS, 0, ("render", f"{url}/{CHANNELS}", "--channel", "all", *off, "-o", pictures / "a.png")),
+            ("several sides", FIRST, 0, ("render", one, *off, "--views", "front,left", "-o", f"{pictures}/%s.png")),
+            ("a series of files", SECOND, 1, ("render", one, two, *off, "-o", f"{pictures}/%s.png")),
+            ("a film", FIRST, 0, ("animate", one, *off, "--turntable", 8, "--frames", 2, "-o", pictures)),
+            ("a film of times", TIMES, 0, ("animate", *times, *off, "-o", pictures))):
+        chunks = [path.relative_to(server.folder).as_posix() for path in (server.folder / store / "0").rglob("*") if path.is_file() and path.name.isdigit()]
+        for fault, said in (("403", "the server answers 403"), ("cut", "it does not arrive"), ("half", "does not unpack"), ("flipped", "does not unpack")):
+            shutil.rmtree(pictures, ignore_errors=True)
+            pictures.mkdir()
+            case.fresh()
+            server.forget(**{chunk.replace("/", "__"): ["always", fault] for chunk in chunks})
+            done = case.run(*words)
+            made = sorted(path.name for path in pictures.iterdir())
+            case.ok(f"{name}, {fault}: no picture of wrong voxels", done.returncode != 0 and said in done.stderr and len(made) == left, (done.returncode, done.stderr, made))
+
+
 def whole_of(case, picture):
     """The pixels of the scene that a picture carries, for which all chunks are read."""
     done = case.run("render", picture, "--quiet", "--print-scene")
@@ -307,6 +329,7 @@ def main():
         write_small_chunks(stores)
         server = servers.Server(stores)
         doors(case, server)
+        faults_at_doors(case, server)
         scenes(case, stores / "beam.zarr")
         seen = parts(case, server)
         shards(case, server)
