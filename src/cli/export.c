@@ -46,10 +46,10 @@ static const cli_option export_options[EXPORT_OPTION_COUNT] = {
 
 static const char *const page_extensions[] = {".html", NULL};
 
-/* The path of the page without a scene that is installed with the program: in share/halflight beside bin, or
- * in the Python package. */
+/* The path of the page without a scene that is installed with the program: in share/halflight beside bin, in
+ * the Python package, or beside the program, as on Windows. */
 static const char *const installed_pages[] = {"/../share/halflight/halflight.html", "/../page/halflight.html",
-                                              NULL};
+                                              "/halflight.html", NULL};
 
 /* The page without a scene; null if it is not installed. */
 static const char *viewer_page(const cli_value *values, char path[PATH_MAX]) {

@@ -18,6 +18,7 @@
 
 #include "output.h"
 #include "platform/memory.h"
+#include "platform/program.h"
 #include "text/plain.h"
 #include "text/units.h"
 
@@ -322,9 +323,7 @@ int compare_by_number(const void *a, const void *b) {
 
 bool find_installed(const char *const *places, char path[PATH_MAX]) {
   enum { LONGEST = 64 };
-  ssize_t length = readlink("/proc/self/exe", path, PATH_MAX - LONGEST);
-  if (length < 0) return false;
-  path[length] = '\0';
+  if (!hl_program_path(path, PATH_MAX - LONGEST)) return false;
   char *slash = strrchr(path, '/');
   for (size_t n = 0; slash != NULL && places[n] != NULL; n++) {
     snprintf(slash, LONGEST, "%s", places[n]);

@@ -17,6 +17,7 @@
 #include <time.h>
 #include <unistd.h>
 
+#include "platform/program.h"
 #include "process/process.h"
 
 typedef struct workplace {
@@ -37,10 +38,9 @@ static void find_converter(char path[PATH_MAX]) {
     snprintf(path, PATH_MAX, "%s", named);
     return;
   }
-  ssize_t length = readlink("/proc/self/exe", path, PATH_MAX - sizeof name);
-  while (length > 0 && path[length - 1] != '/') length--;
-  if (length > 0) {
-    memcpy(path + length, name, sizeof name);
+  char *slash = hl_program_path(path, PATH_MAX - sizeof name) ? strrchr(path, '/') : NULL;
+  if (slash != NULL) {
+    memcpy(slash + 1, name, sizeof name);
     if (access(path, X_OK) == 0) return;
   }
   snprintf(path, PATH_MAX, "nanovdb_convert");

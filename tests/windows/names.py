@@ -1,5 +1,6 @@
 #!/usr/bin/env python3
-"""The program for Windows opens files by any name, keeps what a header or a store names below its folder, and reads volumes larger than memory.
+"""The program for Windows opens files by any name, keeps what a header or a store names below its folder, reads volumes larger than memory, and finds
+the files beside itself.
 
 usage: names.py FOLDER PROGRAM
 FOLDER is that of scripts/windows. It runs in wine, which follows links of the system below it by itself: links are not tested.
@@ -56,6 +57,11 @@ def main():
         check(done.stdout == expected, "standard streams carry bytes")
         done = run(["render", "*gs.nrr?", "-o", "inner/%d.png", *SIZE])
         check(done.returncode == 0 and (folder / "inner" / "0.png").exists(), "a pattern names files")
+
+        done = run(["export", "rings.nrrd", "-o", "found.html", "--quiet"])
+        native(["export", "rings.nrrd", "-o", "named.html", "--page", windows / "halflight" / "halflight.html", "--quiet"])
+        check(done.returncode == 0 and (folder / "found.html").read_bytes() == (folder / "named.html").read_bytes(),
+              f"the program finds the page beside itself: {done.stderr.decode()}")
 
         (folder / "outside.raw").write_bytes(bytes(range(64)))
         for name in ("//localhost/share/x.raw", "\\\\localhost\\share\\x.raw"):

@@ -140,12 +140,6 @@ char *hl_posix_mkdtemp(char *path) {
   return NULL;
 }
 
-ssize_t readlink(const char *path, char *text, size_t size) {
-  (void)path, (void)text, (void)size;
-  errno = ENOSYS;
-  return -1;
-}
-
 int symlink(const char *path, const char *name) {
   (void)path, (void)name;
   errno = ENOSYS;

@@ -1,5 +1,5 @@
-/* platform/windows/program.c - prepares the arguments and the standard streams. Afterwards the streams carry
- * bytes, and the console's text is UTF-8. */
+/* platform/windows/program.c - prepares the arguments and the standard streams, and finds the program's own
+ * file. Once prepared, the streams carry bytes, and the console's text is UTF-8. */
 #include "platform/program.h"
 
 #include <windows.h>
@@ -8,8 +8,11 @@
 
 #include <fcntl.h>
 #include <io.h>
+#include <limits.h>
 #include <stdlib.h>
 #include <string.h>
+
+#include "names.h"
 
 /* A text of the system in UTF-8, which the caller frees. */
 static char *narrow_text(const wchar_t *wide) {
@@ -49,4 +52,10 @@ void hl_program_begin(int *count, char ***arguments) {
   LocalFree(wide);
   *count = wide_count;
   *arguments = made;
+}
+
+bool hl_program_path(char *path, size_t size) {
+  wchar_t wide[PATH_MAX];
+  DWORD length = GetModuleFileNameW(NULL, wide, PATH_MAX);
+  return length > 0 && length < PATH_MAX && hl_narrow_name(wide, length, path, size);
 }

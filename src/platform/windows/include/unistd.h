@@ -20,9 +20,6 @@ int hl_posix_chdir(const char *path);
 char *hl_posix_getcwd(char *path, size_t size);
 int hl_posix_isatty(int descriptor);
 unsigned geteuid(void); /* returns 0, because a process has no user's number on this system */
-/* This function always fails, because links are not read. Therefore the link "/proc/self/exe" cannot be
- * read. */
-ssize_t readlink(const char *path, char *text, size_t size);
 int symlink(const char *path, const char *name); /* fails */
 
 enum { _SC_PAGESIZE, _SC_NPROCESSORS_ONLN };
