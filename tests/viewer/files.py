@@ -467,4 +467,8 @@ with tempfile.TemporaryDirectory() as folder:
                 browser.run(f"window.volume = '{base64.b64encode(file.read()).decode()}'; 0")
             on_the_page(browser)
             several_files(browser, viewer.url)
+        with Viewer(PROGRAM, "inside/triangle.obj") as viewer, Browser(chromium, (720, 420)) as browser:
+            browser.open(viewer.url)
+            equals_render(browser, "mesh")
+            check(browser.problems == [], f"a mesh alone: the console has errors: {browser.problems}")
     print(f"{checks.count} checks passed")

@@ -149,14 +149,15 @@ export function cutSwitch(viewer) {
       ...volume, ...Object.fromEntries(["cuts", "clip", "scraps"].filter((key) => volumes[n]?.[key]).map((key) => [key, volumes[n][key]])),
     })),
   });
-  const chosen = start.volumes.reduce((count, about, n) => count + (about?.chosen_cuts ? start.scene.volumes[n].cuts.length : 0), 0);
+  const volumes = start.scene.volumes ?? []; // a scene may consist of meshes only
+  const chosen = start.volumes.reduce((count, about, n) => count + (about?.chosen_cuts ? volumes[n].cuts.length : 0), 0);
   const away = () => store.aside("all cuts");
   function set(on) {
     if (!on) store.putAside("all cuts", cutsOf(store.scene));
     if (!on || away()) store.change("all cuts", (scene) => withCuts(scene, on ? away() : { volumes: [] }));
   }
   const all = toggle({ label: "All cuts", get: () => isCut(store.scene), set });
-  const hidden = start.scene.volumes?.some((volume) => volume.scraps) ?? false, leftOut = chosen > 0 || hidden;
+  const hidden = volumes.some((volume) => volume.scraps), leftOut = chosen > 0 || hidden;
   const holders = `${chosen} ${chosen === 1 ? "plane" : "planes"}`;
   const why = [...(chosen > 0 ? [`${holders} ${chosen === 1 ? "takes" : "take"} away what holds the object`] : []), ...(hidden ? ["small bodies beside the object are hidden"] : [])].join(", and ");
   const told = make("p", { class: "facts", hidden: !leftOut }, `${why}: chosen by the program, as nobody said what to cut.`);
