@@ -45,6 +45,18 @@ MACHINE = """(async (cores, cost, tells) => {
   return { found, moving, settled };
 })"""
 
+# The voxels that the first picture of a volume of 256 x 256 x 256 voxels needs, for a channel with this least size of pictures.
+FIRST = """(async (leastPixels) => {
+  const { Frames } = await import('./frames.js'), { Store } = await import('./store.js');
+  const start = { volumes: halflight.start.volumes.map((volume) => ({ ...volume, dimensions: [256, 256, 256] })) };
+  const { scene } = halflight.store, store = new Store({ ...scene, image: { ...scene.image, width: 1280, height: 800 }, render: { ...scene.render, sheet_spacing: 1 } });
+  return new Promise((done) => {
+    const channel = { leastPixels, fetchFrame: async ({ render }) => { frames.end(); done(256 ** 3 / render.sheet_spacing ** 3); return null; } };
+    const frames = new Frames({ store, start, channel }, document.createElement('canvas'), () => {});
+    frames.move();
+  });
+})"""
+
 
 def qualities(browser, cores, cost, tells=True):
     return browser.run(f"{MACHINE}({cores}, {cost}, {str(tells).lower()})", timeout=60)
@@ -70,6 +82,8 @@ def main():
                     check(settled["clock"] < 390 and (settled["clock"] > 250 or settled["pixels"] == 1280 * 800 and settled["spacing"] < 1.3), f"{cores} cores, {cost} ms: the first picture at rest: {made}")
             untold = qualities(browser, 8, 1000, tells=False)["moving"]
             check(45 < untold["clock"] < 55, f"a machine that does not tell its processors' time: the clock alone: {untold}")
+            whole, quarter = (browser.run(f"{FIRST}({least})", timeout=60) for least in (480 * 320, 240 * 160))
+            check(abs(whole / quarter - 4) < 1e-9, f"the first picture waits for a quarter of the voxels where pictures are a quarter as large: {whole} and {quarter}")
             check(browser.problems == [], f"the console has errors: {browser.problems}")
     print(f"{checks.count} checks passed")
 

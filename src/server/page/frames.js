@@ -16,15 +16,18 @@ const SETTLED_WITHIN = 350;
 const LEAST_PIXELS = 480 * 320; // least size of a picture while something moves, if the full picture has more and the channel says no other
 // The most voxels between sheets while something moves: the coarsest volumes have voxels of this length.
 const WIDEST = 8;
-const SOON_PREPARED = 128 ** 3; // number of voxels that are prepared in a few tenths of a second
+// The number of voxels that a server prepares in a few tenths of a second. A channel whose least pictures are smaller
+// prepares fewer in the same ratio.
+const SOON_PREPARED = 128 ** 3;
 const SHADOW_PIXELS = 0.5; // the longer side of a shadow buffer, as a part of a moving picture's longer side
 const SETTLED_SPACING = 2; // voxels between the sheets of the first picture at rest, as long as it has LEAST_PIXELS
 const ADAPTION = 0.6; // exponent: the part of an error in time that one frame corrects
 
-// The distance of the first picture's sheets, such that the volumes of this picture are soon prepared.
-function firstSpacing(volumes) {
+// The distance of the first picture's sheets, such that the volumes of this picture are soon prepared. least: the least
+// size of a picture while something moves.
+function firstSpacing(volumes, least) {
   const voxels = volumes.reduce((sum, { dimensions: [i, j, k] }) => sum + i * j * k, 0);
-  return Math.min(Math.max(Math.cbrt(voxels / SOON_PREPARED), 1.5), WIDEST);
+  return Math.min(Math.max(Math.cbrt(voxels / (SOON_PREPARED * (least / LEAST_PIXELS))), 1.5), WIDEST);
 }
 
 // The renderer computes blocks of 16 x 16 pixels.
@@ -55,7 +58,7 @@ export class Frames {
   constructor({ store, start, channel }, canvas, report) {
     this.#measure(start);
     this.#least = channel.leastPixels ?? LEAST_PIXELS;
-    this.#work = this.#timely = this.#least / firstSpacing(start.volumes);
+    this.#work = this.#timely = this.#least / firstSpacing(start.volumes, this.#least);
     this.#store = store;
     this.#channel = channel;
     this.#canvas = canvas;
