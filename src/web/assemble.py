@@ -1,8 +1,9 @@
 #!/usr/bin/env python3
 """Makes the page without a server of its scripts and of the library as WebAssembly.
 
-usage: assemble.py LIBRARIES FOLDER
-LIBRARIES is the folder with the WebAssembly files. Writes FOLDER/page/, static files for any web server, and FOLDER/halflight.html, all of it in one file, which opens from a disk.
+usage: assemble.py LIBRARIES FOLDER NOTICE ...
+LIBRARIES is the folder with the WebAssembly files. NOTICE: files with the notices of what these hold. Writes FOLDER/page/, static files for any web server, and
+FOLDER/halflight.html, all of it in one file, which opens from a disk. Either has the notices: licences.txt, and a comment.
 """
 import base64
 import gzip
@@ -32,6 +33,7 @@ PAGE = """<!doctype html>
   <body class="halflight-page"></body>
 </html>
 """
+NOTICE = "Halflight is distributed under the Apache License 2.0. Its library, as WebAssembly, holds code of the following authors.\n"
 
 
 def read(name):
@@ -50,7 +52,8 @@ def element(name, content):
     return f'<script type="text/plain" data-part="{name}">{packed}</script>'
 
 
-libraries, folder = (pathlib.Path(one) for one in sys.argv[1:])
+libraries, folder, *notice_files = (pathlib.Path(one) for one in sys.argv[1:])
+notices = "\n".join([NOTICE, *(f"{file.parent.name}\n\n{file.read_text(encoding='utf-8')}" for file in notice_files)])
 parts = {"worker.js": joined("worker").encode(), **{name: (libraries / name).read_bytes() for name in ("halflight.wasm", "halflight-relaxed.wasm")}}
 style, script = read("style.css") + read("tab.css"), joined("tab")
 icon = "data:image/svg+xml," + urllib.parse.quote(read("icon.svg"))
@@ -58,10 +61,12 @@ page = folder / "page"
 page.mkdir(parents=True, exist_ok=True)
 for name, content in {**parts, "halflight-threads.wasm": (libraries / "halflight-threads.wasm").read_bytes(), "style.css": style.encode(), "tab.js": script.encode()}.items():
     (page / name).write_bytes(content)
+(page / "licences.txt").write_text(notices, encoding="utf-8")
 (page / "index.html").write_text(PAGE.format(icon=icon, style='<link rel="stylesheet" href="style.css">', script='<script type="module" src="tab.js"></script>'))
 single = PAGE.format(icon=icon, style=f"<style>{style}</style>",
                      script="\n    ".join([element(*one) for one in parts.items()] + [f'<script type="module">{script}</script>']))
-(folder / "halflight.html").write_text(single)
+single += f"<!--\n{notices.replace('--', '- -')}-->\n"
+(folder / "halflight.html").write_text(single, encoding="utf-8")
 for name in ("halflight-relaxed.wasm", "halflight.wasm", "halflight-threads.wasm"):
     print(f"{name}: {len(gzip.compress((page / name).read_bytes(), 9))} bytes compressed")
 print(f"{folder / 'halflight.html'}: {len(single)} bytes")

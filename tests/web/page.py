@@ -30,7 +30,7 @@ from firefox import Firefox  # noqa: E402
 from scenes import SCENES, balls, write_volumes  # noqa: E402
 
 SHOTS = pathlib.Path(sys.argv[3]).resolve() if len(sys.argv) > 3 else None
-MOST = 1.5e6  # bytes of a WebAssembly file as a server sends it, compressed
+MOST = 1.5e6  # bytes of a WebAssembly file, or of a page and all that it loads, as a server sends them, compressed
 HANG = 1200  # seconds, for a browser that hangs alone
 number = 0
 
@@ -77,14 +77,16 @@ def try_kinds(browser, url, what, program, folder):
 
 
 def try_folder(browser, url, what, program, folder):
-    """A folder that is dropped is opened as DICOM."""
+    """A folder that is dropped is opened as DICOM; a page from a server opens one in /dev, too, which a page from a disk may do only if the user agrees."""
     (folder / "series").mkdir(exist_ok=True)
     for place in range(9):
         (folder / "series" / f"{place}.dcm").write_bytes(dicom_slice(place))
     browser.open(url)
     browser.wait("globalThis.halflight === undefined && document.querySelector('.tab-welcome') !== null")
-    browser.drop((400, 200), [folder / "series"])
-    browser.wait("globalThis.halflight?.frames.statistics.finals > 0")
+    with tempfile.TemporaryDirectory(dir="/dev/shm" if url.startswith("http") else "/var/tmp") as place:
+        shutil.copytree(folder / "series", f"{place}/series")
+        browser.drop((400, 200), [pathlib.Path(place) / "series"])
+        browser.wait("globalThis.halflight?.frames.statistics.finals > 0")
     saved_scene(browser, folder, "saved.json")
     check(same_pixels(program, folder, final_picture(browser), "saved.json"), f"{what}: a folder of DICOM is dropped")
 
@@ -253,11 +255,15 @@ def try_held_scene(kind, what, page, program, folder):
 
 
 def try_alone(kind, what, page, program, folder):
-    """A page that is loaded asks its server for nothing more: the server has ended when a file is chosen."""
-    modules = sorted(file.name for file in page.glob("*.wasm"))
+    """A page loads one file of the library, and is small. A page that is loaded asks its server for nothing more: the server has ended when a file is
+    chosen."""
     with serve(page, IsolatingHandler) as (server, url), kind(size=(900, 500)) as browser:
         browser.open(url)
-        browser.wait(f"{json.dumps(modules)}.every((name) => performance.getEntriesByName(new URL(name, location).href).length > 0)")
+        loaded = "performance.getEntriesByType('resource').map(({ name }) => name.slice(location.href.length))"
+        browser.wait(f"{loaded}.some((name) => name.endsWith('.wasm'))")
+        names = sorted(name for name in browser.run(loaded) if (page / name).is_file())
+        size = sum(len(gzip.compress((page / name).read_bytes(), 9)) for name in [*names, "index.html"])
+        check("halflight-threads.wasm" in names and size <= MOST, f"{what}: {size} bytes are loaded, compressed: {' '.join(names)}")
         server.shutdown()
         server.server_close()
         choose_files(browser, [folder / "labels.nrrd"])
@@ -313,7 +319,7 @@ try {
   worker.onerror = (event) => finish({ problem: event.message });
   const ask = (content) => new Promise((resolve) => { finish = resolve; worker.postMessage({ number: 1, ...content }); });
   const begun = await ask({ kind: "begin", modules: await Promise.all(modules.map(bytes)) });
-  if (begun.problem) throw new Error(begun.problem);
+  if (begun.problem || begun.threads === 0) throw new Error(begun.problem ?? "no engine");
   for (const { scene, files } of jobs) {
     const contents = Object.fromEntries(await Promise.all(files.map(async (name) => [name, await bytes(name)])));
     const { start, problem } = await ask({ kind: "open", contents, path: scene, title: scene });

@@ -22,10 +22,11 @@ async function collectHandle(handle, at, contents) {
 }
 
 // Collects the files of a folder. In a page from a disk, Chromium refuses to read the entries of a folder, and reads its
-// handle. Firefox has no handles of items.
+// handle. Firefox has no handles of items. Entries are read wherever they can be: for the handle of a folder such as
+// /dev/shm, Chromium first asks the user.
 async function folderOf(item, entry) {
   const contents = {};
-  if (item.getAsFileSystemHandle) await collectHandle(await item.getAsFileSystemHandle(), "", contents);
+  if (globalThis.origin === "null" && item.getAsFileSystemHandle) await collectHandle(await item.getAsFileSystemHandle(), "", contents);
   else await collectEntry(entry, "", contents);
   return { contents, path: entry.name, title: entry.name };
 }

@@ -82,16 +82,16 @@ export class Engine {
     exports.web_helper_serve(number);
   }
 
-  // Makes an engine of the first file whose engine gives the same bytes on this machine as on all others. files: the
-  // WebAssembly files, beginning with the fastest. A file for shared memory is left out if the machine has no room for
-  // its memory.
+  // Makes an engine of the first file whose engine gives the same bytes on this machine as on all others, or returns
+  // null if there is none. files: WebAssembly files, beginning with the fastest. A file for shared memory is left out
+  // if the machine has no room for its memory.
   static async best(files, hooks) {
     for (const bytes of files) {
       const module = WebAssembly.validate(bytes) ? await WebAssembly.compile(bytes) : null;
       const engine = module && await (sharesMemory(module) ? Engine.of(module, hooks).catch(() => null) : Engine.of(module, hooks));
       if (engine?.fuses) return engine;
     }
-    throw new EngineError("this browser has no WebAssembly with SIMD: use a newer one");
+    return null;
   }
 
   // Returns whether the engine rounds a product and a sum only once. Engines with relaxed SIMD may round twice.

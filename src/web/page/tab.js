@@ -8,6 +8,10 @@ import { mount } from "./viewer.js";
 import { WorkerChannel } from "./worker_channel.js";
 
 const HELD_SCENE = "scene.json";
+// A WebAssembly module of one function, which takes three vectors of zeros, and rounds their product and sum once
+// (f32x4.relaxed_madd).
+const RELAXED_SIMD = Uint8Array.of(0, 0x61, 0x73, 0x6d, 1, 0, 0, 0, 1, 4, 1, 0x60, 0, 0, 3, 2, 1, 0, 0x0a, 0x14, 1, 0x12, 0,
+  0x41, 0, 0xfd, 0x0f, 0x41, 0, 0xfd, 0x0f, 0x41, 0, 0xfd, 0x0f, 0xfd, 0x85, 2, 0x1a, 0x0b);
 
 const make = (name, properties, ...children) => {
   const element = Object.assign(document.createElement(name), properties);
@@ -25,15 +29,23 @@ const welcome = make("section", { className: "tab-welcome" },
 
 let channel = null;
 
-async function begin() {
+// Returns the names of the library's files that this browser may take, beginning with the fastest. The page asks its
+// server for the next file only if one does not suit the machine.
+function modulesFor() {
   // Workers can share memory only if the server of the page isolates the page. A page in a single file always uses one
   // thread.
   const threads = globalThis.crossOriginIsolated && isFolder() ? ["halflight-threads.wasm"] : [];
-  const [script, ...modules] = await Promise.all(["worker.js", ...threads, "halflight-relaxed.wasm", "halflight.wasm"].map(part));
+  return [...(WebAssembly.validate(RELAXED_SIMD) ? [...threads, "halflight-relaxed.wasm"] : []), "halflight.wasm"];
+}
+
+async function begin() {
+  const [first, ...others] = modulesFor(), [script, fastest] = await Promise.all(["worker.js", first].map(part));
   const url = URL.createObjectURL(new Blob([script], { type: "text/javascript" }));
   channel = new WorkerChannel(new Worker(url));
   channel.onProgress = (fraction) => { message.textContent = `reading: ${Math.round(100 * fraction)} %`; };
-  await channel.begin(modules);
+  if (await channel.begin(fastest)) return;
+  for (const name of others) if (await channel.begin(await part(name))) return;
+  throw new Error("this browser has no WebAssembly with SIMD: use a newer one");
 }
 
 // Makes the channel to the open scene. The viewer's panel with the files of a server has no use here.
@@ -44,7 +56,10 @@ const viewerChannel = () => ({
 
 function say(text) {
   if (globalThis.halflight) globalThis.halflight.report(text);
-  else message.textContent = text;
+  else {
+    message.textContent = text;
+    if (!message.isConnected) document.body.replaceChildren(welcome); // a viewer that could not be made
+  }
 }
 
 let kept = keptSession(), keeping = null; // kept: the session of this tab before the page was loaded again
@@ -109,7 +124,9 @@ addEventListener("dragover", (event) => event.preventDefault());
 addEventListener("drop", async (event) => {
   event.preventDefault();
   try {
-    await take(await droppedFiles(event.dataTransfer));
+    const dropped = droppedFiles(event.dataTransfer);
+    say("listing what was dropped …");
+    await take(await dropped);
   } catch (error) {
     say(error.message);
   }

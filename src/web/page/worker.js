@@ -56,7 +56,7 @@ const help = (work) => new Promise((ready, failed) => {
 const calls = {
   async begin({ modules }) {
     engine = await Engine.best(modules, { cancelled, help, progress: (part) => postMessage({ part }) });
-    return { threads: engine.threads };
+    return { threads: engine?.threads ?? 0 };
   },
   open: async ({ contents, path, title }) => ({ start: await engine.open(contents, path, title) }),
   join: async ({ scene, contents, path, title }) => ({ start: await engine.join(scene, contents, path, title) }),

@@ -36,9 +36,10 @@ export class WorkerChannel {
     });
   }
 
-  // Starts the engine. modules: the bytes of the WebAssembly files, beginning with the fastest.
-  begin(modules) {
-    return this.#ask("begin", { modules });
+  // Starts the engine. module: the bytes of a WebAssembly file. Returns whether the file suits the browser; otherwise
+  // another file may be tried.
+  async begin(module) {
+    return (await this.#ask("begin", { modules: [module] })).threads > 0;
   }
 
   // Opens files, and returns the object of start.json. contents: { "folder/name": Uint8Array or Blob }; path: the file
