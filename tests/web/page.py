@@ -272,6 +272,25 @@ def try_alone(kind, what, page, program, folder):
         check(same_pixels(program, folder, final_picture(browser), "saved.json"), f"{what}: the page renders after its server has ended")
 
 
+# Starts the library with its threads.
+BEGIN = """<!doctype html><script type="module">
+  const worker = new Worker("worker.js");
+  worker.onmessage = ({ data }) => { if (data.number !== undefined) globalThis.begun = data; };
+  worker.postMessage({ number: 1, kind: "begin", modules: [new Uint8Array(await (await fetch("halflight-threads.wasm")).arrayBuffer())] });
+</script>"""
+
+
+def try_starts(kind, what, folder):
+    """The library starts whenever a page is loaded: in Firefox, workers that were made at once sometimes waited for ever, in one of twenty pages."""
+    (folder / "begin.html").write_text(BEGIN)
+    times = 60
+    with serve(folder, IsolatingHandler) as (_, url), kind(size=(900, 500)) as browser:
+        for number in range(times):
+            browser.open(f"{url}begin.html?{number}")
+            browser.wait(f"location.search === '?{number}' && globalThis.begun !== undefined", timeout=60)
+        check(browser.run("begun.threads > 0"), f"{what}: the library starts in {times} pages")
+
+
 class Handler(http.server.SimpleHTTPRequestHandler):
     """The page's folder; POST: what a browser tells, for the test."""
 
@@ -396,6 +415,7 @@ def main():
             with serve(web / "page", IsolatingHandler) as (_, url):
                 try_firefox(firefox, url, "Firefox, an isolated folder", program, folder)
             try_alone(functools.partial(Firefox, firefox), "Firefox", web / "page", program, folder)
+            try_starts(functools.partial(Firefox, firefox), "Firefox", folder / "page")
             try_held_scene(functools.partial(Firefox, firefox), "Firefox", web / "halflight.html", program, folder)
             compare_hashes(lambda profile: [firefox, "--headless", "--no-remote", "--profile", profile], "Firefox", folder / "page", expected)
         else:

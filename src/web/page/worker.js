@@ -45,9 +45,12 @@ async function blobOf(bytes, format, { width, height }, quality) {
   return canvas.convertToBlob({ type: "image/jpeg", quality: quality / 100 });
 }
 
+const helpers = []; // the helpers' workers, so that no browser ends a worker to which nothing refers
+
 // Starts a helper for the library's threads. A helper is this script in a worker of its own.
 const help = (work) => new Promise((ready, failed) => {
   const helper = new Worker(location.href);
+  helpers.push(helper);
   helper.onmessage = ready;
   helper.onerror = failed;
   helper.postMessage({ kind: "help", work });
