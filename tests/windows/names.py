@@ -5,9 +5,12 @@ the files beside itself.
 usage: names.py FOLDER PROGRAM
 FOLDER is that of scripts/windows. It runs in wine, which follows links of the system below it by itself: links are not tested.
 """
+import base64
+import gzip
 import json
 import os
 import pathlib
+import re
 import shutil
 import subprocess
 import sys
@@ -16,6 +19,12 @@ import tempfile
 LONG = "long-name-" * 22  # 220 letters: with its folder more than the 260 that the system's usual calls take
 HEADER = "NRRD0004\ntype: uint8\ndimension: 3\nsizes: 4 4 4\nencoding: raw\n"
 SIZE = ["--size", "16x16", "--quiet"]
+
+
+def held_files(page):
+    """The files that a page holds, {name: bytes}. Packed, they tell the system that packed them."""
+    held = re.findall(r'data-file="([^"]*)">([^<]*)<', page.read_text(encoding="utf-8")) if page.exists() else []
+    return {name: gzip.decompress(base64.b64decode(packed)) for name, packed in held}
 
 
 def main():
@@ -60,7 +69,8 @@ def main():
 
         done = run(["export", "rings.nrrd", "-o", "found.html", "--quiet"])
         native(["export", "rings.nrrd", "-o", "named.html", "--page", windows / "halflight" / "halflight.html", "--quiet"])
-        check(done.returncode == 0 and (folder / "found.html").read_bytes() == (folder / "named.html").read_bytes(),
+        found, named = (held_files(folder / name) for name in ("found.html", "named.html"))
+        check(done.returncode == 0 and found["scene.json"] == named["scene.json"] and found.keys() == named.keys() == {"scene.json", "volume0.nrrd"},
               f"the program finds the page beside itself: {done.stderr.decode()}")
 
         (folder / "outside.raw").write_bytes(bytes(range(64)))
