@@ -161,11 +161,16 @@ def _options(settings: Mapping[str, Any], volumes: Sequence[Volume], flags: int)
     if flags & lib.HL_COMPOSE_BARE and (look := _fitted_look(volumes)) is not None:
         options["look"] = look  # several projected volumes get a colour each, and one volume's greys fit the background
         if (background := settings.get("background")) is not None:
-            named = background if isinstance(background, str) and background in ("transparent", "sky") else None
-            options["background"] = named or ",".join(map(repr, map(float, colors.linear_color("background", background))))
+            options["background"] = background_option(background)
     elif (flags & lib.HL_COMPOSE_CUT or _have_labels_within(volumes, flags)) and (look := volumes[0]._changes.get("look")) not in (None, "mip"):
         options["look"] = str(look)
     return options
+
+
+def background_option(background: Any) -> str:
+    """A background as the library's option of this name has it."""
+    named = background if isinstance(background, str) and background in ("transparent", "sky") else None
+    return named or ",".join(map(repr, map(float, colors.linear_color("background", background))))
 
 
 def _option_color_by(settings: Mapping[str, Any], options: dict[str, str]) -> None:

@@ -534,7 +534,7 @@ def _scene_of_channels(path: Any, channels: str | Sequence[int | str], place: Ma
     reading = {word: value for word, value in place.items() if word != "channel"}
     if is_slice:
         reading.setdefault("smooth", 0.0)
-    scene = Scene._of_channels(path, channels, picture, look=material.get("look", "auto"), **reading)
+    scene = Scene._of_channels(path, channels, picture, look=material.get("look", "auto"), background=settings.get("background"), **reading)
     shown = {word: value for word, value in material.items() if word != "look"}
     count = len(scene.volumes)
     projected = material.get("look") == "mip"

@@ -12,7 +12,7 @@ from . import marks as scene_marks
 from ._library import call, choices_of, composed, context, ffi, lib, made, path_bytes, text_of
 from ._words import check_keywords, choice
 from .camera import Camera, camera_from
-from .composing import build_scene, scene_for_meshes
+from .composing import background_option, build_scene, scene_for_meshes
 from .keywords import PictureSettings, RenderSettings
 from .lights import Light, images_are_same, light_from
 from .mesh import Mesh, mesh_from
@@ -162,8 +162,8 @@ class Scene:
 
     @classmethod
     def _of_channels(cls, path: str | os.PathLike[str], channels: str | Sequence[int | str], picture: Picture | None, *,
-                     look: str = "auto", spacing: Any = None, smooth: float | None = None, **chosen: Any) -> Scene:
-        """The same, at the resolutions that suit a picture."""
+                     look: str = "auto", background: Any = None, spacing: Any = None, smooth: float | None = None, **chosen: Any) -> Scene:
+        """The same, at the resolutions that suit a picture. background: what maximum projections begin with."""
         file = os.fspath(path)
         options, keep = load_options({word: value for word, value in chosen.items() if value is not None}, spacing, "zyx", picture)
         listed = [channels] if isinstance(channels, str) else [one if isinstance(one, str) else str(index_of("channel", one)) for one in channels]
@@ -175,7 +175,8 @@ class Scene:
                       ",".join(listed).encode(), sigma, look.encode(), path=file)
         del keep  # the texts that `options` borrows are kept in this list
         if projected:
-            handle = composed(lib.hl_scene_describe(handle), lib.HL_COMPOSE_BARE, {"look": "mip"})
+            before = {} if background is None else {"background": background_option(background)}
+            handle = composed(lib.hl_scene_describe(handle), lib.HL_COMPOSE_BARE, {"look": "mip", **before})
         return cls._of(handle)
 
     @classmethod

@@ -465,21 +465,27 @@ static hl_status spread(const hl_composer *composer, const hl_volume *volume, co
   return hl_blame_options(status);
 }
 
-/* Gives all values one colour. ramp: for maximum projections, the colours go from the background at range[0]
- * to this colour at range[1]. */
-static hl_status color_plainly(const hl_composer *composer, const double color[3], bool ramp,
+/* What a colour becomes that is given to all values of a volume. */
+typedef enum plain_color {
+  PLAIN_EVEN,  /* all values have the colour */
+  PLAIN_RAMP,  /* of a maximum projection: the colours go from black to the colour */
+  PLAIN_BESIDE /* of one of several maximum projections: the colours go from the background to the colour */
+} plain_color;
+
+/* Gives all values one colour. */
+static hl_status color_plainly(const hl_composer *composer, const double color[3], plain_color use,
                                const double range[2], hl_transfer_function *function) {
   hl_color_point points[HL_RAMP_POINTS];
-  const size_t count = hl_projection_ramp(composer, color, range, points);
-  const hl_transfer_function colors = {.color = ramp ? points : &points[count - 1],
-                                       .color_count = ramp ? count : 1};
+  const size_t count = hl_projection_ramp(composer, color, range, use == PLAIN_BESIDE, points);
+  const hl_transfer_function colors = {.color = use == PLAIN_EVEN ? &points[count - 1] : points,
+                                       .color_count = use == PLAIN_EVEN ? 1 : count};
   return replace(composer, &colors, function);
 }
 
 /* Gives a function the colours of a colormap, or a colour by its name. Without a range the colours spread
  * over the visible values. */
 static hl_status color_by_name(const hl_composer *composer, const char *name, const hl_volume *volume,
-                               value_range range, bool maximum, hl_transfer_function *function) {
+                               value_range range, plain_color use, hl_transfer_function *function) {
   hl_transfer_function colors = {0};
   double color[3];
   const char *map = hl_find_colormap(name);
@@ -489,7 +495,7 @@ static hl_status color_by_name(const hl_composer *composer, const char *name, co
   hl_status status = range.given
                          ? HL_OK
                          : hl_transfer_function_seen_range(volume, function, range.ends, composer->error);
-  if (status == HL_OK && map == NULL) return color_plainly(composer, color, maximum, range.ends, function);
+  if (status == HL_OK && map == NULL) return color_plainly(composer, color, use, range.ends, function);
   if (status == HL_OK)
     status = hl_transfer_function_colormap_scaled(composer->context, map, range.ends, range.scale, &colors,
                                                   composer->error);
@@ -508,6 +514,7 @@ bool hl_asks_for_functions(const hl_asked *asked) {
 typedef struct function_changes {
   const char *range, *threshold, *colormap;
   bool windows_faces; /* whether "range" is the window of cut faces */
+  bool is_beside;     /* whether other volumes are in the scene */
 } function_changes;
 
 /* Applies "range", "threshold" and "colormap", in this order. */
@@ -529,7 +536,11 @@ static hl_status change_function(const hl_composer *composer, const hl_scene_vol
       hl_row_numbers(&hl_option_rows[HL_ASK_THRESHOLD], changes->threshold, &threshold))
     status = make_opaque_from(composer, described, threshold.number[0], function);
   if (status == HL_OK && colormap != NULL)
-    status = color_by_name(composer, colormap, volume, range, maximum, function);
+    status = color_by_name(composer, colormap, volume, range,
+                           !maximum             ? PLAIN_EVEN
+                           : changes->is_beside ? PLAIN_BESIDE
+                                                : PLAIN_RAMP,
+                           function);
   return status;
 }
 
@@ -540,7 +551,8 @@ hl_status hl_compose_function(const hl_composer *composer, const hl_scene_descri
   const char *named = hl_text_for(composer, HL_ASK_TF, volume, index);
   function_changes changes = {hl_text_for(composer, HL_ASK_RANGE, volume, index),
                               hl_text_for(composer, HL_ASK_THRESHOLD, volume, index),
-                              hl_text_for(composer, HL_ASK_COLORMAP, volume, index), false};
+                              hl_text_for(composer, HL_ASK_COLORMAP, volume, index), false,
+                              description->volume_count > 1};
   char item[256];
   hl_status status = HL_OK;
   if (is_list(composer, &asked[HL_ASK_COLORMAP])) {

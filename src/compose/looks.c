@@ -173,10 +173,10 @@ void hl_tell_of_function(const hl_composer *composer) {
 /* On a background, the ramp goes from the background's colour to the volume's, evenly in encoded values, as
  * the greys of one volume do. */
 size_t hl_projection_ramp(const hl_composer *composer, const double color[3], const double range[2],
-                          hl_color_point ramp[HL_RAMP_POINTS]) {
+                          bool on_background, hl_color_point ramp[HL_RAMP_POINTS]) {
   double from[3];
-  const bool lies = !composer->asked[HL_ASK_SLICE].given && find_background(composer, from) &&
-                    from[0] + from[1] + from[2] > 0;
+  const bool lies = on_background && !composer->asked[HL_ASK_SLICE].given &&
+                    find_background(composer, from) && from[0] + from[1] + from[2] > 0;
   const size_t count = lies ? HL_RAMP_POINTS : 2;
   for (size_t n = 0; n < count; n++) {
     const double t = (double)n / (double)(count - 1);

@@ -45,11 +45,11 @@ void hl_tell_of_function(const struct hl_composer *composer);
 
 enum { HL_RAMP_POINTS = 33 };
 
-/* Makes the colours of a volume's maximum projection from a colour: they go from black, or from the
- * background if it is given, at range[0] to the colour at range[1]. color: linear RGB. Returns the number of
- * points. */
+/* Makes the colours of a volume's maximum projection from a colour: they go from black at range[0] to the
+ * colour at range[1]. color: linear RGB. on_background: they go from the background, if it is given, in place
+ * of black. Returns the number of points. */
 size_t hl_projection_ramp(const struct hl_composer *composer, const double color[3], const double range[2],
-                          hl_color_point ramp[HL_RAMP_POINTS]);
+                          bool on_background, hl_color_point ramp[HL_RAMP_POINTS]);
 
 /* Logs how maximum projections of several bare volumes lie before a background that is not black. */
 void hl_tell_of_background(const struct hl_composer *composer, const hl_scene_description *description);
