@@ -248,8 +248,8 @@ LARGE = scene(volume={"file": "large.nrrd"}, render={"sheet_spacing": 4},
 # One scene of each feature.
 FEW = ("medium", "a field at levels, surfaces", "gradient opacity, cuts, light from behind", "coloured voxels", "labels", "a projection of cuts",
        "the paper's soft shadows of surfaces, colours, near light", "a sky, soft shadows of surfaces, colours",
-       "sub-lights of a tilted light, dense", "forward scattering under a sky, soft shadows",
-       "a projected image, a sun's soft shadows, surfaces",
+       "forward scattering under a sky, soft shadows",
+       "a projected image, sub-lights, cuts, a sky",
        "soft shadows of surfaces in layers, a mask, cuts, light from behind")
 LEFT = {
     "more than 16 x 16 sub-lights": scene(shadows="soft", light=SUN, render={**SUBLIGHTS, "light_samples": 17}),
