@@ -49,9 +49,8 @@ typedef struct hl_isosurface {
   double value;
   double color[3];  /* linear RGB */
   double opacity;   /* 0 to 1 */
-  int second_color; /* non-zero if the surface has the colours that the curves of the volume's transfer
-                     * function give to the values of a second volume (HL_SECOND_VOLUME); `color` stands in
-                     * where the volume keeps its own colour. Without such curves, the surface has `color` */
+  int second_color; /* non-zero if the curves of the volume's function (HL_SECOND_VOLUME) give the colours;
+                     * the surface has `color` where they keep the volume's own, or if there are none */
 } hl_isosurface;
 
 /* The shapes of cuts. A cut removes the matter inside its shape, or with HL_CUT_KEEP_INSIDE the matter
@@ -415,8 +414,7 @@ HL_API HL_WARN_UNUSED hl_status hl_scene_channel_color(const hl_scene_descriptio
                                                        double srgb[3]);
 
 /* Replaces the sky by constant light, in a description that hl_scene_for_volume() or a similar function made.
- * The picture as a whole stays about as bright, but the sky casts no shadows, and the picture takes less
- * time. */
+ * The picture as a whole stays about as bright, but the sky casts no shadows, and frames are faster. */
 HL_API void hl_scene_level_sky(hl_scene_description *description);
 
 /* Finds a factor by which the strengths of all lights, `ambient` and the sky's strength should be multiplied.
