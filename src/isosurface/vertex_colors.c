@@ -19,28 +19,6 @@ bool hl_iso_has_second_color(const hl_scene_volume *volume, size_t i) {
   return volume->iso[i].second_color && hl_has_second_colors(&volume->transfer_function);
 }
 
-/* The value of a volume at a point of its index space. */
-static double value_at(const hl_volume *volume, vec3 point) {
-  const double at[3] = {point.x, point.y, point.z};
-  size_t first[3];
-  double part[3], sum = 0;
-  for (int a = 0; a < 3; a++) {
-    const double inside = fmin(fmax(at[a], 0), (double)(volume->dimension[a] - 1));
-    first[a] = (size_t)inside;
-    part[a] = inside - (double)first[a];
-  }
-  for (int corner = 0; corner < 8; corner++) {
-    double weight = 1;
-    size_t place[3];
-    for (int a = 0; a < 3; a++) {
-      weight *= corner >> a & 1 ? part[a] : 1 - part[a];
-      place[a] = first[a] + (corner >> a & 1);
-    }
-    if (weight > 0) sum += weight * hl_volume_value_within(volume, place[0], place[1], place[2]);
-  }
-  return sum;
-}
-
 static void color_run(void *data, size_t index, int worker) {
   (void)worker;
   const color_job *job = data;
@@ -48,7 +26,9 @@ static void color_run(void *data, size_t index, int worker) {
   for (size_t v = index * RUN_VERTICES; v < end && v < job->made->vertex_count; v++) {
     const float *p = job->made->positions[v];
     const vec3 point = affine3_apply(job->to_second, (vec3){p[0], p[1], p[2]});
-    const double second = value_at(job->coloring->second->volume, point) * hl_plane_second_scale(job->plane);
+    const double second = hl_volume_value_between(job->coloring->second->volume,
+                                                  (double[3]){point.x, point.y, point.z}) *
+                          hl_plane_second_scale(job->plane);
     double color[3];
     hl_curves_color(&job->plane->curves, second, job->coloring->own_color, color);
     for (int c = 0; c < 3; c++) job->colors[v][c] = (float)color[c];

@@ -461,6 +461,27 @@ double hl_volume_value_within(const hl_volume *volume, size_t i, size_t j, size_
   return isfinite((float)number) ? volume->value_scale * number + volume->value_offset : NAN;
 }
 
+double hl_volume_value_between(const hl_volume *volume, const double at[3]) {
+  size_t low[3];
+  double part[3], sum = 0;
+  for (int axis = 0; axis < 3; axis++) {
+    double inside = fmin(fmax(at[axis], 0), (double)(volume->dimension[axis] - 1));
+    low[axis] = (size_t)inside;
+    part[axis] = inside - (double)low[axis];
+  }
+  for (int corner = 0; corner < 8; corner++) {
+    double weight = 1;
+    size_t voxel[3];
+    for (int axis = 0; axis < 3; axis++) {
+      int upper = corner >> axis & 1;
+      voxel[axis] = low[axis] + (size_t)upper;
+      weight *= upper ? part[axis] : 1 - part[axis];
+    }
+    if (weight > 0) sum += weight * hl_volume_value_within(volume, voxel[0], voxel[1], voxel[2]);
+  }
+  return sum;
+}
+
 hl_whole hl_volume_whole(const hl_volume *volume, size_t i, size_t j, size_t k, int64_t *whole) {
   if (is_outside(volume, i, j, k)) return HL_WHOLE_ABSENT;
   uint64_t own;

@@ -63,29 +63,6 @@ static double nearest(const hl_volume *volume, const double at[3]) {
                                 (size_t)floor(at[2] + 0.5));
 }
 
-/* Interpolates linearly along the three axes. Voxels whose weight is 0 are not read, so that at the centre of
- * a voxel the result is exactly the voxel's value. */
-static double interpolated(const hl_volume *volume, const double at[3]) {
-  size_t low[3];
-  double part[3], sum = 0;
-  for (int axis = 0; axis < 3; axis++) {
-    double inside = fmin(fmax(at[axis], 0), (double)(volume->dimension[axis] - 1));
-    low[axis] = (size_t)inside;
-    part[axis] = inside - (double)low[axis];
-  }
-  for (int corner = 0; corner < 8; corner++) {
-    double weight = 1;
-    size_t voxel[3];
-    for (int axis = 0; axis < 3; axis++) {
-      int upper = corner >> axis & 1;
-      voxel[axis] = low[axis] + (size_t)upper;
-      weight *= upper ? part[axis] : 1 - part[axis];
-    }
-    if (weight > 0) sum += weight * hl_volume_value_within(volume, voxel[0], voxel[1], voxel[2]);
-  }
-  return sum;
-}
-
 typedef struct reslicing {
   const hl_volume *volume;
   const hl_reslice_options *options;
@@ -102,7 +79,7 @@ static double blend_layers(const reslicing *of, size_t column, size_t row) {
       at[axis] = o->origin[axis] + (double)column * o->across[axis] + (double)row * o->down[axis] +
                  (double)layer * o->through[axis];
     if (!is_within(of->volume, at)) continue;
-    double value = o->interpolate ? interpolated(of->volume, at) : nearest(of->volume, at);
+    double value = o->interpolate ? hl_volume_value_between(of->volume, at) : nearest(of->volume, at);
     if (!isfinite(value)) continue;
     sum += value;
     if (count++ == 0 || (o->blend == HL_BLEND_MAXIMUM ? value > found : value < found)) found = value;

@@ -190,6 +190,10 @@ const void *hl_volume_row_in(const hl_volume *volume, size_t j, size_t k, void *
 /* Does what hl_volume_value() does. It is for functions of the library that have passed a door already
  * (core/door.h). */
 double hl_volume_value_within(const hl_volume *volume, size_t i, size_t j, size_t k);
+/* Interpolates a volume linearly along the three axes at a place of its index space. Beyond the outermost
+ * voxels, their values continue. Voxels whose weight is 0 are not read, so that at the centre of a voxel the
+ * result is exactly the voxel's value. The same holds for the volume as for hl_volume_value_within(). */
+double hl_volume_value_between(const hl_volume *volume, const double at[3]);
 
 /* One number of a row of stored values. */
 static inline double hl_stored_number(hl_storage storage, const void *row, size_t i) {

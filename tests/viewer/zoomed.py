@@ -19,7 +19,7 @@ import zlib
 import numpy
 
 import checks
-from browser import Browser
+from browser import HANG, Browser
 from checks import check
 from viewer import Viewer, need_viewer
 
@@ -153,9 +153,7 @@ def from_folder():
             check(status == 200 and seen is None, "a picture that does not ask shows the voxels that are there")
         lit = json.loads(json.dumps(zoomed(scene, 20)))
         lit["ambient"] = [0.5, 0.5, 0.5]
-        began = time.perf_counter()
         check(levels_of(frame(viewer, lit)[2]) == [0], "other light, same voxels")
-        check(time.perf_counter() - began < 20, "in time")
         check(frame(viewer, scene)[1] == first, "the whole volume again")
         saved = frame(viewer, zoomed(scene, 8), "test-save", coarse=0, seen=0)
         check(saved[0] == 200 and levels_of(saved[2]) == [0], f"what is saved has them, too: {saved[0]} {saved[2]}")
@@ -211,14 +209,12 @@ def moving_meanwhile(server, url):
         answers = []
         waiting = threading.Thread(target=lambda: answers.append(frame(viewer, zoomed(scene, 8))))
         waiting.start()
-        check(reached.wait(20), "finer voxels are asked for")
+        check(reached.wait(HANG), "finer voxels are asked for")
         progress = json.loads(request(viewer, "GET", "progress.json?page=test")[2])
         check(progress["stage"] in ("voxels", "picture"), f"progress: {progress}")
-        began = time.perf_counter()
         status, _, seen = frame(viewer, zoomed(scene, 8, 0.01), format="jpeg", moving=1, seen=0)
-        waited = time.perf_counter() - began
-        check(status == 200 and seen is None and waited < 5, f"a moving frame does not wait: {status}, {waited:.2f} s")
-        waiting.join(20)
+        check(status == 200 and seen is None and not released.is_set(), f"a moving frame comes while the server is held: {status}")
+        waiting.join()
         check(answers and answers[0][0] == 204, f"the picture at rest is given up: {answers and answers[0][0]}")
         server.hold = None
         released.set()
@@ -285,7 +281,7 @@ def page(server, url):
         server.hold = hold
         browser.run(nearer)
         browser.wait("document.getElementById('progress').textContent.includes('finer voxels are being read')")
-        check(reached.wait(20) and not browser.run(rest), "the page says what it waits for")
+        check(reached.wait(HANG) and not browser.run(rest), "the page says what it waits for")
         server.hold = None
         released.set()
         browser.wait(rest)
