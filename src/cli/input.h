@@ -25,8 +25,8 @@ typedef struct cli_input {
                          * data */
   const double *smooth; /* the smoothing of a bare volume, in voxels (hl_volume_smooth()); null stands for the
                          * smoothing that the data need */
-  int first_pixels;     /* for a scene: volumes are read first for a picture of this size
-                         * (hl_scene_load_coarse());     0: they are read at once as the scene says */
+  int first_pixels;     /* for a scene: the longer side of the picture for which its volumes are read first
+                         * (hl_scene_load_coarse()); 0: they are read at once as the scene says */
 } cli_input;
 
 /* The rows of --array, --component, --time, --channel and --level in a subcommand's table of options;

@@ -26,9 +26,6 @@
 
 enum { NAME_BYTES = 64 };
 
-/* The number that stands for no end of a range of second numbers in a transfer function. */
-#define NO_END 1e30
-
 static const char *const colormap_of_fields = "viridis";
 
 /* The value of the option in its parts. */
@@ -142,11 +139,11 @@ static hl_status read_threshold(const hl_composer *composer, double own[2]) {
   const hl_asked *asked = &composer->asked[HL_ASK_COLOR_BY_THRESHOLD];
   own[0] = own[1] = 0;
   if (!asked->given) return HL_OK;
-  if (!(fabs(asked->number[0]) < NO_END && fabs(asked->number[1]) < NO_END) ||
+  if (!(fabs(asked->number[0]) < HL_CURVES_NO_END && fabs(asked->number[1]) < HL_CURVES_NO_END) ||
       asked->number[0] > asked->number[1])
     return hl_fail(composer->error, HL_ERROR_ARGUMENT, "--color-by-threshold: '%.200s': LO must be below HI",
                    asked->text);
-  own[0] = asked->number[0] < asked->number[1] ? asked->number[0] : -NO_END;
+  own[0] = asked->number[0] < asked->number[1] ? asked->number[0] : -HL_CURVES_NO_END;
   own[1] = asked->number[1];
   return HL_OK;
 }

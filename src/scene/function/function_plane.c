@@ -185,9 +185,6 @@ plane_sum hl_plane_mean(const hl_transfer_function *function, const plane_box *p
 
 /* ---- the box around all shapes ---- */
 
-/* Ends of own_between from this number on stand for no end. */
-#define UNBOUNDED 1e30
-
 static void join(plane_box *bounds, const double low[2], const double high[2]) {
   for (int a = 0; a < 2; a++) {
     bounds->low[a] = fmin(bounds->low[a], low[a]);
@@ -210,7 +207,8 @@ static void join_curves(const hl_function_curves *curves, plane_box *bounds) {
   join(bounds, low, high);
   for (int side = 0; side < 2 && hl_curves_have_own(curves); side++) {
     const double border = curves->own_between[side];
-    if (fabs(border) < UNBOUNDED) join(bounds, (double[2]){low[0], border}, (double[2]){high[0], border});
+    if (fabs(border) < HL_CURVES_NO_END)
+      join(bounds, (double[2]){low[0], border}, (double[2]){high[0], border});
   }
 }
 

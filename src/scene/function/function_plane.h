@@ -21,6 +21,10 @@ static inline bool hl_has_second_colors(const hl_transfer_function *function) {
   return function->plane.second == HL_SECOND_VOLUME && function->plane.curves.opacity_count > 0;
 }
 
+/* The greatest magnitude of a second number. An end of own_between that has this magnitude is no end: the
+ * volume keeps its own colour at all numbers on that side. */
+#define HL_CURVES_NO_END 1e30
+
 /* Whether a volume keeps a colour of its own at some second numbers. */
 static inline bool hl_curves_have_own(const hl_function_curves *curves) {
   return curves->own_between[0] < curves->own_between[1];
