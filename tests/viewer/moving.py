@@ -16,9 +16,9 @@ from hands import PROGRAM, rest
 from viewer import Viewer, need_viewer
 
 # Moves a scene of 1280 x 800 pixels before a machine that takes `cost` milliseconds of processor time for each million pixels with sheets a
-# voxel apart, on `cores` cores, and 10 milliseconds for the rest of a frame. Resolves to the last moving frame and the first one at rest:
+# voxel apart, on `cores` cores, and `rest` milliseconds for the rest of a frame. Resolves to the last moving frame and the first one at rest:
 # { pixels, spacing, clock, processor }.
-MACHINE = """(async (cores, cost, tells) => {
+MACHINE = """(async (cores, cost, tells, rest) => {
   const { Frames } = await import('./frames.js'), { Store } = await import('./store.js');
   const scene = { ...halflight.store.scene, image: { ...halflight.store.scene.image, width: 1280, height: 800 } };
   const store = new Store({ ...scene, render: { ...scene.render, sheet_spacing: 1 } }), asked = [];
@@ -26,10 +26,10 @@ MACHINE = """(async (cores, cost, tells) => {
   let clock = 0; // the machine's own milliseconds: the page's clock does not go on while it waits
   performance.now = () => clock;
   const channel = { async fetchFrame({ image, render }, { moving = false }) {
-    const processor = (cost * image.width * image.height) / 1e6 / render.sheet_spacing, time = 10 + processor / cores;
+    const processor = (cost * image.width * image.height) / 1e6 / render.sheet_spacing, time = rest + processor / cores;
     clock += time;
     asked.push({ pixels: image.width * image.height, spacing: render.sheet_spacing, clock: time, processor, moving });
-    return { blob, times: tells ? { processor } : {} };
+    return { blob, times: tells ? { processor, render: processor / cores } : {} };
   } };
   const start = { volumes: halflight.start.volumes };
   const found = await new Promise((done, fail) => {
@@ -45,21 +45,52 @@ MACHINE = """(async (cores, cost, tells) => {
   return { found, moving, settled };
 })"""
 
-# The voxels that the first picture of a volume of 256 x 256 x 256 voxels needs, for a channel with this least size of pictures.
-FIRST = """(async (leastPixels) => {
+# Moves a scene whose voxels are about as long as its pixels before a machine of two cores that takes `cost` milliseconds for each million of
+# pixels with sheets a voxel apart, and for volumes of voxels twice as long a half of this. Resolves to 120 frames: { length, spacing, voxel }, the
+# lengths of a pixel, between sheets and of the volumes' voxels, in voxels.
+VOLUMES = """(async (cost) => {
+  const { Frames } = await import('./frames.js'), { Store } = await import('./store.js'), { worldHeight } = await import('./camera.js');
+  const scene = { ...halflight.store.scene, image: { ...halflight.store.scene.image, width: 1280, height: 800 } };
+  const store = new Store({ ...scene, render: { ...scene.render, sheet_spacing: 0.5 } }), asked = [];
+  const canvas = Object.assign(document.createElement('canvas'), { width: 8, height: 8 }), blob = await new Promise((done) => canvas.toBlob(done));
+  const voxel = worldHeight(scene.camera) / 800;
+  let clock = 0;
+  performance.now = () => clock;
+  const channel = { async fetchFrame({ image: { width, height }, render }) {
+    const spacing = render.sheet_spacing, level = 2 ** Math.floor(Math.log2(Math.min(Math.max(spacing * Math.SQRT2, 1), 8)));
+    const processor = (cost * width * height) / 1e6 / spacing / level;
+    clock += 2 + processor / 2;
+    asked.push({ length: 800 / height, spacing, voxel: level });
+    return { blob, times: { processor } };
+  } };
+  const start = { volumes: halflight.start.volumes.map((volume) => ({ ...volume, axes: [[voxel, 0, 0], [0, voxel, 0], [0, 0, voxel]] })) };
+  await new Promise((done, fail) => {
+    const frames = new Frames({ store, start, channel }, canvas, ({ bytes, error }) => {
+      if (error) fail(error);
+      if (bytes > 0 && asked.length < 120) frames.move();
+      else if (bytes > 0) { frames.end(); done(); }
+    });
+    frames.move();
+  });
+  delete performance.now;
+  return asked.slice(0, 120);
+})"""
+
+# The voxels that the first picture of a volume of 256 x 256 x 256 voxels needs, for a channel that prepares this number of them soon.
+FIRST = """(async (soonPrepared) => {
   const { Frames } = await import('./frames.js'), { Store } = await import('./store.js');
   const start = { volumes: halflight.start.volumes.map((volume) => ({ ...volume, dimensions: [256, 256, 256] })) };
   const { scene } = halflight.store, store = new Store({ ...scene, image: { ...scene.image, width: 1280, height: 800 }, render: { ...scene.render, sheet_spacing: 1 } });
   return new Promise((done) => {
-    const channel = { leastPixels, fetchFrame: async ({ render }) => { frames.end(); done(256 ** 3 / render.sheet_spacing ** 3); return null; } };
+    const channel = { soonPrepared, fetchFrame: async ({ render }) => { frames.end(); done(256 ** 3 / render.sheet_spacing ** 3); return null; } };
     const frames = new Frames({ store, start, channel }, document.createElement('canvas'), () => {});
     frames.move();
   });
 })"""
 
 
-def qualities(browser, cores, cost, tells=True):
-    return browser.run(f"{MACHINE}({cores}, {cost}, {str(tells).lower()})", timeout=60)
+def qualities(browser, cores, cost, tells=True, others=10):
+    return browser.run(f"{MACHINE}({cores}, {cost}, {str(tells).lower()}, {others})", timeout=60)
 
 
 def main():
@@ -82,8 +113,16 @@ def main():
                     check(settled["clock"] < 390 and (settled["clock"] > 250 or settled["pixels"] == 1280 * 800 and settled["spacing"] < 1.3), f"{cores} cores, {cost} ms: the first picture at rest: {made}")
             untold = qualities(browser, 8, 1000, tells=False)["moving"]
             check(45 < untold["clock"] < 55, f"a machine that does not tell its processors' time: the clock alone: {untold}")
-            whole, quarter = (browser.run(f"{FIRST}({least})", timeout=60) for least in (480 * 320, 240 * 160))
-            check(abs(whole / quarter - 4) < 1e-9, f"the first picture waits for a quarter of the voxels where pictures are a quarter as large: {whole} and {quarter}")
+            distant = qualities(browser, 2, 1000, others=300)["moving"]
+            check(22 < distant["clock"] - 300 < 28, f"a distant server: rendering has half of the budget: {distant}")
+            for cost in (80, 200, 500, 1000, 2000, 5000, 12000):
+                frames = browser.run(f"{VOLUMES}({cost})", timeout=60)[40:]
+                lengths = [frame["length"] / frame["spacing"] for frame in frames]
+                # Where finer volumes wait for 2.5 times the work, pixels alone take it.
+                check(min(lengths) > 0.98 / 2.5**0.5 and max(lengths) < 1.05, f"{cost} ms: sheets are about as far apart as pixels are long: {min(lengths)} to {max(lengths)}")
+                check(len({frame["voxel"] for frame in frames}) == 1, f"{cost} ms: all frames have the same volumes: {frames}")
+            whole, quarter = (browser.run(f"{FIRST}({soon})", timeout=60) for soon in (128**3, 128**3 / 4))
+            check(abs(whole / quarter - 4) < 1e-9, f"the first picture waits for a quarter of the voxels where a quarter is soon prepared: {whole} and {quarter}")
             check(browser.problems == [], f"the console has errors: {browser.problems}")
     print(f"{checks.count} checks passed")
 

@@ -1,11 +1,11 @@
 // Frames: chooses the next picture, and its quality. While something moves, quick pictures follow each other;
-// each is asked for when the last one has come. Their size fits into the time of a frame, by the clock and of the processors, but is at least
-// LEAST_PIXELS. Where such a picture takes too long, its sheets are wider and its volumes coarser. The
-// channel then takes volumes whose voxels are about as long as the sheets are apart, so that thin surfaces
-// stay whole. At rest a picture of full size follows, as fine as fits into half a second. Then the exact
+// each is asked for when the last one has come. Their work fits into the time of a frame, by the clock and of the processors. Their
+// sheets are as far apart as their pixels are long. The channel takes volumes whose voxels are about as long, so that thin surfaces
+// stay whole. At rest a picture follows that is as fine as fits into half a second. Then the exact
 // picture follows, which is the one that `halflight render` makes of the same scene.
 
 import { worldHeight } from "./camera.js";
+import { fit, follow, leastWork, workAt } from "./quality.js";
 import { length } from "./vector.js";
 
 const BUDGET = 1000 / 20; // milliseconds by the clock for a frame while something moves
@@ -13,21 +13,15 @@ const PROCESSOR_BUDGET = 80; // milliseconds of processor time for such a frame,
 const REST_AFTER = 120; // milliseconds without a change, after which the scene is at rest
 // Milliseconds for the first picture of full size, so that it is there half a second after the last change.
 const SETTLED_WITHIN = 350;
-const LEAST_PIXELS = 480 * 320; // least size of a picture while something moves, if the full picture has more and the channel says no other
-// The most voxels between sheets while something moves: the coarsest volumes have voxels of this length.
-const WIDEST = 8;
-// The number of voxels that a server prepares in a few tenths of a second. A channel whose least pictures are smaller
-// prepares fewer in the same ratio.
+// The number of voxels that a channel prepares in a few tenths of a second, unless it tells another number.
 const SOON_PREPARED = 128 ** 3;
 const SHADOW_PIXELS = 0.5; // the longer side of a shadow buffer, as a part of a moving picture's longer side
-const SETTLED_SPACING = 2; // voxels between the sheets of the first picture at rest, as long as it has LEAST_PIXELS
 const ADAPTION = 0.6; // exponent: the part of an error in time that one frame corrects
 
-// The distance of the first picture's sheets, such that the volumes of this picture are soon prepared. least: the least
-// size of a picture while something moves.
-function firstSpacing(volumes, least) {
+// The distance of the first picture's sheets, such that the volumes of this picture are soon prepared.
+function firstSpacing(volumes, soonPrepared) {
   const voxels = volumes.reduce((sum, { dimensions: [i, j, k] }) => sum + i * j * k, 0);
-  return Math.min(Math.max(Math.cbrt(voxels / (SOON_PREPARED * (least / LEAST_PIXELS))), 1.5), WIDEST);
+  return Math.max(Math.cbrt(voxels / soonPrepared), 1.5);
 }
 
 // The renderer computes blocks of 16 x 16 pixels.
@@ -43,9 +37,9 @@ export class Frames {
   #ended = false;
   #generation = 0;
   #timer = 0;
-  #work; // number of pixels, with sheets a voxel apart, of a picture while something moves
-  #least; // least size of a picture while something moves
-  #timely; // such a number, of pixels that take as long as the budget by the clock
+  #work; // of a picture while something moves
+  #timely; // the work that takes as long as the budget by the clock
+  #voxel = 1; // the length of the voxels of the last picture while something moved
   #voxels;
   #scene = null; // the scene that the newest picture shows, or will show
   #animation = null; // { change, began: null until its first picture is shown, milliseconds }
@@ -57,9 +51,8 @@ export class Frames {
   // fetchFrame().
   constructor({ store, start, channel }, canvas, report) {
     this.#measure(start);
-    this.#least = channel.leastPixels ?? LEAST_PIXELS;
-    this.#work = this.#timely = this.#least / firstSpacing(start.volumes, this.#least);
     this.#store = store;
+    this.#work = this.#timely = workAt(firstSpacing(start.volumes, channel.soonPrepared ?? SOON_PREPARED), this.#full());
     this.#channel = channel;
     this.#canvas = canvas;
     this.#report = report;
@@ -119,13 +112,16 @@ export class Frames {
   // Whether the final picture of this scene is there.
   hasFinal(scene) { return this.statistics.stage === "final" && scene === this.#scene; }
 
+  // The picture at full size. voxels: the length of a pixel at the target, in voxels.
   #full() {
-    const { width, height } = this.#store.scene.image;
-    return { width, height, pixels: width * height };
+    const { camera, volumes, image: { width, height } } = this.#store.scene;
+    const scale = volumes.map(({ transform }) => [transform?.scale ?? 1].flat().map(Math.abs));
+    const voxel = Math.min(...volumes.map((_, v) => this.#voxels[v] * Math.min(...scale[v])));
+    return { width, height, pixels: width * height, voxels: worldHeight(camera) / voxel / height };
   }
 
   // The scene in a picture of about this many pixels, with sheets at least this far apart.
-  #scaled(pixels, spacing) {
+  #scaled({ pixels, spacing }) {
     const scene = this.#store.scene, full = this.#full();
     const factor = Math.min(1, Math.sqrt(pixels / full.pixels));
     // The picture has the shape of the full one, as otherwise it would be stretched.
@@ -146,7 +142,8 @@ export class Frames {
         const frame = await this.#channel.fetchFrame(scene, { quality: 80, moving: true });
         if (frame !== null) {
           await this.#show(frame.blob, scene.image);
-          this.#learn(performance.now() - began - (frame.times?.once ?? 0), frame.times?.processor ?? 0);
+          const { once = 0, render = 0, processor = 0 } = frame.times ?? {};
+          this.#learn(performance.now() - began - once, render - once, processor);
           this.statistics.previews++;
           if (animation !== null) animation.began ??= performance.now();
           this.#tell("moving", scene, began, frame.blob);
@@ -167,28 +164,21 @@ export class Frames {
     this.#timer = setTimeout(() => this.#refine(this.#generation), REST_AFTER);
   }
 
-  // Adapts the work that fits into the budgets to the time that the last picture took by the clock, and of the processors; 0: not told.
-  #learn(milliseconds, processor) {
-    const full = this.#full().pixels, timely = (this.#work * BUDGET) / milliseconds;
-    const adapted = (now, aim) => Math.min(Math.max(now * Math.min(Math.max(aim / now, 0.25), 2) ** ADAPTION, Math.min(this.#least, full) / WIDEST), full);
+  // Adapts the work that fits into the budgets to the times that the last picture took by the clock, for all and for its rendering alone, and of the
+  // processors; 0: not told. What a frame takes beside its rendering, as the way to a distant server, does not fall with the work: rendering has
+  // the rest of the budget, and half of it at least.
+  #learn(milliseconds, rendering, processor) {
+    const full = this.#full().pixels, rendered = rendering > 0 ? Math.min(rendering, milliseconds) : milliseconds;
+    const timely = (this.#work * Math.max(BUDGET - (milliseconds - rendered), BUDGET / 2)) / rendered;
+    const adapted = (now, aim) => Math.min(Math.max(now * Math.min(Math.max(aim / now, 0.25), 2) ** ADAPTION, leastWork(full)), full);
     this.#timely = adapted(this.#timely, timely);
     this.#work = adapted(this.#work, Math.min(timely, (this.#work * PROCESSOR_BUDGET) / processor));
   }
 
-  // The length of a pixel at the target, in voxels, in a picture of this many pixels.
-  #voxelsInPixel(pixels) {
-    const { camera, volumes, image } = this.#store.scene;
-    const scale = volumes.map(({ transform }) => [transform?.scale ?? 1].flat().map(Math.abs));
-    const voxel = Math.min(...volumes.map((_, v) => this.#voxels[v] * Math.min(...scale[v])));
-    return worldHeight(camera) / voxel / Math.sqrt((pixels * image.height) / image.width);
-  }
-
-  // A picture first gets smaller, and then its sheets get wider. Sheets are no closer than pixels: where
-  // voxels are smaller than pixels, the renderer averages several samples, and coarser volumes are averaged
-  // already.
+  // The scene in a picture of the work that fits into the budgets.
   #affordable() {
-    const full = this.#full().pixels, pixels = Math.min(Math.max(this.#work, this.#least), full);
-    const scene = this.#scaled(pixels, Math.min(Math.max(pixels / this.#work, this.#voxelsInPixel(pixels), 1), WIDEST));
+    const quality = follow(this.#work, this.#full(), this.#voxel), scene = this.#scaled(quality);
+    this.#voxel = quality.voxel;
     if (scene.render.shadow_resolution !== "auto") return scene;
     const { width, height } = scene.image;
     return { ...scene, render: { ...scene.render, shadow_resolution: Math.ceil(SHADOW_PIXELS * Math.max(width, height)) } };
@@ -198,12 +188,10 @@ export class Frames {
   async #refine(generation) {
     if (generation !== this.#generation) return;
     this.statistics.stage = "refining";
-    const scene = this.#store.scene, single = (this.#timely * SETTLED_WITHIN) / BUDGET; // number of pixels with sheets a voxel apart
-    // The picture gets smaller before its sheets get so wide that they are seen.
-    const pixels = Math.min(Math.max(single * SETTLED_SPACING, this.#least), this.#full().pixels), spacing = Math.min(pixels / single, WIDEST);
+    const scene = this.#store.scene, quality = fit((this.#timely * SETTLED_WITHIN) / BUDGET, this.#full());
     try {
-      if (spacing > scene.render.sheet_spacing * 1.2 || pixels < this.#full().pixels)
-        await this.#step(generation, this.#scaled(pixels, spacing), "settled", "settling");
+      if (quality.spacing > scene.render.sheet_spacing * 1.2 || quality.pixels < this.#full().pixels)
+        await this.#step(generation, this.#scaled(quality), "settled", "settling");
       if (generation === this.#generation) await this.#step(generation, scene, "final", "refining");
     } catch (error) {
       if (generation === this.#generation) this.#fail(error);

@@ -50,7 +50,7 @@ async function begin() {
 
 // Makes the channel to the open scene. The viewer's panel with the files of a server has no use here.
 const viewerChannel = () => ({
-  leastPixels: channel.leastPixels,
+  soonPrepared: channel.soonPrepared,
   ...Object.fromEntries(["completeScene", "fetchFrame", "slice", "depth"].map((name) => [name, (...values) => channel[name](...values)])),
 });
 

@@ -2,9 +2,9 @@
 // server.
 
 export class WorkerChannel {
-  // The least size of a picture while something moves: a quarter of what a viewer with a server shows, because WebAssembly takes several
+  // The number of voxels that are prepared in a few tenths of a second: a quarter of what a server prepares, because WebAssembly takes several
   // times as long, often on one thread.
-  leastPixels = 240 * 160;
+  soonPrepared = 128 ** 3 / 4;
   #worker;
   #number = 0;
   #waiting = new Map(); // for each request's number, { resolve, reject }
