@@ -4,8 +4,9 @@
  * The time of a picture grows with its number of pixels times its number of sheets. If a preview only had
  * fewer sheets, these would miss thin surfaces that lie between two sheets. So a preview also has copies of
  * the volumes in which 2, 4 or 8 voxels along each axis are merged into one. For a scene, the preview takes
- * the copies whose voxels are about as long as the distance between the scene's sheets. examples/c/preview.c
- * is a loop that turns a volume at an interactive rate. */
+ * the copies whose voxels are about as long as the distance between the scene's sheets. Of all previews that
+ * take the same time, the one whose sheets are as far apart as its pixels are long is nearest to the exact
+ * picture. examples/c/preview.c is a loop that turns a volume at an interactive rate in this way. */
 #ifndef HALFLIGHT_PREVIEW_H
 #define HALFLIGHT_PREVIEW_H
 
