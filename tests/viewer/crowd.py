@@ -27,12 +27,8 @@ numbers = iter(range(1, 10**6))
 
 
 def request(viewer, method, path, body=None):
-    connection = http.client.HTTPConnection("127.0.0.1", viewer.port, timeout=HANG)
-    connection.request(method, f"/{viewer.token}/{path}", body)
-    answer = connection.getresponse()
-    result = answer.status, answer.read()
-    connection.close()
-    return result
+    status, _, answer = viewer.request(method, path, body, timeout=HANG)
+    return status, answer
 
 
 def state(viewer):

@@ -15,7 +15,6 @@ import subprocess
 import tempfile
 import threading
 import time
-import urllib.parse
 import zipfile
 
 from PIL import Image
@@ -29,12 +28,8 @@ from viewer import Viewer, need_viewer
 
 
 def request(viewer, method, path, body=None, **query):
-    connection = http.client.HTTPConnection("127.0.0.1", viewer.port, timeout=60)
-    connection.request(method, f"/{viewer.token}/{path}?{urllib.parse.urlencode(query)}", body)
-    answer = connection.getresponse()
-    result = answer.status, answer.read()
-    connection.close()
-    return result
+    status, _, answer = viewer.request(method, path, body, **query)
+    return status, answer
 
 
 def folder_is_the_border(viewer):

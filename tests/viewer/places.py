@@ -3,13 +3,11 @@
 
 usage: places.py PROGRAM
 """
-import http.client
 import json
 import math
 import os
 import sys
 import tempfile
-import urllib.parse
 
 import numpy
 
@@ -22,12 +20,8 @@ SHAPE = (9, 11, 14)  # k, j, i
 
 
 def post(viewer, path, body=b"", **query):
-    connection = http.client.HTTPConnection("127.0.0.1", viewer.port, timeout=60)
-    connection.request("POST", f"/{viewer.token}/{path}?{urllib.parse.urlencode(query, safe=',')}", body)
-    answer = connection.getresponse()
-    result = answer.status, answer.read()
-    connection.close()
-    return result
+    status, _, answer = viewer.request("POST", path, body, **query)
+    return status, answer
 
 
 def plane(viewer, width, height, **query):
@@ -69,14 +63,10 @@ def hostile_planes(viewer):
         status, line = post(viewer, "slice", **{**good, **wrong})
         check(status == 400 and len(line) > 5, f"slice {wrong}: refused, not {status} {line[:80]}")
     check(post(viewer, "slice", **{**good, "opened": 77})[0] == 410, "what is not open")
-    connection = http.client.HTTPConnection("127.0.0.1", viewer.port, timeout=60)
     for path, headers, expected in ((f"/{'0' * 32}/slice?width=4&height=4", {}, 403), (f"/{viewer.token}/slice?width=4&height=4", {"Origin": "http://example.com"}, 403),
                                     (f"/{viewer.token}/slice?width=4&height=4", {"Host": "example.com"}, 403), (f"/{viewer.token}/depth?page=a&number=1", {"Origin": "null"}, 403)):
-        connection.request("POST", path, b"", headers)
-        answer = connection.getresponse()
-        answer.read()
-        check(answer.status == expected, f"{path} {headers}: {answer.status}")
-    connection.close()
+        status = viewer.request("POST", path, b"", headers)[0]
+        check(status == expected, f"{path} {headers}: {status}")
     # far places, and steps that leave the grid at once, are empty planes
     for far in ({"origin": "1e9,-1e9,1e9"}, {"across": "1e9,0,0", "origin": "5,5,5000"}):
         status, body = post(viewer, "slice", **good, **far)
@@ -85,9 +75,7 @@ def hostile_planes(viewer):
 
 def depths(viewer):
     """The depth of a ball's middle pixel is the eye's distance to its front."""
-    connection = http.client.HTTPConnection("127.0.0.1", viewer.port, timeout=60)
-    connection.request("GET", f"/{viewer.token}/start.json")
-    scene = json.loads(connection.getresponse().read())["scene"]
+    scene = json.loads(viewer.request("GET", "start.json")[2])["scene"]
     scene["image"].update(width=15, height=15)
     status, body = post(viewer, "depth", json.dumps(scene), page="a", number=1)
     check(status == 200, f"a depth: {status} {body}")

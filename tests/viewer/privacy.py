@@ -3,7 +3,6 @@
 
 usage: privacy.py PROGRAM
 """
-import http.client
 import io
 import json
 import os
@@ -101,17 +100,13 @@ def patients():
 def page():
     """The viewer's answers, and what it says."""
     def request(method, path, body=None):
-        connection = http.client.HTTPConnection("127.0.0.1", viewer.port, timeout=60)
-        connection.request(method, f"/{viewer.token}/{path}", body)
-        answer = connection.getresponse()
-        result = answer.status, answer.read() + str(answer.headers).encode()
-        says_nothing(path, result[1])
-        return answer.status, result[1]
+        status, headers, answer = viewer.request(method, path, body)
+        told = answer + str(headers).encode()
+        says_nothing(path, told)
+        return status, told
 
     with Viewer(PROGRAM, "series") as viewer:
-        connection = http.client.HTTPConnection("127.0.0.1", viewer.port, timeout=60)
-        connection.request("GET", f"/{viewer.token}/start.json")
-        scene = json.loads(connection.getresponse().read())["scene"]
+        scene = json.loads(viewer.request("GET", "start.json")[2])["scene"]
         scene["image"].update(width=24, height=24)
         text = json.dumps(scene)
         request("GET", "start.json")

@@ -4,7 +4,6 @@ them.
 
 usage: refinement.py PROGRAM
 """
-import http.client
 import json
 import os
 import pathlib
@@ -57,25 +56,15 @@ def write_pyramid(folder):
 numbers = iter(range(1, 10**6))
 
 
-def request(viewer, method, path, body=None):
-    """(status, headers, body)"""
-    connection = http.client.HTTPConnection("127.0.0.1", viewer.port, timeout=600)
-    connection.request(method, f"/{viewer.token}/{path}", body)
-    answer = connection.getresponse()
-    result = answer.status, answer.headers, answer.read()
-    connection.close()
-    return result
-
-
 def frame(viewer, scene, page="test", **more):
     query = "".join(f"&{key}={value}" for key, value in more.items())
-    return request(viewer, "POST", f"frame?page={page}&number={next(numbers)}&format=png{query}", json.dumps(scene))
+    return viewer.request("POST", f"frame?page={page}&number={next(numbers)}&format=png{query}", json.dumps(scene))
 
 
 def quick_frame(viewer, scene):
     """A frame as the page asks for it to show it: it waits for no finer level."""
     query = f"frame?page=test&number={next(numbers)}&format=jpeg&quality=80&coarse=1"
-    return request(viewer, "POST", query, json.dumps(scene))
+    return viewer.request("POST", query, json.dumps(scene))
 
 
 def small(scene, side=96):
@@ -85,14 +74,14 @@ def small(scene, side=96):
 
 
 def told(viewer, name, opened=0):
-    return json.loads(request(viewer, "GET", f"{name}.json?opened={opened}")[2])
+    return json.loads(viewer.request("GET", f"{name}.json?opened={opened}")[2])
 
 
 def from_disk():
     """Files that a page opens are read from coarse to fine, and a scene that is closed ends the reading."""
     with Viewer(PROGRAM, "stores/a.zarr/3") as viewer:
         check(not told(viewer, "start")["refining"], "an array of one resolution")
-        opened = json.loads(request(viewer, "POST", "open?file=stores/a.zarr")[2])
+        opened = json.loads(viewer.request("POST", "open?file=stores/a.zarr")[2])
         check(opened["refining"] and opened["volumes"][0]["dimensions"] == [128] * 3, "a file that a page opens")
         scene = small(opened["scene"])
         check(scene["volumes"][0]["level"] == 0, "its scene names the level")
@@ -101,8 +90,8 @@ def from_disk():
         check(status == 200 and now["refined"] == 2 and not now["refining"], f"its picture: {status} {now}")
         coarser = {**scene, "volumes": [{**scene["volumes"][0], "level": 2}]}
         check(frame(viewer, coarser, opened=opened["opened"])[0] == 400, "a scene of another level is not taken for this one")
-        again = json.loads(request(viewer, "POST", "open?file=stores/a.zarr")[2])
-        request(viewer, "POST", f"leave?page=test&opened={again['opened']}")
+        again = json.loads(viewer.request("POST", "open?file=stores/a.zarr")[2])
+        viewer.request("POST", f"leave?page=test&opened={again['opened']}")
         check(viewer.interrupt(20) == 0, "the viewer ends while a level is read")
         check(len(picture) > 1000, "a picture")
 

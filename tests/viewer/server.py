@@ -28,14 +28,8 @@ PROGRAM = os.path.abspath(sys.argv[1])
 
 
 def request(viewer, method, path, body=None, **headers):
-    """(status, headers, body); path without its token where it begins with '/'."""
-    connection = http.client.HTTPConnection("127.0.0.1", viewer.port, timeout=60)
-    named = {name.replace("_", "-"): value for name, value in headers.items()}
-    connection.request(method, path if path.startswith("/") else f"/{viewer.token}/{path}", body, named)
-    answer = connection.getresponse()
-    result = answer.status, answer.headers, answer.read()
-    connection.close()
-    return result
+    """(status, headers, body)"""
+    return viewer.request(method, path, body, {name.replace("_", "-"): value for name, value in headers.items()})
 
 
 numbers = iter(range(1, 10**6))

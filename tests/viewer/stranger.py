@@ -4,7 +4,6 @@ and its answer does not tell whether there is such a file. For every format that
 
 usage: stranger.py PROGRAM
 """
-import http.client
 import io
 import json
 import os
@@ -13,7 +12,6 @@ import struct
 import sys
 import tempfile
 import threading
-import urllib.parse
 import zipfile
 
 from PIL import Image
@@ -31,12 +29,8 @@ VOLUME = "_8x8x8_uint8.raw"  # how names of bare voxels end
 
 def request(viewer, path, body=None, method="POST", **query):
     """(status, the answer's text)."""
-    connection = http.client.HTTPConnection("127.0.0.1", viewer.port, timeout=60)
-    connection.request(method, f"/{viewer.token}/{path}?{urllib.parse.urlencode(query)}", body)
-    answer = connection.getresponse()
-    result = answer.status, answer.read().decode(errors="replace")
-    connection.close()
-    return result
+    status, _, answer = viewer.request(method, path, body, **query)
+    return status, answer.decode(errors="replace")
 
 
 # ---- carriers: files that name another file ----

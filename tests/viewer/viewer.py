@@ -1,4 +1,5 @@
 """A running `halflight view`, for tests."""
+import http.client
 import signal
 import subprocess
 import sys
@@ -32,6 +33,16 @@ class Viewer:
         _, errors = self.process.communicate()
         if died:
             print(f"the viewer has ended with status {self.process.returncode}: {errors[-8000:]}", file=sys.stderr)
+
+    def request(self, method, path, body=None, headers=None, timeout=600, **query):
+        """(status, headers, body); path without its token where it begins with '/'."""
+        connection = http.client.HTTPConnection("127.0.0.1", self.port, timeout=timeout)
+        whole = path if path.startswith("/") else f"/{self.token}/{path}"
+        connection.request(method, f"{whole}?{urllib.parse.urlencode(query, safe=',')}" if query else whole, body, headers or {})
+        answer = connection.getresponse()
+        result = answer.status, answer.headers, answer.read()
+        connection.close()
+        return result
 
     def interrupt(self, timeout=300):
         """Ctrl-C; returns the exit status."""

@@ -3,7 +3,6 @@
 
 usage: zoomed.py PROGRAM
 """
-import http.client
 import itertools
 import json
 import os
@@ -70,21 +69,11 @@ def write_groups(folder, level):
 numbers = iter(range(1, 10**6))
 
 
-def request(viewer, method, path, body=None):
-    """(status, headers, body)"""
-    connection = http.client.HTTPConnection("127.0.0.1", viewer.port, timeout=600)
-    connection.request(method, f"/{viewer.token}/{path}", body)
-    answer = connection.getresponse()
-    result = answer.status, answer.headers, answer.read()
-    connection.close()
-    return result
-
-
 def start_of(viewer):
     """What the viewer begins with, when all that is shared by all views is read; its scene has a picture across which the volume goes once."""
-    while json.loads(request(viewer, "GET", "refined.json?opened=0")[2])["refining"]:
+    while json.loads(viewer.request("GET", "refined.json?opened=0")[2])["refining"]:
         time.sleep(0.05)
-    start = json.loads(request(viewer, "GET", "start.json?opened=0")[2])
+    start = json.loads(viewer.request("GET", "start.json?opened=0")[2])
     scene = start["scene"]
     scene["image"].update(width=PIXELS, height=PIXELS)
     scene["camera"] = {"type": "orthographic", "height": LONG, "target": [LONG / 2, WIDE / 2, WIDE / 2], "position": [LONG / 2 + 300, -900, 700], "up": [0, 0, 1]}
@@ -95,7 +84,7 @@ def frame(viewer, scene, page="test", **more):
     """(status, body, what the picture shows of its volumes). A picture at rest, as the page asks for it."""
     query = {"format": "png", "coarse": 1, "seen": 1, **more}
     words = urllib.parse.urlencode({"page": page, "number": next(numbers), **query})
-    status, headers, body = request(viewer, "POST", f"frame?{words}", json.dumps(scene))
+    status, headers, body = viewer.request("POST", f"frame?{words}", json.dumps(scene))
     return status, body, json.loads(urllib.parse.unquote(headers.get("Halflight-Seen", "null")))
 
 
@@ -210,7 +199,7 @@ def moving_meanwhile(server, url):
         waiting = threading.Thread(target=lambda: answers.append(frame(viewer, zoomed(scene, 8))))
         waiting.start()
         check(reached.wait(HANG), "finer voxels are asked for")
-        progress = json.loads(request(viewer, "GET", "progress.json?page=test")[2])
+        progress = json.loads(viewer.request("GET", "progress.json?page=test")[2])
         check(progress["stage"] in ("voxels", "picture"), f"progress: {progress}")
         status, _, seen = frame(viewer, zoomed(scene, 8, 0.01), format="jpeg", moving=1, seen=0)
         check(status == 200 and seen is None and not released.is_set(), f"a moving frame comes while the server is held: {status}")
