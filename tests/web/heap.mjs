@@ -1,7 +1,8 @@
 // Several threads allocate and release memory of the library at once in node, as tests/web/equal.py asks.
 //
 // usage: node heap.mjs FILE.wasm THREADS
-// Prints the number of blocks whose first, middle or last byte another block has overwritten, or "unknown".
+// Prints the number of blocks whose first, middle or last byte another block has overwritten, and the number of pages by
+// which the memory grew although as many pages were free; or "unknown".
 
 import fs from "node:fs";
 import { isMainThread, parentPort, Worker, workerData } from "node:worker_threads";
@@ -30,6 +31,16 @@ function countBroken(library, memory, thread) {
   return broken;
 }
 
+// Returns the number of pages by which the memory grows when blocks take the place of released blocks of other sizes.
+function countGrown(library, memory) {
+  const MEBIBYTE = 1 << 20, take = (sizes) => sizes.map((size) => library.web_room(size * MEBIBYTE));
+  const release = (blocks) => blocks.forEach((block) => library.web_release(block));
+  const [first, second, third] = take([40, 50, 30]), before = memory.buffer.byteLength;
+  release([first, third, second]);
+  for (const sizes of [[119], [20, 99], [70, 5, 5, 30]]) release(take(sizes));
+  return (memory.buffer.byteLength - before) >> 16;
+}
+
 if (isMainThread) {
   const [file, threads] = process.argv.slice(2), bytes = fs.readFileSync(file);
   if (!WebAssembly.validate(bytes)) {
@@ -46,7 +57,7 @@ if (isMainThread) {
   // The workers start only when this thread waits for an event.
   await new Promise((done) => setTimeout(done, 200));
   const own = countBroken(library, memory, 0);
-  console.log((await Promise.all(others)).reduce((sum, count) => sum + count, own));
+  console.log((await Promise.all(others)).reduce((sum, count) => sum + count, own), countGrown(library, memory));
 } else {
   const { module, memory, stack, thread } = workerData, library = load(module, memory);
   library.__stack_pointer.value = stack;

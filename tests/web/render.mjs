@@ -17,7 +17,7 @@ if (!WebAssembly.validate(bytes)) {
 const help = (work) => new Promise((ready, failed) => {
   new Worker(new URL("helper.mjs", import.meta.url), { workerData: { engine, work } }).once("message", ready).once("error", failed);
 });
-const PIECE = (1 << 29) - (1 << 16); // one block is of less than two gibibytes, and a power of two is not quite filled
+const PIECE = 1 << 29; // one block is of less than two gibibytes
 const Instance = WebAssembly.Instance;
 WebAssembly.Instance = function (...of) {
   const made = new Instance(...of);

@@ -2,9 +2,10 @@
  * one serves only one thread. The definitions of this file replace those of ziglang's C library, which are
  * weak ones, also for calls from within that library.
  *
- * Memory is dealt out in slots, whose sizes are powers of two. A released slot is kept for later blocks of
- * the same class of sizes. Slots that are smaller than a page of WebAssembly's memory (64 KiB) divide a page
- * among themselves, and larger ones are runs of pages. Memory never goes back to the system, because
+ * Memory is dealt out in slots. Slots that are smaller than a page of WebAssembly's memory (64 KiB) have
+ * sizes that are powers of two, and divide a page among themselves. A released one is kept for later blocks
+ * of the same class of sizes. A larger slot is a run of pages. A released run joins the free runs beside it,
+ * and later blocks of any size take their pages from it. Memory never goes back to the system, because
  * WebAssembly's memory does not shrink. */
 #define _GNU_SOURCE /* posix_memalign */
 #include <errno.h>
@@ -15,54 +16,110 @@
 #include <string.h>
 
 /* A slot of class c has 1 << c bytes. */
-enum { LEAST_CLASS = 5, PAGE_CLASS = 16, MOST_CLASS = 31, LEAST_ALIGNMENT = 16 };
+enum { LEAST_CLASS = 5, PAGE_CLASS = 16, LEAST_ALIGNMENT = 16 };
 
-static const size_t PAGE_MASK = ((size_t)1 << PAGE_CLASS) - 1;
+static const size_t PAGE_BYTES = (size_t)1 << PAGE_CLASS, PAGE_MASK = ((size_t)1 << PAGE_CLASS) - 1;
 
 /* Lies before each block. The slot begins at least LEAST_ALIGNMENT bytes before the block. */
 typedef struct block_head {
   unsigned char *slot;
-  int class;
+  size_t bytes; /* of the slot: a power of two below PAGE_BYTES, or a multiple of PAGE_BYTES */
 } block_head;
 
 typedef struct free_slot {
   struct free_slot *next;
 } free_slot;
 
+/* Lies at the beginning of a run of free pages. */
+typedef struct free_run {
+  struct free_run *next; /* the next run in memory; runs that touch are one run */
+  size_t bytes;
+} free_run;
+
 static pthread_mutex_t mutex; /* 0, which is an open one (threads.c) */
-static free_slot *released[MOST_CLASS + 1];
-/* For each class below PAGE_CLASS, the first slot of its last page that was never used. There is no such slot
- * if this is the beginning of a page. */
+static free_slot *released[PAGE_CLASS];
+/* For each class, the first slot of its last page that was never used. There is no such slot if this is the
+ * beginning of a page. */
 static unsigned char *unused[PAGE_CLASS];
+static free_run *runs; /* the first free run in memory */
 
-static unsigned char *take_released(int class) {
-  free_slot *slot = released[class];
-  if (slot != NULL) released[class] = slot->next;
-  return (unsigned char *)slot;
+/* Adds pages to the free runs. */
+static void release_pages(unsigned char *pages, size_t bytes) {
+  free_run *before = NULL, *after = runs, *run = (free_run *)pages;
+  for (; after != NULL && (unsigned char *)after < pages; after = after->next) before = after;
+  *run = (free_run){after, bytes};
+  if (after != NULL && pages + bytes == (unsigned char *)after)
+    *run = (free_run){after->next, bytes + after->bytes};
+  if (before == NULL) {
+    runs = run;
+  } else if ((unsigned char *)before + before->bytes == pages) {
+    *before = (free_run){run->next, before->bytes + run->bytes};
+  } else {
+    before->next = run;
+  }
 }
 
-static unsigned char *take_pages(int class) {
-  unsigned char *pages = take_released(class);
-  if (pages != NULL) return pages;
-  size_t first = __builtin_wasm_memory_grow(0, (size_t)1 << (class - PAGE_CLASS));
-  return first == SIZE_MAX ? NULL : (unsigned char *)(first << PAGE_CLASS);
+/* Returns the link to the smallest free run of so many bytes; null if there is none. */
+static free_run **smallest_run(size_t bytes) {
+  free_run **best = NULL;
+  for (free_run **link = &runs; *link != NULL; link = &(*link)->next)
+    if ((*link)->bytes >= bytes && (best == NULL || (*link)->bytes < (*best)->bytes)) best = link;
+  return best;
 }
 
-static unsigned char *take_slot(int class) {
-  if (class >= PAGE_CLASS) return take_pages(class);
-  unsigned char *slot = take_released(class);
-  if (slot != NULL) return slot;
-  slot = unused[class];
-  if (((size_t)slot & PAGE_MASK) == 0) slot = take_pages(PAGE_CLASS);
-  if (slot != NULL) unused[class] = slot + ((size_t)1 << class);
-  return slot;
+/* Returns the number of bytes of the free run at the end of memory. */
+static size_t free_at_end(void) {
+  free_run *last = runs;
+  while (last != NULL && last->next != NULL) last = last->next;
+  const size_t end = __builtin_wasm_memory_size(0);
+  return last != NULL && ((size_t)last + last->bytes) >> PAGE_CLASS == end ? last->bytes : 0;
 }
 
-/* Returns the class of the smallest slots for so many bytes, or a class above MOST_CLASS. */
+/* Takes a run of pages. bytes: a multiple of PAGE_BYTES. */
+static unsigned char *take_pages(size_t bytes) {
+  free_run **link = smallest_run(bytes);
+  if (link == NULL) {
+    const size_t more = bytes - free_at_end(), first = __builtin_wasm_memory_grow(0, more >> PAGE_CLASS);
+    if (first == SIZE_MAX) return NULL;
+    release_pages((unsigned char *)(first << PAGE_CLASS), more);
+    link = smallest_run(bytes);
+  }
+  free_run *run = *link;
+  if (run->bytes > bytes) {
+    free_run *rest = (free_run *)((unsigned char *)run + bytes);
+    *rest = (free_run){run->next, run->bytes - bytes};
+    *link = rest;
+  } else {
+    *link = run->next;
+  }
+  return (unsigned char *)run;
+}
+
+/* Returns the class of the smallest slots for so many bytes. */
 static int class_of(size_t bytes) {
   int class = LEAST_CLASS;
-  while (class <= MOST_CLASS && (size_t)1 << class < bytes) class ++;
+  while ((size_t)1 << class < bytes) class ++;
   return class;
+}
+
+/* Returns the number of bytes of the slot for so many bytes; 0 if no slot is so large. */
+static size_t slot_bytes(size_t bytes) {
+  if (bytes > PTRDIFF_MAX - PAGE_BYTES) return 0;
+  return bytes > PAGE_BYTES / 2 ? (bytes + PAGE_MASK) & ~PAGE_MASK : (size_t)1 << class_of(bytes);
+}
+
+static unsigned char *take_slot(size_t bytes) {
+  if (bytes >= PAGE_BYTES) return take_pages(bytes);
+  const int class = class_of(bytes);
+  free_slot *slot = released[class];
+  if (slot != NULL) {
+    released[class] = slot->next;
+    return (unsigned char *)slot;
+  }
+  unsigned char *place = unused[class];
+  if (((size_t)place & PAGE_MASK) == 0) place = take_pages(PAGE_BYTES);
+  if (place != NULL) unused[class] = place + bytes;
+  return place;
 }
 
 /* Slots of more bytes than the alignment begin at a multiple of the alignment, or of a page if the alignment
@@ -70,15 +127,14 @@ static int class_of(size_t bytes) {
  * downwards. */
 static void *allocate(size_t bytes, size_t alignment) {
   if (alignment < LEAST_ALIGNMENT) alignment = LEAST_ALIGNMENT;
-  size_t whole;
-  int class = __builtin_add_overflow(bytes, alignment, &whole) ? MOST_CLASS + 1 : class_of(whole);
-  if (class > MOST_CLASS) return NULL;
+  size_t whole, taken = __builtin_add_overflow(bytes, alignment, &whole) ? 0 : slot_bytes(whole);
+  if (taken == 0) return NULL;
   pthread_mutex_lock(&mutex);
-  unsigned char *slot = take_slot(class);
+  unsigned char *slot = take_slot(taken);
   pthread_mutex_unlock(&mutex);
   if (slot == NULL) return NULL;
   unsigned char *block = slot + alignment - ((size_t)slot & (alignment - 1));
-  ((block_head *)block)[-1] = (block_head){slot, class};
+  ((block_head *)block)[-1] = (block_head){slot, taken};
   return block;
 }
 
@@ -107,10 +163,15 @@ void *calloc(size_t count, size_t size) {
 
 static void release(void *block) {
   const block_head head = ((block_head *)block)[-1];
-  free_slot *slot = (free_slot *)head.slot;
   pthread_mutex_lock(&mutex);
-  slot->next = released[head.class];
-  released[head.class] = slot;
+  if (head.bytes >= PAGE_BYTES) {
+    release_pages(head.slot, head.bytes);
+  } else {
+    free_slot *slot = (free_slot *)head.slot;
+    const int class = class_of(head.bytes);
+    *slot = (free_slot){released[class]};
+    released[class] = slot;
+  }
   pthread_mutex_unlock(&mutex);
 }
 
@@ -122,10 +183,10 @@ void *realloc(void *block, size_t bytes) {
   if (block == NULL) return malloc(bytes);
   const block_head head = ((block_head *)block)[-1];
   size_t before = (size_t)((unsigned char *)block - head.slot), whole;
-  if (!__builtin_add_overflow(bytes, before, &whole) && class_of(whole) == head.class) return block;
+  if (!__builtin_add_overflow(bytes, before, &whole) && slot_bytes(whole) == head.bytes) return block;
   void *moved = allocate(bytes, LEAST_ALIGNMENT);
   if (moved == NULL) return or_no_memory(NULL);
-  size_t held = ((size_t)1 << head.class) - before;
+  size_t held = head.bytes - before;
   memcpy(moved, block, held < bytes ? held : bytes);
   release(block);
   return moved;
