@@ -52,20 +52,24 @@ static affine3 index_to_world(const hl_volume_description *description) {
                    vec3_of(description->origin)};
 }
 
+/* Checks that neither the number of bytes of the voxels overflows a size, as the caller gives them or as they
+ * are stored, nor the number of bytes of a file in the largest type 64 bits. */
 static hl_status check_size(const hl_volume_description *description, const char *subject, hl_error *error) {
-  const size_t *dimension = description->dimensions;
-  size_t bytes = 8; /* 8 is the size of the largest voxel type, so that the number of bytes does not overflow
-                     * for any type */
+  const size_t *dimension = description->dimensions, given = hl_voxel_type_bytes(description->type),
+               stored = hl_storage_bytes(hl_voxel_type_storage(description->type));
+  const uint64_t most_voxels = (SIZE_MAX / 2) / (given > stored ? given : stored), largest_type = 8;
+  uint64_t voxels = 1;
   bool fits = true;
   for (int axis = 0; axis < 3; axis++) {
     if (dimension[axis] < 1)
       return hl_fail(error, HL_ERROR_INPUT,
                      "%s: the size %zu x %zu x %zu has a zero: each must be at least 1", subject,
                      dimension[0], dimension[1], dimension[2]);
-    fits = fits && dimension[axis] <= INT32_MAX && hl_multiply(bytes, dimension[axis], &bytes);
+    fits = fits && dimension[axis] <= INT32_MAX && !__builtin_mul_overflow(voxels, dimension[axis], &voxels);
   }
-  if (!fits || bytes > SIZE_MAX / 2)
-    return hl_fail(error, HL_ERROR_INPUT, "%s: the size %zu x %zu x %zu is beyond any memory", subject,
+  if (!fits || voxels > most_voxels || voxels > INT64_MAX / largest_type)
+    return hl_fail(error, HL_ERROR_INPUT,
+                   "%s: the size %zu x %zu x %zu needs more memory than this program can address", subject,
                    dimension[0], dimension[1], dimension[2]);
   return HL_OK;
 }
