@@ -264,9 +264,9 @@ bool hl_pages_wanted(const hl_context *context, const hl_volume_description *gri
   if (options->scratch_folder == NULL || options->memory_limit == 0) return false;
   hl_storage storage = hl_voxel_type_storage(grid->type);
   double voxels = (double)grid->dimensions[0] * (double)grid->dimensions[1] * (double)grid->dimensions[2];
-  double bytes = (double)hl_storage_bytes(storage);
+  double bytes = (double)hl_storage_bytes(storage), held = (double)atomic_load(&context->whole->held);
   return voxels * bytes >= (double)LEAST_BYTES &&
-         voxels * (bytes + bytes_beside(storage)) > (double)options->memory_limit;
+         held + voxels * (bytes + bytes_beside(storage)) > (double)options->memory_limit;
 }
 
 /* ---- memory ---- */
