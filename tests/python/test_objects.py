@@ -1,4 +1,5 @@
 """Scenes, lights, cameras, transfer functions, images."""
+import copy
 import dataclasses
 import io
 import json
@@ -185,7 +186,11 @@ def test_images(tmp_path, small):
 def test_images_are_saved_as_openexr(tmp_path, small, has_openexr):
     image = Renderer().render(small)
     image.save(tmp_path / "a.exr")
-    assert image.encode("exr") == (tmp_path / "a.exr").read_bytes()
+    place = io.BytesIO()
+    image.save(place, format="exr")
+    assert image.encode("exr") == (tmp_path / "a.exr").read_bytes() == place.getvalue()
+    layered = Renderer().render(small, layers=True)
+    assert copy.deepcopy(layered).encode("exr") == layered.encode("exr")
 
 
 def test_pixels_outlive_their_image(small):

@@ -69,7 +69,7 @@ def test_matter_keeps_its_own_color(ramp):
                      Volume(other, name="other", visible=False, casts_shadow=False))
     for row in (3, 8, 13, 16, 19, 24, 28):
         own = 10 < 31 - row < 20
-        assert pixels[row, 26, :3] / pixels[row, 26, 3] == pytest.approx([not own, 0, own], abs=1e-3)
+        assert pixels[row, 26, :3] / pixels[row, 26, 3] == pytest.approx([1 - own, 0, int(own)], abs=1e-3)
 
 
 def test_functions_come_back(ramp, tmp_path, program):

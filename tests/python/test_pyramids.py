@@ -21,6 +21,7 @@ SIDE, CHUNK, COARSEST = 8192, 64, 7
 MEASURED = """import resource, subprocess, sys
 subprocess.run(sys.argv[1:], stdout=subprocess.DEVNULL, check=True)
 print(resource.getrusage(resource.RUSAGE_CHILDREN).ru_maxrss)"""
+measures_memory = pytest.mark.skipif(sys.platform == "win32", reason="the system has no count of a child's memory")
 
 
 def ball(level: int, chunk: tuple[int, int, int]) -> Any:
@@ -55,6 +56,7 @@ def write_pyramid(folder: Path) -> Path:
     return folder
 
 
+@measures_memory
 @pytest.mark.parametrize(("limit", "level", "size"), [("1G", 4, 800), ("256M", 5, 400)])
 def test_levels_are_taken_by_memory(tmp_path: Path, program: str, limit: str, level: int, size: int) -> None:
     path, picture = write_pyramid(tmp_path / "a.ome.zarr"), tmp_path / "a.npy"
@@ -66,6 +68,7 @@ def test_levels_are_taken_by_memory(tmp_path: Path, program: str, limit: str, le
     assert 0.1 < (pixels[..., 3] > 0.5).mean() < 0.9
 
 
+@measures_memory
 @pytest.mark.parametrize("command", ["info", "render"])
 def test_absent_chunks_take_no_memory(tmp_path: Path, program: str, command: str) -> None:
     """1024^3 voxels of two bytes, of which a thousandth is there."""
