@@ -12,9 +12,11 @@ import hashlib
 import http.server
 import itertools
 import json
+import os
 import pathlib
 import re
 import shutil
+import signal
 import subprocess
 import sys
 import tempfile
@@ -376,12 +378,14 @@ def compare_hashes(command, what, folder, expected):
 
 def hashes_of(command, folder, handler):
     """What a browser tells of the pictures of hashes.html."""
-    with serve(folder, handler) as (server, url), tempfile.TemporaryDirectory(prefix="halflight-web-profile-") as profile:
-        browser = subprocess.Popen([*command(profile), urllib.parse.urljoin(url, "hashes.html")], stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)
+    profile_folder = tempfile.TemporaryDirectory(prefix="halflight-web-profile-", ignore_cleanup_errors=True)
+    with serve(folder, handler) as (server, url), profile_folder as profile:
+        browser = subprocess.Popen([*command(profile), urllib.parse.urljoin(url, "hashes.html")], stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL,
+                                   start_new_session=True)
         try:
             server.arrived.wait(HANG)
         finally:
-            browser.terminate()
+            os.killpg(browser.pid, signal.SIGKILL)  # with its processes, which would go on to write into the profile
             browser.wait()
         return server.told[0] if server.told else {"problem": "the browser does not answer"}
 
