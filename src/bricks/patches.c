@@ -6,6 +6,7 @@
 #include <math.h>
 #include <string.h>
 
+#include "bricks/corners.h"
 #include "bricks/evaluate.h"
 #include "core/context.h"
 #include "core/memory.h"
@@ -214,50 +215,50 @@ static float cell_value(const hl_patches *patches, int level, const size_t cell[
   return last->block != NULL ? last->block->value[cell_in_block(cell[0], cell[1], cell[2])] : NAN;
 }
 
-/* AROUND: the number of cells along an axis whose values make the coefficient of a corner. `around` has their
- * weights. A plain mean of the two cells beside the corner would blur. Derived: the mean over a cell, the
- * mean of two cells and the cubic B-spline are kernels with the variances 1/12, 1/4 and 1/3, in squared edges
- * of a cell. The weights -1/6, 2/3, 2/3, -1/6 have the variance -5/12, which cancels 1/12 + 1/3. Therefore
- * the field equals the source to the fourth order of the edge. */
-enum { AROUND = 4 };
-static const double around[AROUND] = {-1.0 / 6, 2.0 / 3, 2.0 / 3, -1.0 / 6};
-
-/* The coefficient of a corner. It is limited to the range of the eight cells that meet at the corner.
- * Otherwise the negative weights would make values beside a shock that no cell has. */
-static float corner_value(const hl_patches *patches, int level, const ptrdiff_t corner[3], last_block *last) {
-  double sum = 0, nearest = 0;
-  float least = INFINITY, greatest = -INFINITY;
-  int count = 0;
-  for (int k = 0; k < AROUND; k++)
-    for (int j = 0; j < AROUND; j++)
-      for (int i = 0; i < AROUND; i++) {
-        const size_t cell[3] = {clamp_cell(patches, level, 0, corner[0] - 2 + i),
-                                clamp_cell(patches, level, 1, corner[1] - 2 + j),
-                                clamp_cell(patches, level, 2, corner[2] - 2 + k)};
-        float value = cell_value(patches, level, cell, last);
-        sum += around[i] * around[j] * around[k] * (double)value;
-        bool meets = i >> 1 != (i & 1) && j >> 1 != (j & 1) && k >> 1 != (k & 1);
-        if (!meets || !(value == value)) continue;
-        nearest += (double)value;
-        least = value < least ? value : least;
-        greatest = value > greatest ? value : greatest;
-        count++;
-      }
-  if (count == 0) return NAN;
-  if (!(sum == sum)) sum = nearest / count; /* a cell without a value is near */
-  return sum < (double)least ? least : sum > (double)greatest ? greatest : (float)sum;
-}
-
-static void fill(void *data, int level, const ptrdiff_t first[3], const size_t count[3], float *out) {
-  const hl_patches *patches = data;
-  last_block last = {.known = false};
-  size_t n = 0;
+/* Fills an array of cells, [CORNERS_CELLS][CORNERS_CELLS][CORNERS_CELLS], that begins at the cell `first`. */
+static void gather_cells(const hl_patches *patches, int level, const ptrdiff_t first[3],
+                         const size_t count[3], last_block *last, float *cells) {
   for (size_t k = 0; k < count[2]; k++)
     for (size_t j = 0; j < count[1]; j++)
       for (size_t i = 0; i < count[0]; i++) {
-        const ptrdiff_t corner[3] = {first[0] + (ptrdiff_t)i, first[1] + (ptrdiff_t)j,
-                                     first[2] + (ptrdiff_t)k};
-        out[n++] = corner_value(patches, level, corner, &last);
+        const size_t cell[3] = {clamp_cell(patches, level, 0, first[0] + (ptrdiff_t)i),
+                                clamp_cell(patches, level, 1, first[1] + (ptrdiff_t)j),
+                                clamp_cell(patches, level, 2, first[2] + (ptrdiff_t)k)};
+        cells[(k * CORNERS_CELLS + j) * CORNERS_CELLS + i] = cell_value(patches, level, cell, last);
+      }
+}
+
+/* Finds the coefficients of the corners from..from + corners - 1 of a box that begins at the corner `first`.
+ */
+static void fill_part(const hl_patches *patches, int level, const ptrdiff_t first[3], const size_t count[3],
+                      const size_t from[3], const size_t corners[3], last_block *last, float *out) {
+  float cells[CORNERS_CELLS * CORNERS_CELLS * CORNERS_CELLS],
+      found[CORNERS_MOST * CORNERS_MOST * CORNERS_MOST];
+  ptrdiff_t cell[3];
+  size_t read[3];
+  for (int axis = 0; axis < 3; axis++) {
+    cell[axis] = first[axis] + (ptrdiff_t)from[axis] - CORNERS_BEFORE;
+    read[axis] = corners[axis] + CORNERS_AROUND;
+  }
+  gather_cells(patches, level, cell, read, last, cells);
+  hl_corners_of_cells(cells, corners, found);
+  for (size_t k = 0; k < corners[2]; k++)
+    for (size_t j = 0; j < corners[1]; j++)
+      memcpy(out + ((from[2] + k) * count[1] + from[1] + j) * count[0] + from[0],
+             found + (k * corners[1] + j) * corners[0], corners[0] * sizeof *out);
+}
+
+static void fill(void *data, int level, const ptrdiff_t first[3], const size_t count[3], float *out) {
+  last_block last = {.known = false};
+  size_t from[3], corners[3];
+  for (from[2] = 0; from[2] < count[2]; from[2] += CORNERS_MOST)
+    for (from[1] = 0; from[1] < count[1]; from[1] += CORNERS_MOST)
+      for (from[0] = 0; from[0] < count[0]; from[0] += CORNERS_MOST) {
+        for (int axis = 0; axis < 3; axis++) {
+          size_t left = count[axis] - from[axis];
+          corners[axis] = left < CORNERS_MOST ? left : CORNERS_MOST;
+        }
+        fill_part(data, level, first, count, from, corners, &last, out);
       }
 }
 

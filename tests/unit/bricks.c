@@ -1,5 +1,6 @@
 /* Fields at levels (bricks/build.h): borders of any arrangement of bricks are smooth, constants and linear
- * fields are exact, and the bytes are the same for any number of threads. */
+ * fields are exact, and the bytes are the same for any number of threads. Corners of cells
+ * (bricks/corners.h) keep mass. */
 #include <setjmp.h>
 #include <stdarg.h>
 #include <stddef.h>
@@ -14,6 +15,7 @@
 
 #include "../dense_bricks.h"
 #include "bricks/build.h"
+#include "bricks/corners.h"
 #include "core/context.h"
 #include "core/memory.h"
 
@@ -331,6 +333,89 @@ static void lists_keep_within_the_limit(void **state) {
   assert_int_equal(hl_context_limit_memory(context, 0, NULL, NULL), HL_OK);
 }
 
+/* ---- corners of cells ---- */
+
+enum {
+  AROUND = 24,
+  MATTER = 12,
+  FROM = (AROUND - MATTER) / 2
+}; /* cells along an edge: all, those with matter */
+
+typedef double cells_value(const ptrdiff_t cell[3]);
+
+/* Thin walls: one cell in five has matter. */
+static double thin_matter(const ptrdiff_t cell[3]) {
+  for (int axis = 0; axis < 3; axis++)
+    if (cell[axis] < FROM || cell[axis] >= FROM + MATTER) return .25;
+  double random = random_value(77, 0, cell);
+  return random < .2 ? 1 + 8 * random : .25;
+}
+
+static double slope_of_cells(const ptrdiff_t cell[3]) {
+  return 3 + (double)cell[0] - 2 * (double)cell[1] + .5 * (double)cell[2];
+}
+
+/* Finds the coefficients of the corners first .. first + count - 1. */
+static void corners_of(cells_value *value, const ptrdiff_t first[3], const size_t count[3], float *out) {
+  float cells[CORNERS_CELLS][CORNERS_CELLS][CORNERS_CELLS];
+  for (int k = 0; k < CORNERS_CELLS; k++)
+    for (int j = 0; j < CORNERS_CELLS; j++)
+      for (int i = 0; i < CORNERS_CELLS; i++)
+        cells[k][j][i] = (float)value((const ptrdiff_t[3]){
+            first[0] + i - CORNERS_BEFORE, first[1] + j - CORNERS_BEFORE, first[2] + k - CORNERS_BEFORE});
+  hl_corners_of_cells(&cells[0][0][0], count, out);
+}
+
+/* The sum of the coefficients is the sum of the cells, and no coefficient leaves the range of the cells, also
+ * where walls are thinner than a cell. */
+static void corners_keep_mass_and_range(void **state) {
+  (void)state;
+  float out[CORNERS_MOST * CORNERS_MOST * CORNERS_MOST];
+  const size_t count[3] = {CORNERS_MOST, CORNERS_MOST, CORNERS_MOST};
+  double coefficients = 0, cells = 0;
+  ptrdiff_t at[3];
+  for (at[2] = 0; at[2] < AROUND; at[2]++)
+    for (at[1] = 0; at[1] < AROUND; at[1]++)
+      for (at[0] = 0; at[0] < AROUND; at[0]++) cells += (double)(float)thin_matter(at) - .25;
+  for (at[2] = 0; at[2] < AROUND; at[2] += CORNERS_MOST)
+    for (at[1] = 0; at[1] < AROUND; at[1] += CORNERS_MOST)
+      for (at[0] = 0; at[0] < AROUND; at[0] += CORNERS_MOST) {
+        corners_of(thin_matter, at, count, out);
+        for (size_t n = 0; n < sizeof out / sizeof *out; n++) {
+          assert_true(out[n] >= .25f && out[n] <= 2.6f);
+          coefficients += (double)out[n] - .25;
+        }
+      }
+  assert_true(cells > 100);
+  assert_true(fabs(coefficients - cells) < 1e-6 * cells);
+}
+
+/* Linear cells give the linear field at their corners. */
+static void corners_of_linear_cells(void **state) {
+  (void)state;
+  float out[5 * 6 * 7];
+  corners_of(slope_of_cells, (const ptrdiff_t[3]){2, 3, 4}, (const size_t[3]){5, 6, 7}, out);
+  for (size_t n = 0; n < sizeof out / sizeof *out; n++) {
+    double corner[3] = {(double)(2 + n % 5) - .5, (double)(3 + n / 5 % 6) - .5, (double)(4 + n / 30) - .5};
+    assert_true(fabs((double)out[n] - (3 + corner[0] - 2 * corner[1] + .5 * corner[2])) < 1e-5);
+  }
+}
+
+/* A corner has the same coefficient in every call. */
+static void corners_do_not_depend_on_calls(void **state) {
+  (void)state;
+  float all[CORNERS_MOST * CORNERS_MOST * CORNERS_MOST], one;
+  const size_t count[3] = {CORNERS_MOST, CORNERS_MOST, CORNERS_MOST}, single[3] = {1, 1, 1};
+  corners_of(thin_matter, (const ptrdiff_t[3]){8, 8, 8}, count, all);
+  for (size_t n = 0; n < sizeof all / sizeof *all; n++) {
+    const ptrdiff_t first[3] = {8 + (ptrdiff_t)(n % CORNERS_MOST),
+                                8 + (ptrdiff_t)(n / CORNERS_MOST % CORNERS_MOST),
+                                8 + (ptrdiff_t)(n / CORNERS_MOST / CORNERS_MOST)};
+    corners_of(thin_matter, first, single, &one);
+    assert_true(one == all[n]);
+  }
+}
+
 int main(void) {
   const struct CMUnitTest tests[] = {
       cmocka_unit_test_setup_teardown(borders_are_smooth, context_up, context_down),
@@ -341,6 +426,9 @@ int main(void) {
       cmocka_unit_test_setup_teardown(threads_make_no_difference, context_up, context_down),
       cmocka_unit_test_setup_teardown(impossible_bricks_are_refused, context_up, context_down),
       cmocka_unit_test_setup_teardown(lists_keep_within_the_limit, context_up, context_down),
+      cmocka_unit_test(corners_keep_mass_and_range),
+      cmocka_unit_test(corners_of_linear_cells),
+      cmocka_unit_test(corners_do_not_depend_on_calls),
   };
   return cmocka_run_group_tests_name("bricks", tests, NULL, NULL);
 }
