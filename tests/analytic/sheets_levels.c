@@ -251,12 +251,13 @@ static double wave_value(uint64_t seed, int level, const ptrdiff_t point[3]) {
   return 0.5 + product * (1 + scale * scale / 6 * squares);
 }
 
-static void draw_wide(octree_value *value, int levels, float spoil, float *pixels) {
+static void draw_wide(octree_value *value, int levels, float spoil, hl_shadows shadows, float *pixels) {
   stage set;
   stage_open(&set);
   light_scene(&set, add_field(&set, 5, (field_kind){value, 2, levels, false}));
   set.scene.camera.type = HL_CAMERA_ORTHOGRAPHIC;
   set.scene.camera.height = 36;
+  set.scene.render.shadows = shadows;
   set.scene.width = set.scene.height = WIDE;
   const hl_bricks *bricks = set.volumes[0].volume->bricks;
   const size_t stored = ((size_t)1 << bricks->shift) + BRICK_MARGIN, count = stored * stored * stored;
@@ -284,21 +285,26 @@ static double high_passed(const float *a, const float *b) {
   return most;
 }
 
-/* The picture of a smooth field at random levels shows no borders. From the picture of the field at one level
- * it differs by less than .1 % from pixel to pixel. If coefficients at the borders of bricks were wrong by 1
- * %, the test would fail. */
+/* The picture of a smooth field at random levels shows no borders, with hard and with soft shadows. From the
+ * picture of the field at one level it differs by less than .1 % from pixel to pixel. If coefficients at the
+ * borders of bricks were wrong by 1 %, the test would fail. */
 static void test_borders(void **state) {
   (void)state;
   octree_value *values[] = {quadratic_value, wave_value};
-  static float one[WIDE * WIDE * 4], levels[WIDE * WIDE * 4], spoiled[WIDE * WIDE * 4];
-  for (int n = 0; n < 2; n++) {
-    draw_wide(values[n], 1, 0, one);
-    draw_wide(values[n], 3 - n, 0, levels);
-    draw_wide(values[n], 3 - n, 0.01f, spoiled);
-    if (!(high_passed(levels, one) < 1e-3))
-      fail_msg("smooth field %d: borders show by %.3g", n, high_passed(levels, one));
-    assert_true(high_passed(spoiled, one) > 2e-3);
-  }
+  const hl_shadows shadows[] = {HL_SHADOWS_HARD, HL_SHADOWS_SOFT};
+  static float one[WIDE * WIDE * 4], levels[WIDE * WIDE * 4], spoiled[WIDE * WIDE * 4], hard[WIDE * WIDE * 4];
+  for (int n = 0; n < 2; n++)
+    for (int kind = 0; kind < 2; kind++) {
+      draw_wide(values[n], 1, 0, shadows[kind], one);
+      draw_wide(values[n], 3 - n, 0, shadows[kind], levels);
+      draw_wide(values[n], 3 - n, 0.01f, shadows[kind], spoiled);
+      print_message("# smooth field %d, %s shadows: borders show by %.3g\n", n, kind == 0 ? "hard" : "soft",
+                    high_passed(levels, one));
+      assert_true(high_passed(levels, one) < 1e-3);
+      assert_true(high_passed(spoiled, one) > 2e-3);
+      if (kind == 0) memcpy(hard, one, sizeof hard);
+      else assert_true(high_passed(hard, one) > 2e-5); /* the shadows are others */
+    }
 }
 
 /* ---- the box's faces ---- */
