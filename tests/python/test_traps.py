@@ -1,5 +1,6 @@
 """What would go wrong silently: arrays that change after they were borrowed, limits that do not hold."""
 import re
+import sys
 
 import numpy as np
 import pytest
@@ -90,6 +91,11 @@ def scratch(tmp_path):
     halflight.limit_memory(None)
 
 
+def has_no_names(scratch):
+    """Whether other users find nothing in the folder of scratch files. On Windows a file has its name until it is closed."""
+    return sys.platform == "win32" or list(scratch.iterdir()) == []
+
+
 def test_limits_hold_for_arrays_that_are_read_by_slices(scratch, monkeypatch):
     monkeypatch.setattr(halflight.pieces, "_PIECE", 1 << 20)
     k, j, i = np.indices((160, 180, 190), np.uint16)
@@ -101,7 +107,7 @@ def test_limits_hold_for_arrays_that_are_read_by_slices(scratch, monkeypatch):
     halflight.limit_memory(held + 5_300_000, scratch_folder=scratch)
     source = Chunks(values)
     volume = Volume(source, **place)
-    assert source.largest <= 1 << 20 and list(scratch.iterdir()) == []
+    assert source.largest <= 1 << 20 and has_no_names(scratch)
     assert lib.hl_context_memory_held(context) < held + 5_300_000 < held + values.nbytes
     halflight.limit_memory(held + 600_000_000, scratch_folder=scratch)
     assert np.array_equal(np.asarray(halflight.render(volume, **look)), whole)
@@ -112,7 +118,7 @@ def test_limits_hold_for_arrays_that_are_read_by_slices(scratch, monkeypatch):
     assert corner.tolist() == [1, 2, 3, 1] and sorted(turned.info().spacing.tolist()) == [1, 1.5, 2]
     with pytest.raises(TypeError, match="the array's type is complex128"):
         Volume(Chunks(np.zeros((160, 180, 190), complex)))
-    assert list(scratch.iterdir()) == []
+    assert has_no_names(scratch)
 
 
 @pytest.mark.parametrize("package", ["dask", "zarr", "h5py"])
