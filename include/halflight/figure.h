@@ -81,11 +81,12 @@ typedef struct hl_overlay {
               * tells; without either, no unit is written. Refused if the scene has no marks */
   const hl_annotation *annotations; /* [annotation_count] */
   size_t annotation_count;
-  const char *letter;     /* the panel's letter, such as "a", which is drawn in bold at the upper left; may be
-                           * null */
-  double legend_range[2]; /* the range of values over which the legend's strips go, the lower end first; if
-                           * both ends are equal (the default), each strip goes over the range of its volume's
-                           * values that have opacity */
+  const char *letter; /* the panel's letter, such as "a", which is drawn in bold at the upper left; may be
+                       * null */
+  double
+      legend_range[2]; /* the range of values over which all strips of the legend go, the lower end first;
+                        * if both ends are equal (the default), each strip goes over the range that its
+                        * volume states (hl_scene_volume.legend_low), or over the values that have opacity */
   hl_corner scale_bar_corner, legend_corner, arrows_corner; /* default HL_CORNER_FREE */
 } hl_overlay;
 

@@ -135,8 +135,7 @@ typedef struct hl_scene_volume {
   double attenuation_color[3]; /* factors of the extinction in R, G and B */
   int visible, casts_shadow, receives_shadow;
   int clipped;                     /* non-zero if the matter outside the box clip_min..clip_max is removed */
-  double clip_min[3], clip_max[3]; /* the box's least and greatest coordinates, in the world of the volume's
-                                    * file, before the transform */
+  double clip_min[3], clip_max[3]; /* the box's corners in the world of the volume's file, not transformed */
   double axis_scale[3];     /* factors of the volume's size along x, y and z of the world of its file, in
                              * addition to `scale`; the volume is stretched before it is rotated */
   int time, channel, level; /* the time step, the channel and the resolution that were read
@@ -168,6 +167,9 @@ typedef struct hl_scene_volume {
    * scraps_faint, matter has low values. Functions that show values on the other side of scraps_faint show
    * all. scraps_least: 0, the default, hides nothing */
   double scraps_faint, scraps_firm, scraps_least;
+  /* The range of values over which the strip of a legend goes, as the option "range" states it. If legend_low
+   * is not below legend_high (the default), the strip goes over the values that have opacity */
+  double legend_low, legend_high;
 } hl_scene_volume;
 
 /* A mesh in a scene. `color` multiplies the colours of the mesh's vertices, faces or spheres, if the mesh has
@@ -569,18 +571,15 @@ HL_API HL_WARN_UNUSED hl_status hl_camera_turn(const hl_view *view, hl_camera *c
 HL_API HL_WARN_UNUSED hl_status hl_camera_frame(const hl_scene_description *description, double azimuth_deg,
                                                 double elevation_deg, double zoom, hl_camera *camera);
 
-/* Places the camera so that the visible voxels fill the picture, as hl_camera_frame() does, but keeps the
- * camera's direction and up vector: the function changes only its position, target and height. */
+/* Frames the visible voxels as hl_camera_frame() does, but keeps the camera's direction and up vector. */
 HL_API HL_WARN_UNUSED hl_status hl_camera_fit(const hl_scene_description *description, double zoom,
                                               hl_camera *camera);
 
-/* Finds a camera whose picture shows everything that the pictures of all given cameras show. The cameras may
- * be, for example, the cameras of several time steps. cameras: [count], one or more, of one type, direction,
- * up vector and field of view. aspect: a picture's width divided by its height. *joined: the first camera if
- * its picture already shows everything. Otherwise it is the nearest camera that shows everything; in parallel
- * projection, the one with the smallest picture. Its target is as deep as the first camera's.
- * HL_ERROR_ARGUMENT: the cameras have different types, directions, up vectors or fields of view, or a
- * camera's position is its target. */
+/* Finds a camera whose picture shows all that the pictures of all given cameras show. cameras: [count], one
+ * or more, of one type, direction, up vector and field of view. aspect: a picture's width divided by its
+ * height. *joined: the first camera if its picture shows all of it. Otherwise it is the nearest such camera;
+ * in parallel projection, the one with the smallest picture. Its target is as deep as the first camera's.
+ * HL_ERROR_ARGUMENT: types, directions, up vectors or fields of view differ, or a camera is at its target. */
 HL_API HL_WARN_UNUSED hl_status hl_camera_join(const hl_camera *cameras, size_t count, double aspect,
                                                hl_camera *joined);
 

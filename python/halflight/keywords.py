@@ -47,6 +47,11 @@ class VolumeSettings(TypedDict, total=False):
         Voxels beyond this value that share faces are one body. -1e36 to 1e36. Default: 0.
     scraps_least : float
         Bodies with fewer voxels than this part of the largest body's are hidden; 0: none. 0 to 1. Default: 0.
+    legend_low : float
+        The value at which the strip of a legend begins. Data units, -1e36 to 1e36. Default: 0.
+    legend_high : float
+        The value at which the strip ends; if it is not above `low`, the strip goes over the values that have
+        opacity. Data units, -1e36 to 1e36. Default: 0.
     """
 
     rotate_axis: Sequence[float]
@@ -65,6 +70,8 @@ class VolumeSettings(TypedDict, total=False):
     scraps_faint: float
     scraps_firm: float
     scraps_least: float
+    legend_low: float
+    legend_high: float
 
 
 class MaterialSettings(TypedDict, total=False):
@@ -271,6 +278,8 @@ class FurtherSettings(TypedDict, total=False):
     scraps_faint: float
     scraps_firm: float
     scraps_least: float
+    legend_low: float
+    legend_high: float
     emission: float
     background_sky: bool
     exposure: float

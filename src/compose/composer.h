@@ -28,9 +28,10 @@ bool hl_asks_for_functions(const hl_asked *asked);
 
 /* The transfer function of volume number `index` with the options applied. If color is not null and no
  * "colormap" is given for this volume, the function has this colour. The caller owns the function's points,
- * also after a failure. */
+ * also after a failure. range: the values that "range" gives the volume; both 0 if it gives none. */
 hl_status hl_compose_function(const hl_composer *composer, const hl_scene_description *description,
-                              size_t index, const char *color, hl_transfer_function *function);
+                              size_t index, const char *color, hl_transfer_function *function,
+                              double range[2]);
 
 /* The colormap that a text names, without regard to upper and lower case; null if there is none. */
 const char *hl_find_colormap(const char *text);

@@ -517,10 +517,10 @@ typedef struct function_changes {
   bool is_beside;     /* whether other volumes are in the scene */
 } function_changes;
 
-/* Applies "range", "threshold" and "colormap", in this order. */
+/* Applies "range", "threshold" and "colormap", in this order. stated: the values of "range"; 0 without it. */
 static hl_status change_function(const hl_composer *composer, const hl_scene_volume *described,
                                  const function_changes *changes, bool maximum,
-                                 hl_transfer_function *function) {
+                                 hl_transfer_function *function, double stated[2]) {
   const hl_volume *volume = described->volume;
   const char *colormap = changes->colormap;
   const bool mapped = colormap != NULL && hl_find_colormap(colormap) != NULL;
@@ -528,6 +528,7 @@ static hl_status change_function(const hl_composer *composer, const hl_scene_vol
   value_range range;
   hl_asked threshold;
   hl_status status = find_range(composer, volume, changes->range, &range);
+  memcpy(stated, range.ends, sizeof range.ends);
   if (status == HL_OK && changes->windows_faces)
     return hl_window_faces(composer, volume, range.ends, function);
   if (status == HL_OK && range.given && changes->threshold == NULL)
@@ -545,7 +546,8 @@ static hl_status change_function(const hl_composer *composer, const hl_scene_vol
 }
 
 hl_status hl_compose_function(const hl_composer *composer, const hl_scene_description *description,
-                              size_t index, const char *color, hl_transfer_function *function) {
+                              size_t index, const char *color, hl_transfer_function *function,
+                              double range[2]) {
   const hl_asked *asked = composer->asked;
   const hl_scene_volume *volume = &description->volumes[index];
   const char *named = hl_text_for(composer, HL_ASK_TF, volume, index);
@@ -555,6 +557,7 @@ hl_status hl_compose_function(const hl_composer *composer, const hl_scene_descri
                               description->volume_count > 1};
   char item[256];
   hl_status status = HL_OK;
+  range[0] = range[1] = 0;
   if (is_list(composer, &asked[HL_ASK_COLORMAP])) {
     status = copy_item(composer, description, changes.colormap, index, item, sizeof item);
     changes.colormap = item;
@@ -578,7 +581,7 @@ hl_status hl_compose_function(const hl_composer *composer, const hl_scene_descri
   if (status != HL_OK) return status;
   if (function->plane.second == HL_SECOND_NONE)
     return change_function(composer, volume, &changes, slice || hl_is_maximum(composer, description),
-                           function);
+                           function, range);
   if (changes.range == NULL && changes.threshold == NULL && changes.colormap == NULL) return HL_OK;
   return hl_fail(composer->error, HL_ERROR_ARGUMENT,
                  "--range, --threshold and --colormap change functions of the value alone: "

@@ -66,8 +66,11 @@ static hl_status change_volume(const hl_composer *composer, const hl_scene_descr
   if (projected) hl_fit_projection(composer, &look);
   char color[8];
   bool colored = looks && hl_projected_color(composer, description, index, color);
+  double range[2];
   status = hl_compose_function(composer, description, index, colored ? color : NULL,
-                               &changed->functions[index]);
+                               &changed->functions[index], range);
+  if (range[0] < range[1] || looks || hl_text_for(composer, HL_ASK_TF, volume, index) != NULL)
+    volume->legend_low = range[0], volume->legend_high = range[1];
   if (status == HL_OK)
     status = fit_function(composer, description, index, projected, &changed->functions[index]);
   volume->transfer_function = changed->functions[index];

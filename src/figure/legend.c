@@ -1,7 +1,7 @@
 /* figure/legend.c - draws the legend, which explains the colours of the picture. Each visible volume has a
  * part: a strip with its transfer function's colours and opacity over its values, or rows for its isosurfaces
  * or its labels. The range of a strip begins at the least value with opacity and ends at the greatest, or
- * where the function's points end, unless the overlay states it. */
+ * where the function's points end, unless the overlay or the volume states it. */
 #include <inttypes.h>
 #include <stdio.h>
 #include <string.h>
@@ -240,7 +240,9 @@ static void cut_even_ends(const hl_transfer_function *function, double range[2])
 /* Finds the range of values along a volume's strip: the visible values, or the values of its colours. */
 static hl_status find_scale(const legend *made, const hl_scene_volume *volume, hl_strip_scale *scale,
                             hl_error *error) {
-  const double *stated = made->place->overlay->legend_range;
+  const double *for_all = made->place->overlay->legend_range;
+  const double own[2] = {volume->legend_low, volume->legend_high};
+  const double *stated = for_all[0] < for_all[1] ? for_all : own;
   const hl_transfer_function *function = &volume->transfer_function;
   double range[2];
   const bool even = hl_strip_is_even(function);
@@ -251,8 +253,7 @@ static hl_status find_scale(const legend *made, const hl_scene_volume *volume, h
     range[0] = function->color[0].value;
     range[1] = function->color[function->color_count - 1].value;
   }
-  /* the range that the overlay states is a range of matter: colours that a second volume gives have their own
-   */
+  /* a stated range is a range of matter: colours that a second volume gives have their own range */
   *scale = hl_strip_scale_of(function, !even && stated[0] < stated[1] ? stated : range);
   if (hl_curves_have_own(&function->plane.curves)) {
     memcpy(scale->own, function->plane.curves.own_between, sizeof scale->own);

@@ -2,8 +2,8 @@
  *
  * The strip shows the function's own colours, as a fully lit surface has them. The curve beside the strip
  * shows the opacity: it touches the strip where the opacity is 0, and lies farthest from it at the greatest
- * opacity. Where all values have the same opacity, there is no curve. A function whose colours were spread by
- * logarithms has a logarithmic strip, on which each of them takes the same length. */
+ * opacity. Where all values of the strip have the same opacity, there is no curve. A function whose colours
+ * were spread by logarithms has a logarithmic strip, on which each of them takes the same length. */
 #include "figure/strip.h"
 
 #include <math.h>
@@ -27,11 +27,22 @@ bool hl_strip_is_even(const hl_transfer_function *function) {
          function->color[0].value < function->color[function->color_count - 1].value;
 }
 
+/* Whether all values from low to high have the same opacity. */
+static bool is_even_between(const hl_transfer_function *function, double low, double high) {
+  const double opacity = hl_transfer_function_opacity(function, low);
+  bool even = hl_transfer_function_opacity(function, high) == opacity;
+  for (size_t p = 0; p < function->opacity_count; p++) {
+    const hl_opacity_point *point = &function->opacity[p];
+    even &= point->value < low || point->value > high || point->opacity == opacity;
+  }
+  return even;
+}
+
 hl_strip_scale hl_strip_scale_of(const hl_transfer_function *function, const double range[2]) {
   return (hl_strip_scale){.low = range[0],
                           .high = range[1],
                           .logarithmic = range[0] > 0 && hl_transfer_function_scale(function) == HL_RANGE_LOG,
-                          .even = hl_strip_is_even(function)};
+                          .even = is_even_between(function, range[0], range[1])};
 }
 
 /* The place of a value along the strip: 0 at the lower end, 1 at the upper end. */

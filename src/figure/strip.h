@@ -11,7 +11,7 @@
 typedef struct hl_strip_scale {
   double low, high; /* low < high; above 0 if `logarithmic` */
   bool logarithmic; /* whether equal ways along the strip are equal ratios of values, not equal differences */
-  bool even;        /* whether all values have the same opacity, so that there is no curve */
+  bool even;        /* whether all values from low to high have the same opacity, so that there is no curve */
   double own[2];    /* the values between which the strip has the colour own_color: the matter has its own
                      * colour there; if both are equal, there are none */
   double own_color[3]; /* linear RGB */

@@ -29,6 +29,7 @@ static const char *const volume_keys[] = {"name",
                                           "casts_shadow",
                                           "clip",
                                           "scraps",
+                                          "legend",
                                           "receives_shadow",
                                           "array",
                                           "component",
@@ -130,6 +131,12 @@ static hl_status read_scraps(hl_json_reader *reader, const json_t *value, hl_sce
   static const char *const keys[] = {"faint", "firm", "least", NULL};
   static const char *const settings[] = {"scraps/faint", "scraps/firm", "scraps/least"};
   return read_group(reader, value, "scraps", keys, settings, volume);
+}
+
+static hl_status read_legend(hl_json_reader *reader, const json_t *value, hl_scene_volume *volume) {
+  static const char *const keys[] = {"low", "high", NULL};
+  static const char *const settings[] = {"legend/low", "legend/high"};
+  return read_group(reader, value, "legend", keys, settings, volume);
 }
 
 static bool same_text(const char *a, const char *b) {
@@ -526,6 +533,7 @@ hl_status hl_json_read_volume(hl_json_reader *reader, const json_t *value, hl_vo
     status = hl_json_read_cuts(reader, json_object_get(value, "cuts"), &volume->cuts, &volume->cut_count);
   if (status == HL_OK) status = read_scattering(reader, json_object_get(value, "scattering"), volume);
   if (status == HL_OK) status = read_scraps(reader, json_object_get(value, "scraps"), volume);
+  if (status == HL_OK) status = read_legend(reader, json_object_get(value, "legend"), volume);
   if (status == HL_OK) status = read_source(reader, value, shelf, NULL, volume);
   if (status == HL_OK) status = hl_json_read_labels(reader, value, volume);
   if (status == HL_OK) status = read_mask(reader, json_object_get(value, "mask"), shelf, volume);

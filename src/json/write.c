@@ -389,6 +389,12 @@ static void write_volume(hl_json_writer *w, const hl_scene_volume *volume) {
     write_key(w, HL_SETTINGS_VOLUME, "scraps/least", volume);
     hl_json_close(w, "}");
   }
+  if (volume->legend_low < volume->legend_high) {
+    hl_json_open(w, "legend", "{");
+    write_key(w, HL_SETTINGS_VOLUME, "legend/low", volume);
+    write_key(w, HL_SETTINGS_VOLUME, "legend/high", volume);
+    hl_json_close(w, "}");
+  }
   write_volume_cuts(w, volume);
   hl_json_close(w, "}");
 }

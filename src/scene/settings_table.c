@@ -249,7 +249,14 @@ static const hl_setting volume_rows[] = {
     {.key = "scraps/least", FIELD(hl_scene_volume, scraps_least), .type = HL_SETTING_NUMBER, .unit = "",
      .high = 1, .optional = 1,
      .sentence = "Bodies with fewer voxels than this part of the largest body's are hidden; 0: none.",
-     .mend = "give a fraction from {low} to {high}"}};
+     .mend = "give a fraction from {low} to {high}"},
+    {.key = "legend/low", FIELD(hl_scene_volume, legend_low), .type = HL_SETTING_NUMBER, .unit = "data units",
+     .low = -HL_LIMIT_VOXEL_VALUE, .high = HL_LIMIT_VOXEL_VALUE, .optional = 1,
+     .sentence = "The value at which the strip of a legend begins.", .mend = "give a value of the volume"},
+    {.key = "legend/high", FIELD(hl_scene_volume, legend_high), .type = HL_SETTING_NUMBER,
+     .unit = "data units", .low = -HL_LIMIT_VOXEL_VALUE, .high = HL_LIMIT_VOXEL_VALUE, .optional = 1,
+     .sentence = "The value at which the strip ends; if it is not above `low`, the strip goes over the values that have opacity.",
+     .mend = "give a value of the volume"}};
 
 static const hl_setting mesh_rows[] = {
     {.key = "transform/scale", FIELD(hl_scene_mesh, scale), .type = HL_SETTING_NUMBER, .unit = "",

@@ -143,10 +143,6 @@ int render_overlay_read(const cli_value *values, cli_overlay *overlay) {
   const cli_value *legend = &values[RENDER_LEGEND];
   overlay->overlay.legend = legend->given;
   if (legend->given && strcmp(legend->text, "auto") != 0) overlay->overlay.legend_title = legend->text;
-  const cli_value *range = &values[RENDER_RANGE];
-  const bool for_all = range->count > 0 && strchr(range->text, '=') == NULL;
-  for (int n = 0; n < 2 && for_all && !range->percent[0] && !range->percent[1]; n++)
-    overlay->overlay.legend_range[n] = range->number[n];
   overlay->drawn = values[RENDER_SCALE_BAR].given || legend->given || values[RENDER_AXES].given ||
                    overlay->overlay.marks || values[RENDER_ANNOTATE].given;
   int exit_code = EXIT_CODE_OK;

@@ -55,8 +55,7 @@ static int check_options(series_job *job) {
   return exit_code;
 }
 
-/* Does the work of --range-of-all: sets --range, and the range of legends, to the range of all files that can
- * be read. */
+/* Does the work of --range-of-all: sets --range to the range of all files that can be read. */
 static int find_range(series_job *job) {
   cli_value *range = &job->values[RENDER_RANGE];
   const bool quiet = job->host.quiet;
@@ -76,7 +75,6 @@ static int find_range(series_job *job) {
     hl_volume_release(volume);
   }
   job->host.quiet = quiet;
-  if (range->given) memcpy(job->overlay.overlay.legend_range, range->number, sizeof(double[2]));
   return EXIT_CODE_OK;
 }
 

@@ -14,7 +14,16 @@ for words in '' '--colormap viridis'; do
   halflight render ct_24x24x24_int16.raw --slice z=0.5 $words --legend auto --place legend=below --size 200 --quiet -o slice.pdf
   pdftotext -layout slice.pdf - | grep -oE '[0-9]+' | sort -n | tr '\n' ' '; echo
 done
-# A range of one volume ends this volume's legend, too.
+# A range of one volume ends this volume's legend, too, with a colormap and without; another volume keeps the range of its own legend.
+tool ball 12 b_12x12x12_uint8.raw
+for name in a_16x16x16 b_12x12x12; do halflight convert ${name}_uint8.raw ${name%%_*}.nrrd --quiet; done
+numbers() { halflight render "$@" --legend auto --place legend=below --size 200 --no-metadata --quiet -o numbers.pdf && pdftotext -layout numbers.pdf - | grep -oE '[0-9]+'; }
+numbers b.nrrd >plain.txt
+numbers a.nrrd --range 40,1000 >ranged.txt
+numbers a.nrrd b.nrrd --range a=40,1000 >both.txt
+"$PYTHON" -c "
+read = lambda name: sorted(int(word) for word in open(name))
+print(read('ranged.txt')[-1], read('both.txt') == sorted(read('ranged.txt') + read('plain.txt')))"
 for range in 40,120 a_16x16x16_uint8=40,120; do
   halflight render a_16x16x16_uint8.raw --size 160x160 --colormap turbo --range $range --legend auto --no-metadata --quiet -o ranged-${range%=*}.png
 done

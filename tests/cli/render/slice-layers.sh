@@ -43,3 +43,7 @@ print(all(same(both[p], under[p]) for p in clear), all(same(both[p], over[p]) fo
 print(all(same(three[p], top[p]) for p in lit if 12.5 < row(p) < 22), all(same(three[p], both[p]) for p in lit if 0.5 < row(p) < 11.5))
 print(all(same(both[p], added[p]) for p in lit))
 END
+# No curve of opacity stands beside the strips of the legend: all values along them are opaque.
+slice anatomy.nrrd zmap.nrrd --range zmap=2.5,7 --colormap zmap=hot --legend auto -o layers.svg || { echo "this build draws nothing"; exit 77; }
+halflight render zmap.nrrd --look translucent --legend auto --size 96 --quiet -o solid.svg
+for picture in layers solid; do echo "$picture: $(grep -c 'fill-opacity[:=]"*0.3' $picture.svg) curves"; done
