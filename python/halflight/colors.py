@@ -129,6 +129,12 @@ def sampled(place: str, cmap: Any, low: float, high: float) -> list[list[float]]
     return [[float(value), *map(float, color)] for value, color in zip(values, colors, strict=True)]
 
 
+def is_colormap(cmap: Any) -> bool:
+    """Whether `cmap` has several colours, and is not one colour for all values."""
+    points = None if cmap is None else sampled("cmap", cmap, 0.0, 1.0)
+    return cmap is not None and (points is None or len(points) > 1)
+
+
 def _by_name(place: str, name: str) -> Any:
     """A matplotlib colormap, or one colour."""
     try:

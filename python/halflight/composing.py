@@ -156,6 +156,8 @@ def _options(settings: Mapping[str, Any], volumes: Sequence[Volume], flags: int)
         if not isinstance(at, str):
             raise TypeError(f"slice: {at!r} is no text such as 'z=0.5' or 'z=40mm'")
         options["slice"] = at
+        if settings.get("_layers") is not None:
+            options["colormap"] = settings["_layers"]
         if settings.get("sheet_spacing") is not None:
             options["sheet-spacing"] = repr(_settings.number("sheet_spacing", settings["sheet_spacing"]))
     if flags & lib.HL_COMPOSE_BARE and (look := _fitted_look(volumes)) is not None:

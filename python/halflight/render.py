@@ -14,13 +14,15 @@ from ._library import call, context, ffi, lib, made, text_of
 from ._settings import number, size_of
 from ._words import check_keywords, suggests, suggests_also
 from .camera import Camera
+from .colors import is_colormap
 from .image import Image, Pixels
 from .keywords import FurtherSettings
 from .lights import Light
 from .mesh import Mesh
 from .progress import Progress, told
 from .scene import Scene, Settings, Side
-from .values import VALUES, function_for, range_of_slice
+from .transfer import TransferFunction
+from .values import VALUES, function_for, range_for, range_of_slice
 from .volume import Look, Picture, Source, Volume, as_volume, volume_from
 
 __all__ = ["Renderer", "reference", "render"]
@@ -199,7 +201,10 @@ def _look(volume: Volume, projected: bool, words: Mapping[str, Any]) -> Volume:
     maximum projection.
     """
     function = function_for(volume, projected, **words)
-    return volume if function is None else volume.replace(transfer_function=function)
+    if function is None:
+        return volume
+    low, high = range_for(words.get("clim"), volume) or (0.0, 0.0)
+    return volume.replace(transfer_function=function, legend_low=low, legend_high=high)
 
 
 def _picture_of(place: Mapping[str, Any], settings: Mapping[str, Any], read_whole: bool) -> Picture | None:
@@ -236,6 +241,25 @@ def _read(source: Any, place: Mapping[str, Any], is_slice: bool, picture: Pictur
     return Volume(source, **words)
 
 
+def _layers(look: Mapping[str, Any], count: int, beside: int) -> str | None:
+    """The value of the library's option "colormap" by which the volumes of a slice lie over each other: it says which volumes
+    have a colormap. None if only the first volume has one. count: the number of volumes with the keywords of `Values`;
+    beside: the number of further volumes.
+    """
+    named = ["viridis" if is_colormap(_look_for(look, n, count).get("cmap")) else "" for n in range(count)]
+    return ",".join(named + [""] * beside) if any(named[1:]) else None
+
+
+def _laid_over(volume: Volume, composed: TransferFunction) -> Volume:
+    """A layer of a slice with its opacity from the least value of its colours on. composed: the layer's function before its
+    colours were changed.
+    """
+    function = volume.look["transfer_function"]
+    low = float(function.color[0][0])
+    opacity = [(np.nextafter(low, -np.inf), 0.0), (low, float(composed.opacity[-1][1]))]
+    return volume.replace(transfer_function=TransferFunction(opacity, function.color, composed.unit_distance))
+
+
 def _sliced(scene: Scene, count: int, look: Mapping[str, Any]) -> Scene:
     """The scene of a slice, of whose volumes the first `count` have the functions that keywords of `Values` ask for."""
     if not look:
@@ -245,7 +269,13 @@ def _sliced(scene: Scene, count: int, look: Mapping[str, Any]) -> Scene:
         words = _look_for(look, n, count)
         if words.get("cmap") is not None and words.get("tf") is None and not words.get("log_scale"):
             words["clim"] = words.get("clim") or range_of_slice(volumes[n])
+        composed: TransferFunction = volumes[n].look["transfer_function"]
+        stated = _look_for(look, n, count).get("clim") is not None
         volumes[n] = _look(volumes[n], True, words)
+        if not stated:
+            volumes[n] = volumes[n].replace(legend_low=0.0, legend_high=0.0)
+        if composed.opacity[0][1] == 0 and words.get("opacity") is None and words.get("tf") is None:
+            volumes[n] = _laid_over(volumes[n], composed)
     return scene.replace(volumes)
 
 
@@ -426,7 +456,8 @@ def render(volume: Source = None, *, spacing: arrays.Spacing | None = None, orig
         Light from all directions in place of the automatic one, 0 for none: see `Settings`.
     slice : str, optional
         A slice across x, y or z, as in radiology: "z=0.5" is a fraction, "z=40mm" a place in the world, in the file's own
-        unit "z=40u". Its values are grey, or as `cmap` and `clim` say; labels of `labels` or `mask` lie over them.
+        unit "z=40u". Its values are grey, or as `cmap` and `clim` say; labels of `labels` or `mask` lie over them. Where a volume
+        after the first one has a colormap, each volume lies over those before it, from the low end of its `clim` on.
     density : float, optional
         All matter is so many times as dense: 3 makes smoke and glass thicker, 0.3 thinner.
     color_by, color_by_threshold : str; float or (float, float), optional
@@ -504,7 +535,9 @@ def _scene_of(volume: Any, place: Mapping[str, Any], material: dict[str, Any], s
             settings.setdefault("compositing", "maximum" if named["look"] == "mip" else "light")
         projected = settings.get("compositing", scene.settings["compositing"]) == "maximum"
         changed = [_look(one.replace(**named), projected, _look_for(at_once, n, count)).replace(**material) for n, one in enumerate(scene.volumes)]
-        made = scene.replace(changed if labels is None else [*changed, _label_volume(labels)], **settings)
+        shown = changed if labels is None else [*changed, _label_volume(labels)]
+        layers = _layers(look, count, len(shown) - count) if is_slice else None
+        made = scene.replace(shown, **settings) if layers is None else scene._changed(shown, {**settings, "_layers": layers}, False)
         return _sliced(made, count, look) if is_slice else made
     picture = _picture_of(place, settings, is_slice or labels is not None or any(material.get(word) is not None for word in ("labels", "mask")))
     channels = place.get("channel")
@@ -519,7 +552,7 @@ def _scene_of(volume: Any, place: Mapping[str, Any], material: dict[str, Any], s
         for word in (*place, *look, *material):
             raise TypeError(f"{word} is for volumes: the picture has none")
     others = [one for one in given if isinstance(one, Mesh)] + ([] if labels is None else [_label_volume(labels)])
-    whole = Scene([*volumes, *others], **settings)
+    whole = Scene([*volumes, *others], _layers=_layers(look, len(sources), 0 if labels is None else 1) if is_slice else None, **settings)
     return _sliced(whole, len(sources), look) if is_slice else _nearer(whole, sources)
 
 
@@ -541,6 +574,7 @@ def _scene_of_channels(path: Any, channels: str | Sequence[int | str], place: Ma
     volumes = [_look(one, projected, {} if is_slice else _look_for(look, n, count)).replace(**shown) for n, one in enumerate(scene.volumes)]
     chosen = [*(look.get(word) for word in ("clim", "opacity", "opacity_unit_distance", "tf")), shown.get("iso")]
     is_own = material.get("look", "auto") != "auto" or any(one is not None for one in chosen)
-    made = scene._changed(volumes if labels is None else [*volumes, _label_volume(labels)], settings, True,
+    layers = _layers(look, count, 0 if labels is None else 1) if is_slice else None
+    made = scene._changed(volumes if labels is None else [*volumes, _label_volume(labels)], {**settings, "_layers": layers}, True,
                           lib.HL_COMPOSE_FUNCTIONS if is_own else 0)
     return _sliced(made, count, look) if is_slice else made

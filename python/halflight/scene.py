@@ -109,7 +109,7 @@ class Scene:
 
     __slots__ = ("__weakref__", "_handle", "_volumes")
 
-    def __init__(self, volumes: Any = (), **settings: Unpack[Settings]) -> None:
+    def __init__(self, volumes: Any = (), *, _layers: str | None = None, **settings: Unpack[Settings]) -> None:
         check_keywords("Scene()", settings, Settings.__annotations__)
         given = list(volumes) if isinstance(volumes, list) or isinstance(volumes, tuple) and not volumes else [volumes]
         if (own := [one for one in given if isinstance(one, Mesh)]):
@@ -119,7 +119,7 @@ class Scene:
         if not self._volumes and not settings.get("meshes"):
             raise ValueError("a scene needs at least one volume or mesh")
         base = self._volumes[0]._base_scene()[0] if self._volumes else scene_for_meshes()
-        self._handle = build_scene(base, self._volumes, settings, True)
+        self._handle = build_scene(base, self._volumes, {**settings, "_layers": _layers}, True)
 
     @classmethod
     def from_json(cls, text: str, folder: str | os.PathLike[str] | None = None, name: str = "scene") -> Scene:

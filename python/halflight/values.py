@@ -9,7 +9,7 @@ from . import _settings, transfer
 if TYPE_CHECKING:
     from .volume import Volume
 
-__all__ = ["VALUES", "Values", "function_for", "range_of_slice"]
+__all__ = ["VALUES", "Values", "function_for", "range_for", "range_of_slice"]
 
 
 class Values(TypedDict, total=False):
@@ -26,7 +26,8 @@ class Values(TypedDict, total=False):
 VALUES = tuple(Values.__annotations__)
 
 
-def _clim(clim: Any, volume: Volume) -> list[float] | None:
+def range_for(clim: Any, volume: Volume) -> list[float] | None:
+    """The two values that `clim` stands for; None if it is None."""
     if clim is None:
         return None
     ends = clim if isinstance(clim, str) or not hasattr(clim, "__len__") else \
@@ -65,7 +66,7 @@ def function_for(volume: Volume, projected: bool, *, cmap: Any = None, clim: Any
     """The volume's transfer function with the changes that the keywords ask for; None if they ask for none. projected:
     whether the picture is a maximum projection.
     """
-    range_wanted, log = _clim(clim, volume), bool(log_scale)
+    range_wanted, log = range_for(clim, volume), bool(log_scale)
     if log and range_wanted is None:
         raise ValueError("log_scale: it spreads over clim: give clim=(low, high), too")
     if all(one is None for one in (cmap, clim, opacity, opacity_unit_distance, tf)):

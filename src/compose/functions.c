@@ -560,7 +560,7 @@ hl_status hl_compose_function(const hl_composer *composer, const hl_scene_descri
   range[0] = range[1] = 0;
   if (is_list(composer, &asked[HL_ASK_COLORMAP])) {
     status = copy_item(composer, description, changes.colormap, index, item, sizeof item);
-    changes.colormap = item;
+    changes.colormap = item[0] != '\0' ? item : NULL; /* ",hot" gives the first volume none */
   }
   if (changes.colormap == NULL) changes.colormap = color;
   char window[HL_SLICE_TEXT];

@@ -1,4 +1,5 @@
 """Label maps over volumes, and looks."""
+import json
 import subprocess
 
 import numpy as np
@@ -122,6 +123,15 @@ def test_a_slice_is_the_programs(program, tmp_path):
     assert np.array_equal(np.load(tmp_path / "two.npy"), halflight.render([path, one], size=(48, 32), slice="x=0.5"))
     each = np.asarray(halflight.render([path, one], size=(48, 32), slice="x=0.5", cmap=["red", "blue"]))
     assert each[16, 24, 0] > 0.4 and each[16, 24, 2] > 0.4 and each[16, 24, 1] == 0
+    for map_of_first, shown, range_of_second in ((None, "hot", (0.3, 0.8)), ("viridis", "hot", (0.2, 0.6)), (None, "hot", None)):
+        words = [f"--colormap=one={shown}"] + ([f"--colormap=ball={map_of_first}"] if map_of_first else [])
+        words += [f"--range=one={range_of_second[0]},{range_of_second[1]}"] if range_of_second else []
+        subprocess.run([program, "render", path, one, "--slice", "x=0.5", *words, "--size", "48x32", "--quiet", "-o", str(tmp_path / "layers.npy")],
+                       check=True)
+        own = halflight.render([path, one], size=(48, 32), slice="x=0.5", cmap=[map_of_first, shown], clim=[None, range_of_second])
+        assert np.abs(np.load(tmp_path / "layers.npy") - own).max() < 1e-6, (map_of_first, range_of_second)  # float32
+        legend = json.loads(own.scene.to_json())["volumes"][1].get("legend")
+        assert legend == (range_of_second and {"low": range_of_second[0], "high": range_of_second[1]})
     for asked in ({"look": "mip"}, {"iso": 0.5}):
         with pytest.raises(ValueError, match="slice and (look|iso) exclude each other"):
             halflight.render(path, slice="z=0.5", **asked)
