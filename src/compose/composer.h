@@ -139,7 +139,8 @@ hl_status hl_scene_world_box(const hl_composer *composer, const hl_scene_descrip
                              struct hl_world_box *box);
 
 /* Adds the options' cuts without a name to a scene's own cuts, which cut all volumes. Numbers without a unit
- * are fractions of the box around all volumes. cuts: an array with room for both; the scene borrows it. */
+ * are fractions of the edges of the box around all volumes. cuts: an array with room for the scene's own cuts
+ * and the options' cuts; the scene borrows it. */
 hl_status hl_compose_scene_cuts(const hl_composer *composer, hl_scene_description *scene, hl_cut *cuts);
 
 /* ---- box_outline.c ---- */

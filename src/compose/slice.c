@@ -205,8 +205,9 @@ size_t hl_slice_layer(const hl_composer *composer, const hl_scene_description *d
   return mapped ? before + 1 : 0;
 }
 
-/* Derived: where several volumes are at one place, their colours are mixed by their extinctions. At DENSER
- * times the extinction of all that lies below, a layer's colour is the picture's to a ten-thousandth. */
+/* Derived: where several volumes are at one place, their colours are mixed by their extinctions. A layer of a
+ * slice has `denser` times the extinction of the layer under it. The colour of the picture then differs from
+ * the colour of the uppermost layer by a ten-thousandth at most. */
 void hl_lay_slice_over(size_t below, hl_transfer_function *function) {
   static const double denser = 1e4;
   hl_opacity_point *points = (hl_opacity_point *)function->opacity;

@@ -113,7 +113,7 @@ void hl_ink_text(const hl_ink *ink, const hl_line_of_text *line) {
   cairo_move_to(ink->cairo, 0, 0);
   set_grey(ink->cairo, ink->color, 1);
   /* On pixels cairo moves each glyph to a whole pixel, which tears words apart and leaves the halo behind.
-   * Filled outlines stay where they are. In a PDF letters stay letters. */
+   * cairo does not move outlines that are filled as paths. In a PDF letters stay letters. */
   if (cairo_surface_get_type(cairo_get_target(ink->cairo)) == CAIRO_SURFACE_TYPE_IMAGE) {
     pango_cairo_layout_path(ink->cairo, layout);
     cairo_fill(ink->cairo);

@@ -295,7 +295,7 @@ LANES_INLINE lanes gather_block(const fill_source *source, const block_points *p
   return sum_in_memory(grid, cell, inside ? points->low : NULL, active, weights);
 }
 
-/* Fills one block's densities. Returns whether any of them may show something. */
+/* Fills one block's densities. Returns whether any sample of the block may show something. */
 LANES_INLINE int gather_points(const fill_source *source, const block_points *points, int inside,
                                float *density) {
   uint32_t active = inside ? 0xffff : lanes_bits(points->inside);

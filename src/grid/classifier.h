@@ -20,7 +20,7 @@ typedef struct classifier {
   /* The tables have CLASSIFIER_ENTRIES + 2 entries each. They lie in one block, and `sums` owns the block. */
   float (*sums)[4];  /* [0]: extinction per world unit. [1]: the integral of extinction over entries, from
                       * entry 0. [2]: the integral of extinction times the entry's number. [3]: the integral
-                      * [1] up to the coordinate that `outside` has for this entry */
+                      * [1] up to the table coordinate that `outside` gives for this entry */
   float (*color)[4]; /* linear RGB of each entry; the fourth number is 0 */
   float (*shown)[4]; /* integrals over entries, from entry 0: [0] to [2] integrate extinction times linear
                       * RGB, [3] extinction alone */

@@ -2,8 +2,8 @@
  * non-finite values are replaced, or the coefficients of the interpolating kernel.
  *
  * For a volume in memory these values are a copy (make_grid.c). For a volume larger than memory they are
- * stored in further pages (volume/store/pages.h), in a scratch file or over ranks. The values in these pages
- * have the same bits as a copy in memory would have. */
+ * stored in further pages (volume/store/pages.h), in a scratch file or over ranks. The values in the
+ * further pages have the same bits as a copy in memory would have. */
 #ifndef HL_GRID_VALUE_PAGES_H
 #define HL_GRID_VALUE_PAGES_H
 

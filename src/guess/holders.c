@@ -129,7 +129,8 @@ static hl_status find_cells(const search *s, uint32_t body, body_cells *found, h
   return HL_OK;
 }
 
-/* The reach of a body's cells along a side, and the body's width there. */
+/* Returns the farthest place of a body's cells along the direction of a side. *width: the length of the body
+ * along this direction. */
 static double reach(const body_cells *ends, const side *along, double *width) {
   double low = INFINITY, high = -INFINITY;
   for (size_t n = 0; n < ends->count; n++) {

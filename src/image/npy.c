@@ -29,7 +29,7 @@ typedef struct npy_header {
 typedef struct npy_cursor {
   const char *name;
   const unsigned char *bytes; /* borrowed; the first bytes of the file */
-  size_t at, end;             /* the read position, and the end of the header's text */
+  size_t at, end;             /* at: the read position; end: the end of the header's text */
   hl_error *error;
 } npy_cursor;
 

@@ -51,8 +51,8 @@ static vec3 point_on_face(const cap_face *face, double s, double t) {
   return affine3_apply(face->to_index, q);
 }
 
-/* The outward unit normal of a face in index coordinates. It has the direction of the gradient of q[axis], or
- * for a sphere of |q|. */
+/* The outward unit normal of a face in index coordinates. With q = from_index(point), the normal has the
+ * direction of the gradient of q[axis], or, for a sphere, of |q|. */
 static vec3 normal_of_face(const cap_face *face, vec3 point) {
   const vec3 q = face->sphere ? affine3_apply(face->from_index, point) : unit_of_axis(face->axis, 1);
   return vec3_scale(vec3_normalise(mat3_apply(mat3_transpose(face->from_index.linear), q)), face->outward);

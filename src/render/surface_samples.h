@@ -19,8 +19,8 @@ typedef struct surface_samples {
   float ambient, diffuse, specular, shininess, emission; /* ka kd ks n ke */
   float even; /* the fraction of light that the material sends on evenly to all sides, from whatever angle the
                * light comes, as a medium does */
-  float behind[3]; /* R, G, B: the fraction of the part `even` that is sent on if the light comes from behind
-                    * the surface */
+  float behind[3]; /* R, G, B: if light comes from behind the surface, this fraction of the light that `even`
+                    * counts is sent on */
   int receives_shadow;
   /* [lights of the sweep][channels]; the fraction of light that passes the surfaces close before the samples
    * (late/); if null, all light passes. */

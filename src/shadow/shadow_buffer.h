@@ -43,8 +43,8 @@ typedef struct shadow_buffer {
                                       * transmittance */
   float *transmittance[HL_CHANNELS]; /* pixel (0,0) of each channel's transmittance, in the planes of sheet
                                       * `sheet`; a part of `memory` */
-  /* pixel (0,0) of each channel of the other two kinds of planes, for sheet `sheet`; null if the buffer has
-   * no planes of this kind */
+  /* pixel (0,0) of each channel of the planes `outside` and of the planes `second`, for sheet `sheet`; all
+   * channels of a kind are null if the buffer has no planes of this kind */
   float *outside[HL_CHANNELS], *second[HL_CHANNELS];
   int sheet;                   /* the sheet for which hl_shadow_buffer_reach() was
                                 * called last */

@@ -159,9 +159,9 @@ static bool absorb_chunk(const cascade_crew *crew, const cascade_absorption *abs
  * it. Derived: at the rim of a ball, two edges lie one behind the other, a chunk apart. There the sum of the
  * light that both edges absorb is about right. For a receiver that lies w behind the second edge, the sum
  * before this edge has a penumbra of the width sqrt((c + w)^2 - w^2), where c is the chunk's length. In the
- * penumbra's dark half, the second edge must not hide the light that is left. A strip that is half as wide as
- * this dark half is enough. A wider strip would leave light where two pieces of one surface meet that lie in
- * different chunks. */
+ * penumbra's dark half, the second edge must not hide the light that is left. A strip along the second edge
+ * that is half as wide as the dark half lets this light pass. A wider strip would leave light where two
+ * pieces of one surface meet that lie in different chunks. */
 static int edge_of(double length, double behind) {
   return (int)fmin(round(sqrt(length * (length + 2 * behind)) / 4), GREATEST_EDGE);
 }

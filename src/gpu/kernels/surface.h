@@ -46,8 +46,8 @@ typedef struct cut_face {
 } cut_face;
 
 /* Sets *nearest to the face of a cut through which the eye's ray comes to the sample, if this face is nearer
- * than *nearest. least: the greatest distance by which the face may lie behind the sample as the eye sees it;
- * frame units. */
+ * than *nearest. A face that lies behind the sample, as seen by the eye, counts if its distance to the sample
+ * is less than `least`; frame units. */
 DEVICE void find_cut(GLOBAL const plan_cut *cut, const slab_sample *s, float least, cut_face *nearest) {
   const ray_section section = cross_cut(cut, s->position, s->towards_eye);
   float way = cut->keep_inside ? section.last : section.first;
