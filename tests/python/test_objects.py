@@ -131,7 +131,7 @@ def test_volume_looks_come_back(blob):
             "receives_shadow": False, "clip": ((1.0, 2.0, 3.0), (9.0, 8.0, 7.0)), "scale": (2.0, 1.0, 1.0),
             "rotate_axis": (0.0, 1.0, 0.0), "rotate_angle_deg": 30.0, "translate": (5.0, 6.0, 7.0),
             "cuts": [{"type": "sphere", "center": (3.0, 2.0, 1.0), "radius": 1.5, "keep": "inside"}],
-            "cut_shading": "gradient", "cut_casts_shadow": True, "scraps_faint": 10.0, "scraps_firm": 20.0, "scraps_least": 0.25,
+            "cut_shading": "gradient", "cut_casts_shadow": True, "scraps_faint": 10.0, "scraps_firm": 20.0, "scraps_least": 0.25, "legend_low": 2.0, "legend_high": 6.0,
             "transfer_function": TransferFunction([(0, 0), (50, 0.5)], color=[(0, 1, 0, 0), (9, 0, 1, 0)],
                                                   unit_distance=2)}
     scene = Scene([Volume(blob), Volume(blob, **look)], size=(32, 32))
