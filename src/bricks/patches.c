@@ -215,17 +215,24 @@ static float cell_value(const hl_patches *patches, int level, const size_t cell[
   return last->block != NULL ? last->block->value[cell_in_block(cell[0], cell[1], cell[2])] : NAN;
 }
 
+/* The value of the cell that is `step` cells from the cell `first`, or of the level's cell nearest to it; NaN
+ * if no patch has this cell. */
+static float value_at(const hl_patches *patches, int level, const ptrdiff_t first[3], const size_t step[3],
+                      last_block *last) {
+  size_t cell[3];
+  for (int axis = 0; axis < 3; axis++)
+    cell[axis] = clamp_cell(patches, level, axis, first[axis] + (ptrdiff_t)step[axis]);
+  return cell_value(patches, level, cell, last);
+}
+
 /* Fills an array of cells, [CORNERS_CELLS][CORNERS_CELLS][CORNERS_CELLS], that begins at the cell `first`. */
 static void gather_cells(const hl_patches *patches, int level, const ptrdiff_t first[3],
                          const size_t count[3], last_block *last, float *cells) {
   for (size_t k = 0; k < count[2]; k++)
     for (size_t j = 0; j < count[1]; j++)
-      for (size_t i = 0; i < count[0]; i++) {
-        const size_t cell[3] = {clamp_cell(patches, level, 0, first[0] + (ptrdiff_t)i),
-                                clamp_cell(patches, level, 1, first[1] + (ptrdiff_t)j),
-                                clamp_cell(patches, level, 2, first[2] + (ptrdiff_t)k)};
-        cells[(k * CORNERS_CELLS + j) * CORNERS_CELLS + i] = cell_value(patches, level, cell, last);
-      }
+      for (size_t i = 0; i < count[0]; i++)
+        cells[(k * CORNERS_CELLS + j) * CORNERS_CELLS + i] = value_at(patches, level, first,
+                                                                      (const size_t[3]){i, j, k}, last);
 }
 
 /* Finds the coefficients of the corners from..from + corners - 1 of a box that begins at the corner `first`.
@@ -270,10 +277,7 @@ static void cover(void *data, int level, const ptrdiff_t first[3], const size_t 
   for (size_t k = 0; k < count[2]; k++)
     for (size_t j = 0; j < count[1]; j++)
       for (size_t i = 0; i < count[0]; i++) {
-        const size_t cell[3] = {clamp_cell(patches, level, 0, first[0] + (ptrdiff_t)i),
-                                clamp_cell(patches, level, 1, first[1] + (ptrdiff_t)j),
-                                clamp_cell(patches, level, 2, first[2] + (ptrdiff_t)k)};
-        float value = cell_value(patches, level, cell, &last);
+        float value = value_at(patches, level, first, (const size_t[3]){i, j, k}, &last);
         covered[n++] = value == value;
       }
 }
