@@ -83,10 +83,10 @@ typedef struct hl_overlay {
   size_t annotation_count;
   const char *letter; /* the panel's letter, such as "a", which is drawn in bold at the upper left; may be
                        * null */
-  double
-      legend_range[2]; /* the range of values over which all strips of the legend go, the lower end first;
-                        * if both ends are equal (the default), each strip goes over the range that its
-                        * volume states (hl_scene_volume.legend_low), or over the values that have opacity */
+  /* The range of values over which all strips of the legend go, the lower end first. If both ends are equal
+   * (the default), each strip goes over the range from legend_low to legend_high of its volume
+   * (hl_scene_volume). A volume without such a range has a strip over the values that have opacity. */
+  double legend_range[2];
   hl_corner scale_bar_corner, legend_corner, arrows_corner; /* default HL_CORNER_FREE */
 } hl_overlay;
 

@@ -571,14 +571,15 @@ HL_API HL_WARN_UNUSED hl_status hl_camera_turn(const hl_view *view, hl_camera *c
 HL_API HL_WARN_UNUSED hl_status hl_camera_frame(const hl_scene_description *description, double azimuth_deg,
                                                 double elevation_deg, double zoom, hl_camera *camera);
 
-/* Frames the visible voxels as hl_camera_frame() does, but keeps the camera's direction and up vector. */
+/* Frames the visible voxels as hl_camera_frame() does, but keeps the camera's direction and up vector: it
+ * changes only the position, the target and the height. */
 HL_API HL_WARN_UNUSED hl_status hl_camera_fit(const hl_scene_description *description, double zoom,
                                               hl_camera *camera);
 
-/* Finds a camera whose picture shows all that the pictures of all given cameras show. cameras: [count], one
- * or more, of one type, direction, up vector and field of view. aspect: a picture's width divided by its
- * height. *joined: the first camera if its picture shows all of it. Otherwise it is the nearest such camera;
- * in parallel projection, the one with the smallest picture. Its target is as deep as the first camera's.
+/* Finds a camera that shows everything that at least one of the given cameras shows. cameras: [count], one or
+ * more, of one type, direction, up vector and field of view. aspect: a picture's width divided by its height.
+ * *joined: the first camera if it shows everything. Otherwise it is the nearest camera that does; in parallel
+ * projection, the one with the smallest picture. Its target is as deep as the first camera's target.
  * HL_ERROR_ARGUMENT: types, directions, up vectors or fields of view differ, or a camera is at its target. */
 HL_API HL_WARN_UNUSED hl_status hl_camera_join(const hl_camera *cameras, size_t count, double aspect,
                                                hl_camera *joined);

@@ -1,9 +1,10 @@
 /* bricks/corners.c - hl_corners_of_cells().
  *
- * The weights along an axis. A plain mean of the two cells beside a corner would blur. Derived: the mean over
- * a cell, the mean of two cells and the cubic B-spline are kernels with the variances 1/12, 1/4 and 1/3, in
- * squared edges of a cell. The weights -1/6, 2/3, 2/3, -1/6 have the variance -5/12, which cancels 1/12 +
- * 1/3. Therefore the field equals the source to the fourth order of the edge.
+ * The weights along an axis. A plain mean of the two cells beside a corner would blur. Derived: the cells'
+ * data are means over cells, a kernel with the variance 1/12 in squared edges of a cell. The cubic B-spline
+ * of the coefficients is a kernel with the variance 1/3. A plain mean of two cells would add the variance
+ * 1/4. The weights -1/6, 2/3, 2/3, -1/6 have the variance -5/12, which cancels 1/12 + 1/3. Therefore the
+ * field equals the source to the fourth order of the edge.
  *
  * The limit. The negative weights would make values beside a shock that no cell has. Clipping such values
  * would add mass beside thin matter, and take mass from its middle. So the coefficient is the plain mean of
@@ -36,8 +37,9 @@ static const double across[AROUND][AROUND] = {{1.0 / 108, -11.0 / 216, -11.0 / 2
 
 /* What is known of a corner before its flows are limited. */
 typedef struct corner {
-  float mean;            /* of the cells that have values, of the eight that meet; NaN if none has */
-  float least, greatest; /* of the same cells */
+  float mean;            /* the mean of the eight cells that meet here, without the cells that have no
+                          * value; NaN if no cell has a value */
+  float least, greatest; /* the range of these cells */
   float take, give; /* 0 to 1: the part of all flows into the corner, and out of it, that keeps its range */
   bool flows;       /* whether all 4^3 cells have values */
 } corner;
@@ -45,8 +47,9 @@ typedef struct corner {
 typedef struct corner_block {
   size_t count[3];                    /* corners with one more at each end; at most SIDE */
   corner corners[SIDE][SIDE][SIDE];   /* [z][y][x] */
-  float flow[3][FLOWS][FLOWS][FLOWS]; /* [axis][z][y][x]; into the corner of the same index, from the corner
-                                       * before it along the axis; NaN where a cell has no value */
+  float flow[3][FLOWS][FLOWS][FLOWS]; /* [axis][z][y][x]; the flow into the corner of the same index from the
+                                       * corner before it along the axis. The flow is NaN if a cell that it
+                                       * is made of has no value */
 } corner_block;
 
 static const size_t cell_step[3] = {1, CORNERS_CELLS, (size_t)CORNERS_CELLS *CORNERS_CELLS};
@@ -67,6 +70,9 @@ static float flow_of(const float *first, int axis) {
   return (float)(sum / 6);
 }
 
+/* Whether a cell is one of the two in the middle of AROUND cells. */
+static bool is_middle(size_t cell) { return cell == AROUND / 2 - 1 || cell == AROUND / 2; }
+
 /* The mean and the range of the eight cells that meet at a corner. */
 static corner meeting(const float *first) {
   corner c = {.mean = NAN, .least = INFINITY, .greatest = -INFINITY, .flows = true};
@@ -77,7 +83,7 @@ static corner meeting(const float *first) {
       for (size_t i = 0; i < AROUND; i++) {
         float value = first[k * cell_step[2] + j * cell_step[1] + i];
         if (!(value == value)) c.flows = false;
-        bool meets = i >> 1 != (i & 1) && j >> 1 != (j & 1) && k >> 1 != (k & 1);
+        bool meets = is_middle(i) && is_middle(j) && is_middle(k);
         if (!meets || !(value == value)) continue;
         sum += (double)value;
         c.least = value < c.least ? value : c.least;

@@ -18,11 +18,11 @@ enum {
 };
 
 /* Finds the coefficients of count[0] x count[1] x count[2] corners, at most CORNERS_MOST along each axis.
- * cells: [CORNERS_CELLS][CORNERS_CELLS][CORNERS_CELLS], x fastest; along each axis the first CORNERS_BEFORE
- * cells lie before the first corner, and count + CORNERS_AROUND cells are read. A NaN is a cell without a
- * value. Corners that have such a cell among the 4^3 cells get the mean of the eight cells that have values,
- * and NaN if none has. out: [count[2]][count[1]][count[0]]. A coefficient depends on the values of the cells
- * within three cells of its corner alone, and not on where the corner lies among those of a call. */
+ * cells: [z][y][x], with CORNERS_CELLS along each axis. Along an axis, CORNERS_BEFORE cells lie before the
+ * first corner, and the function reads count + CORNERS_AROUND cells. A NaN is a cell without a value. Corners
+ * that have such a cell among the 4^3 cells get the mean of the eight cells that have values, and NaN if none
+ * has. out: [count[2]][count[1]][count[0]]. A coefficient depends on the values of the cells within three
+ * cells of its corner alone, and not on where the corner lies among those of a call. */
 void hl_corners_of_cells(const float *cells, const size_t count[3], float *out);
 
 #endif

@@ -253,7 +253,8 @@ static hl_status find_scale(const legend *made, const hl_scene_volume *volume, h
     range[0] = function->color[0].value;
     range[1] = function->color[function->color_count - 1].value;
   }
-  /* a stated range is a range of matter: colours that a second volume gives have their own range */
+  /* A stated range holds values of the legend's volume. It does not hold for the colours of a second volume,
+   * which have a range of their own. */
   *scale = hl_strip_scale_of(function, !even && stated[0] < stated[1] ? stated : range);
   if (hl_curves_have_own(&function->plane.curves)) {
     memcpy(scale->own, function->plane.curves.own_between, sizeof scale->own);

@@ -52,8 +52,9 @@ static affine3 index_to_world(const hl_volume_description *description) {
                    vec3_of(description->origin)};
 }
 
-/* Checks that neither the number of bytes of the voxels overflows a size, as the caller gives them or as they
- * are stored, nor the number of bytes of a file in the largest type 64 bits. */
+/* Checks that a volume's size can be computed with. The bytes of all voxels must fit into a size_t, both as
+ * the caller gives the voxels and as the library stores them. A file with voxels of the largest type must
+ * have a number of bytes that fits into 64 bits. */
 static hl_status check_size(const hl_volume_description *description, const char *subject, hl_error *error) {
   const size_t *dimension = description->dimensions, given = hl_voxel_type_bytes(description->type),
                stored = hl_storage_bytes(hl_voxel_type_storage(description->type));

@@ -4,9 +4,9 @@
  *
  * Memory is dealt out in slots. Slots that are smaller than a page of WebAssembly's memory (64 KiB) have
  * sizes that are powers of two, and divide a page among themselves. A released one is kept for later blocks
- * of the same class of sizes. A larger slot is a run of pages. A released run joins the free runs beside it,
- * and later blocks of any size take their pages from it. Memory never goes back to the system, because
- * WebAssembly's memory does not shrink. */
+ * of the same class of sizes. A larger slot is a run of pages, which lie side by side. A run
+ * that is released becomes one run with free runs beside it. Later slots of any number of pages are taken
+ * from free runs. Memory never goes back to the system, because WebAssembly's memory does not shrink. */
 #define _GNU_SOURCE /* posix_memalign */
 #include <errno.h>
 #include <pthread.h>
@@ -30,7 +30,7 @@ typedef struct free_slot {
   struct free_slot *next;
 } free_slot;
 
-/* Lies at the beginning of a run of free pages. */
+/* Describes a run of free pages. The description is stored at the beginning of the first page. */
 typedef struct free_run {
   struct free_run *next; /* the next run in memory; runs that touch are one run */
   size_t bytes;

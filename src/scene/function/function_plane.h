@@ -21,8 +21,9 @@ static inline bool hl_has_second_colors(const hl_transfer_function *function) {
   return function->plane.second == HL_SECOND_VOLUME && function->plane.curves.opacity_count > 0;
 }
 
-/* The greatest magnitude of a second number. An end of own_between that has this magnitude is no end: the
- * volume keeps its own colour at all numbers on that side. */
+/* The greatest magnitude of a second number. If an end of own_between has this magnitude, own_between has no
+ * end on that side: the volume keeps its own colour at all second numbers from the other end towards that
+ * side. */
 #define HL_CURVES_NO_END 1e30
 
 /* Whether a volume keeps a colour of its own at some second numbers. */

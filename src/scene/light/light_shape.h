@@ -64,8 +64,7 @@ void hl_emission_place(const emission_plane *plane, vec3 offset, double *s, doub
 /* ---- disks; normal: unit ---- */
 
 /* The offset, from a disk's centre, of the point of the disk that belongs to the point (a, b) of the unit
- * square. Parts of the square that have equal areas
- * become parts of the disk that have equal areas. */
+ * square. Parts of the square that have equal areas become parts of the disk that have equal areas. */
 vec3 hl_disk_point(vec3 normal, double radius, double a, double b);
 mat3 hl_disk_spread(vec3 normal, double radius);
 /* The plane of an emission image that fills the square around a disk. */

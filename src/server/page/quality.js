@@ -14,24 +14,25 @@ const LONGEST_VOXEL = Math.SQRT2;
 // 2.5 times the work, which grows with the third power of the distance of sheets. Pictures would otherwise change their volumes to and fro.
 const FINER_AFTER = Math.cbrt(2.5);
 
+const least = (pixels) => Math.min(LEAST_PIXELS, pixels);
 const clamp = (value, low, high) => Math.min(Math.max(value, low), high);
 
 // The length of the voxels that the preview takes for sheets this far apart, in voxels.
 const voxelFor = (spacing) => 2 ** Math.floor(Math.log2(clamp(LONGEST_VOXEL * spacing, 1, WIDEST)));
 
 // The least work that is of use to a full picture of this many pixels.
-export const leastWork = (pixels) => Math.min(LEAST_PIXELS, pixels) / WIDEST;
+export const leastWork = (pixels) => least(pixels) / WIDEST;
 
 // full: { pixels, voxels }: the number of pixels of the full picture, and the length of such a pixel at the target in voxels.
 
 // The work of a picture whose sheets and pixels are this far apart.
-export const workAt = (spacing, { pixels, voxels }) => clamp(pixels * (voxels / spacing) ** 2, Math.min(LEAST_PIXELS, pixels), pixels) / spacing;
+export const workAt = (spacing, { pixels, voxels }) => clamp(pixels * (voxels / spacing) ** 2, least(pixels), pixels) / spacing;
 
 // The picture of this work: { pixels, spacing }.
 export function fit(work, full) {
   // Pixels that are a voxel long. A picture of more of them has sheets a voxel apart. One of fewer has pixels, each sqrt(single / pixels) voxels long,
   // and sheets that are as far apart; its work is then pixels ** 1.5 / sqrt(single).
-  const single = full.pixels * full.voxels ** 2, pixels = clamp(work >= single ? work : Math.cbrt(work ** 2 * single), Math.min(LEAST_PIXELS, full.pixels), full.pixels);
+  const single = full.pixels * full.voxels ** 2, pixels = clamp(work >= single ? work : Math.cbrt(work ** 2 * single), least(full.pixels), full.pixels);
   return { pixels, spacing: clamp(Math.max(pixels / work, Math.sqrt(single / pixels)), 1, WIDEST) };
 }
 

@@ -74,8 +74,8 @@ static hl_status map_scratch(hl_context *context, const char *folder, hl_pages *
 }
 
 /* Allocates the arrays that are filled while voxels are stored: how often each value occurs, the bounds of
- * bricks, and a glimpse, which is a coarse copy of the volume. The glimpse takes at most an eighth of the
- * free memory. */
+ * bricks, and a glimpse, which holds the few voxels that automatic choices read (glimpse.h). The glimpse
+ * takes at most an eighth of the free memory. */
 static hl_status allocate_findings(hl_context *context, hl_pages *pages, hl_error *error) {
   size_t values = hl_values_of(pages->storage);
   uint64_t taken = atomic_load(&context->whole->held) + atomic_load(&context->whole->paged),

@@ -116,8 +116,8 @@ void hl_pages_spread(hl_pages *pages, void *voxels);
 bool hl_pages_have_one_value(const hl_pages *pages, size_t first, size_t count);
 
 /* Returns whether a volume should be put into a scratch file. It should if its voxels, together with a
- * renderer's tables for them, exceed what the memory limit leaves, and if the context has a scratch folder.
- */
+ * renderer's tables for them, exceed the memory that the limit leaves, and if the context has a scratch
+ * folder. */
 bool hl_pages_wanted(const hl_context *context, const hl_volume_description *grid);
 
 /* Stores `count` values from number `first` on ([k][j][i]) in all pages that hold these voxels. Each voxel
