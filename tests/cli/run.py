@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
 """Runs the command-line cases and prints TAP.
 
-usage: run.py [--quick] PROGRAM [CASE ...]            (all cases without a name)
+usage: run.py [--quick|--slow] PROGRAM [CASE ...]            (all cases without a name)
 
 A case is a shell script NAME.sh in a folder beside this file, run with `sh -eu` in an empty folder of its own.
 Beside it may stand
@@ -10,8 +10,8 @@ Beside it may stand
     NAME.sh.stderr.glob    the same for standard error; without it, standard error must be empty
     NAME.sh.exit           the exit code; 0 without it
 In the script, `halflight` is the program, `tool` is tool.py, and $SOURCE the source folder. Exit code 77 skips the
-case; the last line of standard output is the reason. --quick leaves out the cases that hold a line `# slow: REASON`:
-a sanitized program would take minutes for each. As many cases run at a time as there are processors. `await_handler PID` waits until a process catches SIGINT.
+case; the last line of standard output is the reason. A case that takes several seconds holds a line `# slow: REASON`;
+--quick leaves these cases out, and --slow runs them alone. As many cases run at a time as there are processors. `await_handler PID` waits until a process catches SIGINT.
 """
 import concurrent.futures
 import fnmatch
@@ -78,13 +78,13 @@ def run_case(name, environment):
 
 
 def main():
-    quick = sys.argv[1] == "--quick"
-    program, *wanted = sys.argv[2 if quick else 1:]
+    kind = sys.argv[1] if sys.argv[1] in ("--quick", "--slow") else None
+    program, *wanted = sys.argv[1 if kind is None else 2:]
     program = pathlib.Path(program).resolve()
     all_cases = sorted(str(path.relative_to(HERE)) for path in HERE.glob("*/*.sh"))
     cases = [name for name in all_cases if not wanted or name in wanted or name[:-3] in wanted]
-    if quick:
-        cases = [name for name in cases if "\n# slow: " not in (HERE / name).read_text()]
+    if kind is not None:
+        cases = [name for name in cases if ("\n# slow: " in (HERE / name).read_text()) == (kind == "--slow")]
     environment = dict(os.environ, HALFLIGHT=str(program), PYTHON=sys.executable, SOURCE=str(HERE.parent.parent),
                        LC_ALL="C.UTF-8")
     print(f"1..{len(cases)}")

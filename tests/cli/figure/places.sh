@@ -1,4 +1,5 @@
 # What is drawn over a picture keeps clear of other drawings.
+# slow: 6 seconds of processor time
 halflight make rings --size 24 --quiet
 halflight convert rings.nrrd body.nii --quiet
 draw() { halflight render "$@" --size 200x200 --quiet; }

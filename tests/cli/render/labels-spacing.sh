@@ -1,4 +1,5 @@
 # The spacing that --spacing states for bare voxels also holds for a label map or a mask of as many voxels.
+# slow: 7 seconds of processor time
 tool ball 24 map_24x24x24_uint8.raw
 halflight make rings --size 24 --quiet
 tool ball 24 scan_24x24x24_uint8.raw

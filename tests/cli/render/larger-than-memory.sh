@@ -1,5 +1,6 @@
 # A volume that the memory limit has no room for is rendered from a scratch file, with the same bytes, whether it
 # is compressed or not; the scratch file is gone afterwards.
+# slow: 7 seconds of processor time
 tool ball 176 ball_176x176x176_uint8.raw
 halflight convert ball_176x176x176_uint8.raw ball.nrrd --quiet
 mkdir scratch

@@ -1,4 +1,5 @@
 # Of several volumes, the legend calls a volume without a name by its file; a volume that is alone has no title.
+# slow: 6 seconds of processor time
 tool ball 16 ball_16x16x16_uint8.raw
 tool ball 16 other_16x16x16_uint8.raw
 halflight convert ball_16x16x16_uint8.raw map.nrrd --quiet

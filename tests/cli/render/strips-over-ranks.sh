@@ -1,4 +1,5 @@
 # Processes of an MPI launcher make one picture together: its bytes. One that fails ends all, and no picture is left.
+# slow: 6 seconds of processor time
 mpi=${mpi-open_mpi} killed=${killed-process rank 1} # and what the launcher says of a killed process
 run() { "$SOURCE/tests/over_ranks.sh" $mpi "$@" >mpirun.txt 2>&1; }
 runs() { run "$@" || { cat mpirun.txt; exit 1; }; } # what must not fail says why it did
