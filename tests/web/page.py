@@ -97,7 +97,10 @@ def try_lanes(browser, what):
     """A frame of the main lane cancels what the worker makes for a picture at rest, and leaves the picture that is saved."""
     source = base64.b64encode((ROOT / "src" / "web" / "page" / "worker_channel.js").read_bytes()).decode()
     cancelled = browser.run(f"""import('data:text/javascript;base64,{source}').then(({{ WorkerChannel }}) => {{
-      const sent = [], channel = new WorkerChannel({{ addEventListener() {{}}, postMessage: (message) => sent.push(message) }});
+      const sent = [], made = Worker;
+      Worker = class {{ addEventListener() {{}} postMessage(message) {{ sent.push(message); }} }};
+      const channel = new WorkerChannel('worker.js');
+      Worker = made;
       for (const lane of ['-small', '-compared', '-probe', '-save']) channel.fetchFrame({{}}, {{ lane }});
       channel.fetchFrame({{}}, {{ moving: true }});
       return sent.filter(({{ kind }}) => kind === 'cancel').map(({{ number }}) => number); }})""")
@@ -276,21 +279,27 @@ def try_alone(kind, what, page, program, folder):
 
 # Starts the library with its threads.
 BEGIN = """<!doctype html><script type="module">
-  const worker = new Worker("worker.js");
-  worker.onmessage = ({ data }) => { if (data.number !== undefined) globalThis.begun = data; };
-  worker.postMessage({ number: 1, kind: "begin", modules: [new Uint8Array(await (await fetch("halflight-threads.wasm")).arrayBuffer())] });
+  import { WorkerChannel } from "./worker_channel.js";
+  const library = new Uint8Array(await (await fetch("halflight-threads.wasm")).arrayBuffer());
+  globalThis.threads = await new WorkerChannel("worker.js").begin(library);
 </script>"""
 
 
+def write_channel_page(folder, name, page):
+    """A page that starts the library as the page of the tab does: it imports the script that makes the workers."""
+    (folder / name).write_text(page)
+    shutil.copy(ROOT / "src" / "web" / "page" / "worker_channel.js", folder)
+
+
 def try_starts(kind, what, folder):
-    """The library starts whenever a page is loaded: in Firefox, workers that were made at once sometimes waited for ever, in one of twenty pages."""
-    (folder / "begin.html").write_text(BEGIN)
+    """The library starts whenever a page is loaded: in Firefox, workers that other workers made sometimes waited for ever, in one of twenty pages."""
+    write_channel_page(folder, "begin.html", BEGIN)
     times = 60
     with serve(folder, IsolatingHandler) as (_, url), kind(size=(900, 500)) as browser:
         for number in range(times):
             browser.open(f"{url}begin.html?{number}")
-            browser.wait(f"location.search === '?{number}' && globalThis.begun !== undefined", timeout=60)
-        check(browser.run("begun.threads > 0"), f"{what}: the library starts in {times} pages")
+            browser.wait(f"location.search === '?{number}' && globalThis.threads !== undefined", timeout=60)
+        check(browser.run("threads > 0"), f"{what}: the library starts in {times} pages")
 
 
 class Handler(http.server.SimpleHTTPRequestHandler):
@@ -330,26 +339,22 @@ def serve(folder, handler=Handler):
 
 # Renders scenes in the page's own worker, and tells the hashes of their pictures.
 HASHES = """<!doctype html><script type="module">
+import { WorkerChannel } from "./worker_channel.js";
 try {
   const { modules, jobs } = await (await fetch("jobs.json")).json();
   if (crossOriginIsolated) modules.unshift("halflight-threads.wasm");
   const bytes = async (name) => new Uint8Array(await (await fetch(name)).arrayBuffer());
-  const worker = new Worker("worker.js"), answers = [];
-  let finish;
-  worker.onmessage = ({ data }) => { if (data.number !== undefined) finish(data); };
-  worker.onerror = (event) => finish({ problem: event.message });
-  const ask = (content) => new Promise((resolve) => { finish = resolve; worker.postMessage({ number: 1, ...content }); });
-  const begun = await ask({ kind: "begin", modules: await Promise.all(modules.map(bytes)) });
-  if (begun.problem || begun.threads === 0) throw new Error(begun.problem ?? "no engine");
+  const channel = new WorkerChannel("worker.js"), answers = [];
+  let threads = 0;
+  for (const name of modules) if ((threads = await channel.begin(await bytes(name))) > 0) break;
+  if (threads === 0) throw new Error("no engine");
   for (const { scene, files } of jobs) {
     const contents = Object.fromEntries(await Promise.all(files.map(async (name) => [name, await bytes(name)])));
-    const { start, problem } = await ask({ kind: "open", contents, path: scene, title: scene });
-    if (problem) throw new Error(`${scene}: ${problem}`);
-    const { blob } = await ask({ kind: "frame", scene: start.scene, format: "npy" });
+    const start = await channel.open(contents, scene, scene), { blob } = await channel.fetchFrame(start.scene, { format: "npy" });
     const digest = await crypto.subtle.digest("SHA-256", await blob.arrayBuffer());
     answers.push([scene, [...new Uint8Array(digest)].map((byte) => byte.toString(16).padStart(2, "0")).join("")]);
   }
-  await fetch("tell", { method: "POST", body: JSON.stringify({ answers, threads: begun.threads, processors: navigator.hardwareConcurrency }) });
+  await fetch("tell", { method: "POST", body: JSON.stringify({ answers, threads, processors: navigator.hardwareConcurrency }) });
 } catch (error) {
   await fetch("tell", { method: "POST", body: JSON.stringify({ problem: String(error) }) });
 }
@@ -362,7 +367,7 @@ def write_hash_page(page, folder, program):
     jobs = [{"scene": scene, "files": files} for scene, files in write_scenes(folder)]
     expected = {job["scene"]: hashlib.sha256(render_with([program], folder, job["scene"], "native.npy")).hexdigest() for job in jobs}
     (folder / "jobs.json").write_text(json.dumps({"modules": ["halflight-relaxed.wasm", "halflight.wasm"], "jobs": jobs}))
-    (folder / "hashes.html").write_text(HASHES)
+    write_channel_page(folder, "hashes.html", HASHES)
     return expected
 
 

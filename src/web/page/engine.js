@@ -57,9 +57,7 @@ export class Engine {
     if (sharesMemory(module)) engine.threads = Math.min(threads, MOST_THREADS);
     engine.#check(await engine.#exports.web_begin(MEBIBYTES, engine.threads));
     const helpers = engine.fuses ? POOLS * (engine.threads - 1) : 0;
-    // One after the other: in Firefox, a worker that makes a second worker while the first one is loaded sometimes waits
-    // for ever.
-    for (let number = 0; number < helpers; number++) await hooks.help(engine.#work(module, number));
+    await Promise.all(Array.from({ length: helpers }, (_, number) => hooks.help(engine.#work(module, number))));
     return engine;
   }
 

@@ -41,7 +41,7 @@ function modulesFor() {
 async function begin() {
   const [first, ...others] = modulesFor(), [script, fastest] = await Promise.all(["worker.js", first].map(part));
   const url = URL.createObjectURL(new Blob([script], { type: "text/javascript" }));
-  channel = new WorkerChannel(new Worker(url));
+  channel = new WorkerChannel(url);
   channel.onProgress = (fraction) => { message.textContent = `reading: ${Math.round(100 * fraction)} %`; };
   if (await channel.begin(fastest)) return;
   for (const name of others) if (await channel.begin(await part(name))) return;

@@ -45,16 +45,21 @@ async function blobOf(bytes, format, { width, height }, quality) {
   return canvas.convertToBlob({ type: "image/jpeg", quality: quality / 100 });
 }
 
-const helpers = []; // the helpers' workers, so that no browser ends a worker to which nothing refers
+const helpers = new Map(); // for the number of each helper that is not ready yet, { ready, failed }
 
-// Starts a helper for the library's threads. A helper is this script in a worker of its own.
+// Asks the page for a helper for the library's threads. A helper is this script in a worker of its own. The page makes
+// it, because a worker of Firefox sometimes waits for ever when it makes another worker.
 const help = (work) => new Promise((ready, failed) => {
-  const helper = new Worker(location.href);
-  helpers.push(helper);
-  helper.onmessage = ready;
-  helper.onerror = failed;
-  helper.postMessage({ kind: "help", work });
+  helpers.set(work.number, { ready, failed });
+  postMessage({ help: work });
 });
+
+function helped({ number, problem }) {
+  const { ready, failed } = helpers.get(number);
+  helpers.delete(number);
+  if (problem === undefined) ready();
+  else failed(new Error(problem));
+}
 
 const calls = {
   async begin({ modules }) {
@@ -99,6 +104,7 @@ async function answerSlices() {
 let last = Promise.resolve();
 addEventListener("message", ({ data }) => {
   if (data.kind === "help") Engine.help(data.work, () => postMessage({}));
+  else if (data.kind === "helped") helped(data);
   else if (data.kind === "cancel") gone.add(data.number);
   else if (data.kind === "slice" && current !== 0 && Engine.waits) slices.push(data);
   else last = last.then(() => answer(data)).then(answerSlices);

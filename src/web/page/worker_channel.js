@@ -6,13 +6,19 @@ export class WorkerChannel {
   // times as long, often on one thread.
   soonPrepared = 128 ** 3 / 4;
   #worker;
+  #helpers = []; // the helpers' workers, so that no browser ends a worker to which nothing refers
   #number = 0;
   #waiting = new Map(); // for each request's number, { resolve, reject }
   #frames = new Map(); // for each lane, the number of the frame that is being rendered
 
-  constructor(worker) {
-    this.#worker = worker;
-    worker.addEventListener("message", ({ data: { number, part, problem, ...answer } }) => {
+  // url: the address of worker.js.
+  constructor(url) {
+    const worker = this.#worker = new Worker(url);
+    worker.addEventListener("message", ({ data: { number, part, help, problem, ...answer } }) => {
+      if (help !== undefined) {
+        this.#makeHelper(url, help);
+        return;
+      }
       if (number === undefined) {
         this.onProgress?.(part);
         return;
@@ -28,6 +34,15 @@ export class WorkerChannel {
     });
   }
 
+  // Makes a helper for the worker's threads: the same script in a worker of its own. work: an object for Engine.help().
+  #makeHelper(url, work) {
+    const helper = new Worker(url), tell = (problem) => this.#worker.postMessage({ kind: "helped", number: work.number, problem });
+    this.#helpers.push(helper);
+    helper.addEventListener("message", () => tell());
+    helper.addEventListener("error", (event) => tell(event.message ?? "a thread has ended"));
+    helper.postMessage({ kind: "help", work });
+  }
+
   #ask(kind, content) {
     const number = ++this.#number;
     return new Promise((resolve, reject) => {
@@ -36,10 +51,10 @@ export class WorkerChannel {
     });
   }
 
-  // Starts the engine. module: the bytes of a WebAssembly file. Returns whether the file suits the browser; otherwise
-  // another file may be tried.
+  // Starts the engine. module: the bytes of a WebAssembly file. Returns the number of threads, which is 0 if the file does not suit
+  // the browser; then another file may be tried.
   async begin(module) {
-    return (await this.#ask("begin", { modules: [module] })).threads > 0;
+    return (await this.#ask("begin", { modules: [module] })).threads;
   }
 
   // Opens files, and returns the object of start.json. contents: { "folder/name": Uint8Array or Blob }; path: the file
