@@ -32,8 +32,7 @@ typedef struct hl_camera {
 typedef enum hl_shading {
   HL_SHADING_PHONG = 0,
   HL_SHADING_NONE = 1, /* the matter is a medium: it is lit and shadowed, but has no surface */
-  HL_SHADING_FLAT = 2  /* the matter has the colour of the transfer function; neither light nor shadow changes
-                        * it */
+  HL_SHADING_FLAT = 2  /* the matter has the transfer function's colour; light and shadow do not change it */
 } hl_shading;
 
 /* The numbers by which a surface reflects light, in Phong's model (docs/equations.md). */
@@ -118,9 +117,9 @@ typedef struct hl_scene_volume {
   const char *file;   /* the file that the voxels came from, which hl_scene_to_json writes; may be null */
   const char *shapes; /* the text of the shapes from which hl_volume_from_shapes() made the voxels; may be
                        * null */
-  const char *array;  /* the array of the file that was read, which hl_scene_to_json writes; may be null. This
-                       * member and the next three are the options of hl_volume_load_options with the same
-                       * names */
+  /* The array of the file that was read, which hl_scene_to_json writes; may be null. This member and the next
+   * three are the options of hl_volume_load_options with the same names */
+  const char *array;
   int component;      /* default HL_COMPONENT_DEFAULT */
   double spacing[3];  /* default 0 */
   const char *series; /* may be null */
@@ -170,6 +169,7 @@ typedef struct hl_scene_volume {
   /* The range of values over which the strip of a legend goes, as the option "range" states it. If legend_low
    * is not below legend_high (the default), the strip goes over the values that have opacity */
   double legend_low, legend_high;
+  const char *file_space; /* see hl_volume_load_options; may be null */
 } hl_scene_volume;
 
 /* A mesh in a scene. `color` multiplies the colours of the mesh's vertices, faces or spheres, if the mesh has

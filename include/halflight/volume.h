@@ -173,6 +173,11 @@ typedef struct hl_volume_load_options {
    * of its planes a, b, c, d. */
   const double (*seen)[4][4];
   size_t seen_count;
+  /* The directions in a patient's body to which x, y and z of the file's world point, as three letters in
+   * this order: R or L, A or P, S or I. It replaces the file's own space, with a warning if the file tells
+   * another one. For "RAS", "LPS" and "LAS" the world stays as it is. For all others, as "PIR" of sagittal
+   * slices, the world is turned into RAS. Default null: the file's space. */
+  const char *file_space;
 } hl_volume_load_options;
 
 HL_API void hl_volume_load_options_defaults(hl_volume_load_options *options);

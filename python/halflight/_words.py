@@ -26,6 +26,7 @@ _ELSEWHERE = (
     ("iso", "[value, ...]", "isosurfaces isosurface isovalue isovalues isolevel contours iso_threshold threshold"),
     ("cmap", "name", "colormap color_map colourmap lut palette colormaps colors"),
     ("spacing", "(dz, dy, dx)", "voxel_size voxelsize voxel_spacing pixdim pixel_size zooms scales"),
+    ("space", "'RAS'", "orientation axcodes anatomical_space coordinate_system frame"),
     ("background", "color", "bg bgcolor background_color bg_color facecolor"),
     ("fovy_deg", "degrees", "fov fovy view_angle"),
     ("camera", "(azimuth, elevation)", "cpos camera_position view viewpoint azimuth elevation azim elev"),

@@ -83,6 +83,36 @@ def make_place(axes: str, spacing: Spacing | None, origin: Any, direction: Any, 
     return Place(tuple(first), tuple(tuple(row[n] * along[n] for row in turned) for n in range(3)))
 
 
+_LETTERS = {"R": (0, 1), "L": (0, -1), "A": (1, 1), "P": (1, -1), "S": (2, 1), "I": (2, -1)}  # the axis of RAS, and the sign along it
+
+
+def check_letters(space: object) -> list[tuple[int, int]]:
+    """The axes of RAS and the signs of the three letters of `space`."""
+    if not isinstance(space, str):
+        raise TypeError(f"space: {space!r} is no text such as 'RAS'")
+    found = [_LETTERS.get(letter, (-1, 0)) for letter in space.upper()]
+    if sorted(axis for axis, _ in found) != [0, 1, 2]:
+        raise ValueError(f"space: '{space}': give the directions to which x, y and z point, as 'RAS', 'LPS' or another three of R or L, "
+                         "A or P, S or I")
+    return found
+
+
+def in_space(place: Place, letters: str) -> tuple[Place, int]:
+    """A place in the anatomical space that three letters state, and the space; as the library reads a file with
+    `hl_volume_load_options.file_space`.
+    """
+    found = check_letters(letters)
+    for space in (lib.HL_SPACE_RAS, lib.HL_SPACE_LPS, lib.HL_SPACE_LAS):
+        if ffi.string(lib.hl_space_name(space)).decode() == letters.upper():
+            return place, int(space)
+
+    def turned(vector: Sequence[float]) -> tuple[float, ...]:
+        said = {axis: sign * one + 0.0 for (axis, sign), one in zip(found, vector, strict=True)}
+        return said[0], said[1], said[2]
+
+    return Place(turned(place.origin), tuple(turned(step) for step in place.steps)), int(lib.HL_SPACE_RAS)
+
+
 def without_single_axes(array: Any) -> Any:
     """The array with at most three axes, after axes of length 1 were removed, beginning with the first axis."""
     while len(array.shape) > 3 and 1 in array.shape:

@@ -53,7 +53,7 @@ def _forget_reading(struct: Any) -> None:
     """Remove the options by which the volume was read from its old file, because the new file has only one array."""
     plain = ffi.new("hl_scene_volume *")
     lib.hl_scene_volume_defaults(plain)
-    for word in ("array", "series", "component", "time", "channel", "level", "spacing"):
+    for word in ("array", "series", "component", "time", "channel", "level", "spacing", "file_space"):
         setattr(struct, word, getattr(plain, word))
 
 

@@ -218,7 +218,7 @@ def _picture_of(place: Mapping[str, Any], settings: Mapping[str, Any], read_whol
     size, camera = settings.get("size"), settings.get("camera")
     side = max((plain.width, plain.height) if size is None else size_of("size", size))
     zoom = number("camera: zoom", camera.get("zoom") or 1) if isinstance(camera, Mapping) else 1
-    once = zoom <= 1 or read_whole or place.get("spacing") is not None or place.get("smooth") is not None
+    once = zoom <= 1 or read_whole or any(place.get(word) is not None for word in ("spacing", "space", "smooth"))
     return Picture(min(math.ceil(side * max(zoom, 1)), 2**31 - 1), 0 if once else side)
 
 
@@ -302,6 +302,7 @@ class Asked(FurtherSettings, total=False):
     origin: Any
     direction: Any
     affine: Any
+    space: str
     axes: str
     cmap: Any
     clim: Sequence[float | str]
@@ -340,7 +341,7 @@ class Asked(FurtherSettings, total=False):
     color_by_threshold: float | Sequence[float]
 
 
-_PLACE = ("spacing", "origin", "direction", "affine", "axes", "array", "component", "series", "time", "channel", "level", "smooth")
+_PLACE = ("spacing", "origin", "direction", "affine", "space", "axes", "array", "component", "series", "time", "channel", "level", "smooth")
 _MATERIAL = ("ambient", "diffuse", "specular", "shininess", "iso", "cuts", "mask", "look",
              *(word for word in FurtherSettings.__annotations__ if word in Look.__annotations__))
 _SETTINGS = ("shadows", "lights", "camera", "size", "background", "threads", "meshes", "sky", "slice", "density", "color_by", "color_by_threshold",
@@ -367,7 +368,7 @@ def _is_scene(volume: Any) -> bool:
 
 @suggests_also(FurtherSettings.__annotations__)
 def render(volume: Source = None, *, spacing: arrays.Spacing | None = None, origin: Any = None, direction: Any = None,
-           affine: Any = None, axes: str | None = None, cmap: Any = None,
+           affine: Any = None, space: str | None = None, axes: str | None = None, cmap: Any = None,
            clim: Sequence[float | str] | None = None, log_scale: bool | None = None, opacity: Any = None,
            opacity_unit_distance: float | None = None, shade: bool | Shade | None = None,
            ambient: float | None = None, diffuse: float | None = None, specular: float | None = None,
@@ -393,8 +394,8 @@ def render(volume: Source = None, *, spacing: arrays.Spacing | None = None, orig
         A volume file, a scene file (.json), or what `Volume` takes. Of several volumes, such as the channels of a
         microscope, `cmap`, `clim`, `log_scale`, `opacity`, `opacity_unit_distance` and `tf` may be lists with one for
         each. None: the `meshes` alone.
-    spacing, origin, direction, affine, axes : optional
-        The place of an array in the world: see `Volume`.
+    spacing, origin, direction, affine, space, axes : optional
+        The place of an array in the world, and the directions of the world in a body: see `Volume`.
     cmap : str, matplotlib colormap, colour or colours, optional
         Halflight's colormaps, matplotlib's, or one colour; over `clim`, by default over the values that are seen.
     clim : (low, high), optional
@@ -479,7 +480,7 @@ def render(volume: Source = None, *, spacing: arrays.Spacing | None = None, orig
     (64, 48)
     """
     asked: Asked = _given(  # type: ignore[assignment]
-        spacing=spacing, origin=origin, direction=direction, affine=affine, axes=axes, cmap=cmap, clim=clim,
+        spacing=spacing, origin=origin, direction=direction, affine=affine, space=space, axes=axes, cmap=cmap, clim=clim,
         log_scale=log_scale, opacity=opacity, opacity_unit_distance=opacity_unit_distance, shade=shade, ambient=ambient, diffuse=diffuse,
         specular=specular, shininess=shininess, tf=tf, shadows=shadows, lights=lights, camera=camera, size=size,
         background=background, threads=threads, array=array, component=component, series=series, time=time,

@@ -145,7 +145,7 @@ class Scene:
     @classmethod
     def of_channels(cls, path: str | os.PathLike[str], channels: str | Sequence[int | str] = "all", *, look: str = "auto",
                     array: str | None = None, series: str | None = None, time: int | None = None, level: int | None = None,
-                    spacing: Any = None, smooth: float | None = None) -> Scene:
+                    spacing: Any = None, space: str | None = None, smooth: float | None = None) -> Scene:
         """A scene of several channels of a file, such as a microscope's. Each channel is a volume in a colour of its
         own. The file may state this colour (OME, ImageJ, omero). If it does not, the colours are green and magenta,
         cyan, yellow, ...
@@ -154,18 +154,19 @@ class Scene:
         ----------
         path : path
         channels : "all", or a list of numbers from 0 and of the file's own names
-        look, array, series, time, level, spacing, smooth : optional
+        look, array, series, time, level, spacing, space, smooth : optional
             As for `halflight.render`.
         """
         return cls._of_channels(path, channels, None, look=look, array=array, series=series, time=time, level=level, spacing=spacing,
-                                smooth=smooth)
+                                space=space, smooth=smooth)
 
     @classmethod
     def _of_channels(cls, path: str | os.PathLike[str], channels: str | Sequence[int | str], picture: Picture | None, *,
-                     look: str = "auto", background: Any = None, spacing: Any = None, smooth: float | None = None, **chosen: Any) -> Scene:
+                     look: str = "auto", background: Any = None, spacing: Any = None, space: str | None = None,
+                     smooth: float | None = None, **chosen: Any) -> Scene:
         """The same, at the resolutions that suit a picture. background: what maximum projections begin with."""
         file = os.fspath(path)
-        options, keep = load_options({word: value for word, value in chosen.items() if value is not None}, spacing, "zyx", picture)
+        options, keep = load_options({word: value for word, value in chosen.items() if value is not None}, spacing, space, "zyx", picture)
         listed = [channels] if isinstance(channels, str) else [one if isinstance(one, str) else str(index_of("channel", one)) for one in channels]
         if not listed:
             raise ValueError("channel: [] names none: give a number or a name, several as [0, 2], or 'all'")

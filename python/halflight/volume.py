@@ -45,6 +45,9 @@ class Volume:
         Its columns are the unit vectors of the index axes x, y, z in the world.
     affine : array_like, shape (4, 4) or (3, 4), optional
         From voxel indices (x, y, z) to the world, in place of the three above.
+    space : str, optional
+        The directions in a patient's body to which x, y and z of the world point, as three letters: R or L, A or P,
+        S or I. "RAS", "LPS" and "LAS" keep the world; of others, such as "PIR" for sagittal slices, the world is turned into RAS.
     axes : str, optional
         The order of the array's axes; "zyx", the default, is ``array[z][y][x]``.
     array, component, series, time, channel, level : optional
@@ -73,11 +76,11 @@ class Volume:
     __slots__ = ("__weakref__", "_automatic", "_base", "_changes", "_colored", "_file", "_handle", "_loading", "_order", "_shapes", "_sharp")
 
     def __init__(self, source: Source, *, spacing: arrays.Spacing | None = None, origin: Any = None,
-                 direction: Any = None, affine: Any = None, axes: str | None = None, array: str | None = None,
-                 component: int | str | None = None, series: str | None = None, time: int | None = None,
+                 direction: Any = None, affine: Any = None, space: str | None = None, axes: str | None = None,
+                 array: str | None = None, component: int | str | None = None, series: str | None = None, time: int | None = None,
                  channel: int | str | None = None, level: int | None = None, copy: bool = False,
                  smooth: float | None = None, _picture: Picture | None = None, **look: Unpack[Look]) -> None:
-        check_keywords("Volume()", look, [*Look.__annotations__, "spacing", "origin", "direction", "affine", "axes", "copy", "smooth", *_OF_FILES])
+        check_keywords("Volume()", look, [*Look.__annotations__, "spacing", "origin", "direction", "affine", "space", "axes", "copy", "smooth", *_OF_FILES])
         self._sharp: Any = None  # the handle of the voxels before they were smoothed
         self._handle: Any = None
         self._file: str | None = None
@@ -95,14 +98,14 @@ class Volume:
         if hasattr(source, "_as_volume"):
             source = source._as_volume()
         if isinstance(source, Volume):
-            for word, value in {**place, **chosen, "axes": axes, "copy": copy or None}.items():
+            for word, value in {**place, **chosen, "space": space, "axes": axes, "copy": copy or None}.items():
                 if value is not None:
                     raise TypeError(f"{word} is for arrays and files: a Volume has been read already")
             self._share(source)
         else:
             if axes is not None:
                 arrays.check_axes(axes)
-            self._read(source, axes, place, {word: value for word, value in chosen.items() if value is not None}, copy, _picture)
+            self._read(source, axes, place, space, {word: value for word, value in chosen.items() if value is not None}, copy, _picture)
         if smooth is not None:
             self._smooth(smooth)
         values: Any = {word: look[word] for word in VALUES if word in look}  # type: ignore[literal-required]
@@ -117,13 +120,13 @@ class Volume:
         if self._base is not None:
             raise TypeError("smooth is for volumes of files and arrays: a scene says it itself")
 
-    def _read(self, source: Source, axes: str | None, place: dict[str, Any], chosen: dict[str, Any], copy: bool,
-              picture: Picture | None) -> None:
+    def _read(self, source: Source, axes: str | None, place: dict[str, Any], letters: str | None, chosen: dict[str, Any],
+              copy: bool, picture: Picture | None) -> None:
         if isinstance(source, (str, os.PathLike)):
             for word in ("origin", "direction", "affine"):
                 if place[word] is not None:
                     raise TypeError(f"{word} is for arrays: a file says it itself")
-            self._load(os.fspath(source), place["spacing"], axes or "zyx", chosen, picture)
+            self._load(os.fspath(source), place["spacing"], letters, axes or "zyx", chosen, picture)
             return
         is_grid = not isinstance(source, np.ndarray) and vtk_grids.is_grid(source)
         name = chosen.pop("array", None) if hasattr(source, "data_vars") or is_grid else None
@@ -133,7 +136,7 @@ class Volume:
             if mesh[1] is not None:
                 self._changes.setdefault("name", mesh[1])
         if isinstance(source, (grids.Cells, grids.Patches)):
-            for word in [word for word, value in place.items() if value is not None] + list(chosen):
+            for word in [word for word, value in {**place, "space": letters}.items() if value is not None] + list(chosen):
                 raise TypeError(f"{word} is for arrays and files: a grid has places of its own")
             self._handle = source.handle()
             return
@@ -144,6 +147,8 @@ class Volume:
         known = {word: value for word, value in place.items() if value is not None} or found.place
         space = found.space if known is found.place else 0
         where, array = arrays.make_place(order, *map(known.get, place)), arrays.without_single_axes(found.array)
+        if letters is not None:
+            where, space = arrays.in_space(where, letters)
         self._handle = self._made(array, order, where, space, None if copy else found.owner, copy)
         if pieces.has_colors(array.shape, array.dtype):
             self._colored = np.array(array).transpose([order.index(letter) for letter in "zyx"] + [3])
@@ -173,8 +178,9 @@ class Volume:
         same = (self._changes.get("look"), self._is_of_values()) == (other._changes.get("look"), other._is_of_values())
         self._automatic = other._automatic if same else None
 
-    def _load(self, path: str, spacing: arrays.Spacing | None, axes: str, chosen: dict[str, Any], picture: Picture | None) -> None:
-        options, keep = load_options(chosen, spacing, axes, picture)
+    def _load(self, path: str, spacing: arrays.Spacing | None, space: str | None, axes: str, chosen: dict[str, Any],
+              picture: Picture | None) -> None:
+        options, keep = load_options(chosen, spacing, space, axes, picture)
         self._file = path
         self._loading = (options, keep)
         self._handle = made(lib.hl_volume_load_with, "hl_volume", lib.hl_volume_release, context, path_bytes(path),
@@ -369,6 +375,8 @@ class Volume:
             said["smooth"] = lib.hl_volume_smoothing(self._handle)
         if any(struct.spacing):
             said["spacing"] = list(struct.spacing)[::-1]
+        if struct.file_space != ffi.NULL:
+            said["space"] = text_of(struct.file_space)
         return said
 
     def __reduce__(self) -> Any:
@@ -458,7 +466,7 @@ class Volume:
         ffi.memmove(ffi.addressof(struct), ffi.addressof(self._struct()), ffi.sizeof("hl_scene_volume"))
         if self._loading is not None:
             options = self._loading[0]
-            for word in ("spacing", *_OF_FILES):
+            for word in ("spacing", "file_space", *_OF_FILES):
                 setattr(struct, word, getattr(options, word))
         fill_look(struct, self._changes, self._handle, self._base is not None, as_volume, keep, place)
 
@@ -477,7 +485,7 @@ class Picture(NamedTuple):
     preview_pixels: int
 
 
-def load_options(chosen: Mapping[str, Any], spacing: arrays.Spacing | None, axes: str,
+def load_options(chosen: Mapping[str, Any], spacing: arrays.Spacing | None, space: str | None, axes: str,
                  picture: Picture | None = None) -> tuple[Any, list[Any]]:
     """An hl_volume_load_options, which is valid as long as the list."""
     options, keep = ffi.new("hl_volume_load_options *"), list[Any]()
@@ -497,6 +505,10 @@ def load_options(chosen: Mapping[str, Any], spacing: arrays.Spacing | None, axes
         setattr(options, word, value)
     if spacing is not None:
         options.spacing = arrays.spacing_xyz(spacing, axes)
+    if space is not None:
+        arrays.check_letters(space)
+        keep.append(text := ffi.new("char[]", space.encode()))
+        options.file_space = text
     return options, keep
 
 

@@ -104,6 +104,8 @@ class Info:
         The numbers of finite voxels in equal bins over `range`.
     space : str or None
         "RAS", "LPS" or "LAS" if the anatomical directions of the world's axes are known.
+    unit : str or None
+        The unit of lengths, as the volume's file names it.
     taken_for : str
         The kind of data for which an automatic look is chosen.
     arrays : tuple of FileArray
@@ -145,6 +147,7 @@ class Info:
     segments: tuple[FileSegment, ...] = ()
     channel_list: tuple[FileChannel, ...] = ()
     field_error: FieldError | None = None
+    unit: str | None = None
 
 
 def _raw_info(handle: Any) -> Any:
@@ -177,6 +180,7 @@ def read_info(handle: Any, file: Any, order: Any) -> Info:
         range=(_range_end(handle, 0, raw.range[0]), _range_end(handle, 1, raw.range[1])), mean=raw.mean, nonfinite_count=raw.nonfinite_count,
         histogram=np.array(list(raw.histogram), dtype=np.uint64),
         space=None if lib.hl_space_name(raw.space) == ffi.NULL else text_of(lib.hl_space_name(raw.space)),
+        unit=None if (unit := lib.hl_volume_unit(handle)) == ffi.NULL else text_of(unit),
         taken_for=text_of(kind[0]), field_error=_field_error(handle), **_choices(handle))
 
 

@@ -27,6 +27,7 @@ enum convert_option {
   CONVERT_CHANNEL,
   CONVERT_LEVEL,
   CONVERT_SPACING,
+  CONVERT_SPACE,
   CONVERT_BACKGROUND,
   CONVERT_EXPOSURE,
   CONVERT_TONE,
@@ -98,6 +99,7 @@ static const cli_option convert_options[CONVERT_OPTION_COUNT] = {
     INPUT_OPTIONS(CONVERT_ARRAY, "What to read of IN"),
     [CONVERT_CHANNEL] = INPUT_OPTION_CHANNEL,
     [CONVERT_SPACING] = INPUT_OPTION_SPACING,
+    [CONVERT_SPACE] = INPUT_OPTION_SPACE,
     [CONVERT_BACKGROUND] = {.name = "background",
                             .kind = OPTION_COLOR,
                             .argument = "COLOR|transparent",
@@ -175,7 +177,8 @@ static int load_volume(cli_host *host, const cli_value *values, const char *in, 
   hl_error error = {0};
   hl_volume_load_options load;
   input_load_options(&values[CONVERT_ARRAY], &values[CONVERT_SPACING], &load);
-  int exit_code = input_open(in, values[CONVERT_MAX_MEMORY].bytes, input);
+  int exit_code = input_check_place(&values[CONVERT_SPACING]);
+  if (exit_code == EXIT_CODE_OK) exit_code = input_open(in, values[CONVERT_MAX_MEMORY].bytes, input);
   if (exit_code == EXIT_CODE_OK) {
     hl_status status = input_load_volume(host->context, input, &load, volume, &error);
     if (status != HL_OK) exit_code = host_fail(host, PHASE_READ, status, &error);

@@ -19,6 +19,7 @@
 #include "output.h"
 #include "platform/memory.h"
 #include "platform/program.h"
+#include "text/body_axes.h"
 #include "text/plain.h"
 #include "text/units.h"
 
@@ -158,7 +159,7 @@ void input_close(cli_input *input) {
 
 /* ---- scenes and volumes ---- */
 
-void input_load_options(const cli_value *reading, const cli_value *spacing, hl_volume_load_options *options) {
+void input_load_options(const cli_value *reading, const cli_value *place, hl_volume_load_options *options) {
   const cli_value *component = &reading[READ_COMPONENT];
   hl_volume_load_options_defaults(options);
   if (reading[READ_ARRAY].given) options->array = reading[READ_ARRAY].text;
@@ -168,7 +169,17 @@ void input_load_options(const cli_value *reading, const cli_value *spacing, hl_v
   if (reading[READ_TIME].given) options->time = (int)reading[READ_TIME].number[0];
   if (reading[READ_CHANNEL].given) options->channel_name = reading[READ_CHANNEL].text;
   if (reading[READ_LEVEL].given) options->level = (int)reading[READ_LEVEL].number[0];
-  if (spacing != NULL && spacing->given) memcpy(options->spacing, spacing->number, sizeof options->spacing);
+  if (place[PLACE_SPACING].given)
+    memcpy(options->spacing, place[PLACE_SPACING].number, sizeof options->spacing);
+  if (place[PLACE_SPACE].given) options->file_space = place[PLACE_SPACE].text;
+}
+
+int input_check_place(const cli_value *place) {
+  int axis[3];
+  double sign[3];
+  const cli_value *space = &place[PLACE_SPACE];
+  if (!space->given || hl_body_axes_read(space->text, axis, sign)) return EXIT_CODE_OK;
+  return fail(EXIT_CODE_USAGE, "--space: '%s': " HL_BODY_AXES_WANTED, space->text);
 }
 
 /* The length of a list's first item. */
@@ -250,6 +261,7 @@ void input_name_source(const hl_volume_load_options *options, hl_scene_volume *v
   if (options->pixels > 0 && known && read.levels > 1)
     volume->level = read.aim; /* the scene may be drawn in another size */
   memcpy(volume->spacing, options->spacing, sizeof volume->spacing);
+  volume->file_space = options->file_space;
 }
 
 hl_status input_name_scene(hl_context *context, const hl_volume_load_options *options, hl_scene **scene,

@@ -81,6 +81,13 @@ typedef struct cli_input {
     .help = "distance of voxels in world units, also as one\nnumber for all axes (default: the file's)", \
     .count = 3, .separator = ',', .even = true, .low = 0, .above = true, .high = INFINITY                \
   }
+#define INPUT_OPTION_SPACE                                                                                  \
+  {                                                                                                         \
+    .name = "space", .kind = OPTION_TEXT, .argument = "RAS|LPS|XYZ",                                        \
+    .help = "directions in the body to which x, y and z of the file\npoint, by one letter each: R or L, A " \
+            "or P, "                                                                                        \
+            "S or I, as\nPIR for sagittal slices (default: the file's)"                                     \
+  }
 /* Rows for the table of options of a subcommand: all options of enum input_reading except the channel, from
  * row `first` on. */
 #define INPUT_OPTIONS(first, heading)                                                         \
@@ -93,16 +100,23 @@ extern const cli_choice input_components[];
  * table. */
 enum input_reading { READ_ARRAY, READ_COMPONENT, READ_SERIES, READ_TIME, READ_CHANNEL, READ_LEVEL };
 
+/* The options that state where a file's voxels lie, in the order of the rows in a subcommand's table. */
+enum input_place { PLACE_SPACING, PLACE_SPACE };
+
 /* Finds out the kind of an input, by its name or, if the name does not tell, by its first bytes; reads pipes
  * and pictures into memory. limit: the greatest number of bytes to hold; 0 stands for half of the machine's
  * memory. Returns the exit code; call input_close() even after a failure. */
 int input_open(const char *path, uint64_t limit, cli_input *input);
 void input_close(cli_input *input);
 
-/* Finds the load options that the options of enum input_reading and --spacing ask for. reading: the values of
- * enum input_reading. spacing: null if the command does not have --spacing. The text of --channel becomes
- * the name of one channel. */
-void input_load_options(const cli_value *reading, const cli_value *spacing, hl_volume_load_options *options);
+/* Finds the load options that the options of enum input_reading, --spacing and --space ask for. reading: the
+ * values of enum input_reading. place: the values of enum input_place. The text of --channel becomes the name
+ * of one channel. */
+void input_load_options(const cli_value *reading, const cli_value *place, hl_volume_load_options *options);
+
+/* Refuses a value of --space that names no directions. place: the values of enum input_place. Returns the
+ * exit code. */
+int input_check_place(const cli_value *place);
 
 /* Refuses values of --channel that no file can have: empty items of a list, an item that is there twice, and
  * more items than a picture shows. */

@@ -25,6 +25,7 @@ enum looks_option {
   LOOKS_CHANNEL,
   LOOKS_LEVEL,
   LOOKS_SPACING,
+  LOOKS_SPACE,
   LOOKS_THREADS,
   LOOKS_MAX_MEMORY,
   LOOKS_DEVICE,
@@ -56,6 +57,7 @@ static const cli_option looks_options[LOOKS_OPTION_COUNT] = {
     INPUT_OPTIONS(LOOKS_ARRAY, "What of VOLUME"),
     [LOOKS_CHANNEL] = INPUT_OPTION_CHANNELS,
     [LOOKS_SPACING] = INPUT_OPTION_SPACING,
+    [LOOKS_SPACE] = INPUT_OPTION_SPACE,
     [LOOKS_THREADS] = HOST_OPTION_THREADS("How it runs"),
     [LOOKS_MAX_MEMORY] = HOST_OPTION_MAX_MEMORY(NULL),
     [LOOKS_DEVICE] = HOST_OPTION_DEVICE,
@@ -219,6 +221,7 @@ static int load_volume(looks_job *job) {
   const cli_value *said = &job->values[LOOKS_CHANNEL];
   input_load_options(&job->values[LOOKS_ARRAY], &job->values[LOOKS_SPACING], &job->load);
   int exit_code = input_check_channels(said);
+  if (exit_code == EXIT_CODE_OK) exit_code = input_check_place(&job->values[LOOKS_SPACING]);
   if (exit_code == EXIT_CODE_OK)
     exit_code = input_open(job->input, job->values[LOOKS_MAX_MEMORY].bytes, input);
   if (exit_code == EXIT_CODE_OK && input->kind != INPUT_VOLUME)

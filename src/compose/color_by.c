@@ -206,9 +206,10 @@ static hl_status load(const hl_composer *composer, const hl_scene_description *d
     reading.time = made->time = source->time;
     reading.level = made->level = source->level;
     memcpy(reading.spacing, source->spacing, sizeof reading.spacing);
+    reading.file_space = source->file_space;
   }
   hl_status status = hl_volume_load_beside(composer->context, typed->file, first->volume, first->spacing,
-                                           &reading, &made->volume, &own);
+                                           first->file_space, &reading, &made->volume, &own);
   if (status != HL_OK) return hl_blame_options(refuse_part(composer, typed, status, &own));
   size_t length = typed->array != NULL ? strlen(typed->array) : 0;
   const char *stem = typed->array != NULL ? typed->array : hl_stem(typed->file, &length);
@@ -220,6 +221,7 @@ static hl_status load(const hl_composer *composer, const hl_scene_description *d
   made->name = name;
   made->visible = 0;
   memcpy(made->spacing, reading.spacing, sizeof made->spacing);
+  made->file_space = reading.file_space;
   return HL_OK;
 }
 

@@ -49,9 +49,9 @@ static hl_status load_layer(hl_context *context, const char *file, const char *t
   hl_scene_volume *made = &layers->volumes[layers->count];
   hl_scene_volume_defaults(made);
   const int none = made->component;
-  hl_status status = hl_volume_load_beside(context, file, over != NULL ? over->volume : NULL,
-                                           over != NULL ? over->spacing : options.spacing, &options,
-                                           &made->volume, error);
+  hl_status status = hl_volume_load_beside(
+      context, file, over != NULL ? over->volume : NULL, over != NULL ? over->spacing : options.spacing,
+      over != NULL ? over->file_space : NULL, &options, &made->volume, error);
   if (status != HL_OK) return status;
   layers->count++;
   made->file = file;
@@ -60,6 +60,7 @@ static hl_status load_layer(hl_context *context, const char *file, const char *t
   made->component = layers_of(made->volume) < 2 ? none : options.component;
   made->time = options.time, made->channel = options.channel, made->level = options.level;
   memcpy(made->spacing, options.spacing, sizeof made->spacing);
+  made->file_space = options.file_space;
   hl_label *labels = NULL;
   status = hl_labels_of_volume(context, made->volume, table, &labels, &made->label_count, error);
   made->labels = labels;
@@ -138,6 +139,7 @@ static hl_volume_load_options reading_of(const hl_scene_description *description
     reading.array = first->array, reading.series = first->series;
     reading.time = first->time, reading.channel = first->channel, reading.level = first->level;
     memcpy(reading.spacing, first->spacing, sizeof reading.spacing);
+    reading.file_space = first->file_space;
   } else if (first != NULL && hl_volume_get_info(first->volume, &info) == HL_OK) {
     reading.space = info.space;
   }
@@ -276,7 +278,7 @@ static bool is_read_plainly(const hl_scene_volume *volume) {
   hl_scene_volume_defaults(&plain);
   return volume->array == NULL && volume->series == NULL && volume->component == plain.component &&
          volume->time == plain.time && volume->channel == plain.channel && volume->level == plain.level &&
-         !(volume->spacing[0] > 0);
+         !(volume->spacing[0] > 0) && volume->file_space == NULL;
 }
 
 /* Returns whether the scene's only volume is a bare label map whose file has further layers of labels. These

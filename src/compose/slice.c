@@ -136,8 +136,8 @@ hl_status hl_expand_slice(const hl_scene_description *description, hl_asked *ask
   if (slice.is_of_body && hl_scene_space(description) == HL_SPACE_UNKNOWN)
     return hl_fail(
         error, HL_ERROR_ARGUMENT,
-        "--slice: '%.200s': the file does not tell the body's directions%s: give an axis, as --slice "
-        "%c=%.60s%s",
+        "--slice: '%.200s': the file does not tell the body's directions%s: state them, as --space RAS, "
+        "or give an axis, as --slice %c=%.60s%s",
         asked[HL_ASK_SLICE].text, unitless ? ", nor its unit of lengths" : "", 'x' + slice.axis, slice.at,
         unitless ? " --unit mm" : "");
   const slice_sight sight = asked_sight(asked, description);

@@ -120,7 +120,8 @@ static hl_status draw_letters(const hl_ink *ink, const hl_overlay_place *place, 
   if (space == HL_SPACE_UNKNOWN)
     return hl_fail(
         error, HL_ERROR_ARGUMENT,
-        "axes: the file does not tell the body's directions: letters are for files that do; give arrows");
+        "axes: letters need the body's directions, and the file does not tell them: state them, as --space "
+        "RAS, or give arrows");
   const axis_names *names = names_of(space);
   const hl_rectangle picture = place->picture;
   const vec3 right = place->map.right, up = place->map.up;

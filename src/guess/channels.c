@@ -225,6 +225,7 @@ static hl_status name_channel(channel_scenes *made, const hl_volume *volume, hl_
   named.time = options->time, named.channel = channel, named.level = options->level;
   if (volume->selection.levels > 1) named.level = volume->selection.aim;
   memcpy(named.spacing, options->spacing, sizeof named.spacing);
+  named.file_space = options->file_space;
   description.volumes = &named;
   hl_scene *with_name = NULL;
   hl_status status = hl_scene_create(made->context, &description, &with_name, error);

@@ -128,6 +128,7 @@ static void find_options(const hl_scene_volume *volume, const hl_volume_selectio
   options->series = volume->series;
   options->component = volume->component;
   memcpy(options->spacing, volume->spacing, sizeof options->spacing);
+  options->file_space = volume->file_space;
   options->space = volume->volume->space;
   options->level = read->aim;
   if (read->times > 1) options->time = read->time;

@@ -45,6 +45,7 @@ typedef struct hl_loaded_volume {
   int component, time, channel, level;
   const char *series;
   double spacing[3];
+  const char *file_space;
   int preview_pixels; /* see hl_volume_load_options */
   double smooth;      /* the standard deviation by which the voxels were smoothed */
   hl_volume *volume;  /* owned; the volume that was read */

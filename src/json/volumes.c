@@ -10,50 +10,35 @@
 #include "json/settings.h"
 #include "json/shapes.h"
 #include "scene/scene.h"
+#include "text/body_axes.h"
 #include "volume/load_beside.h"
 #include "volume/volume.h"
 
 #define DATA_PREFIX "data:" /* begins the names of files that lie in the context's data folder */
 
-static const char *const volume_keys[] = {"name",
-                                          "stand_in",
-                                          "file",
-                                          "shapes",
-                                          "voxel_size",
-                                          "transform",
-                                          "shading",
-                                          "transfer_function",
-                                          "material",
-                                          "attenuation_color",
-                                          "visible",
-                                          "casts_shadow",
-                                          "clip",
-                                          "scraps",
-                                          "legend",
-                                          "receives_shadow",
-                                          "array",
-                                          "component",
-                                          "time",
-                                          "channel",
-                                          "level",
-                                          "spacing",
-                                          "smooth",
-                                          "series",
-                                          "scattering",
-                                          "iso",
-                                          "labels",
-                                          "label_table",
-                                          "cuts",
-                                          "cut_shading",
-                                          "cut_casts_shadow",
-                                          "mask",
-                                          NULL};
+static const char *const volume_keys[] = {"name",        "stand_in",
+                                          "file",        "shapes",
+                                          "voxel_size",  "transform",
+                                          "shading",     "transfer_function",
+                                          "material",    "attenuation_color",
+                                          "visible",     "casts_shadow",
+                                          "clip",        "scraps",
+                                          "legend",      "receives_shadow",
+                                          "array",       "component",
+                                          "time",        "channel",
+                                          "level",       "spacing",
+                                          "space",       "smooth",
+                                          "series",      "scattering",
+                                          "iso",         "labels",
+                                          "label_table", "cuts",
+                                          "cut_shading", "cut_casts_shadow",
+                                          "mask",        NULL};
 
 #define GIVE_COMPONENT "give a number from 0 on, \"magnitude\", \"color\" or \"luminance\""
 
 /* The keys of a volume that are options for reading its file. */
-static const char *const of_file[] = {"array", "component", "time",    "channel",
-                                      "level", "series",    "spacing", "smooth"};
+static const char *const of_file[] = {"array",  "component", "time",  "channel", "level",
+                                      "series", "spacing",   "space", "smooth"};
 
 static hl_status read_rotate(hl_json_reader *reader, const json_t *value, hl_setting_kind kind,
                              void *target) {
@@ -154,7 +139,8 @@ static const hl_loaded_volume *find_loaded(const hl_volume_shelf *shelf, const c
     if (options == NULL) return loaded;
     bool same_step = loaded->time == options->time && loaded->channel == options->channel &&
                      loaded->level == options->level && loaded->preview_pixels == options->preview_pixels;
-    if (same_text(loaded->array, options->array) && same_text(loaded->series, options->series) && same_step &&
+    if (same_text(loaded->array, options->array) && same_text(loaded->series, options->series) &&
+        same_text(loaded->file_space, options->file_space) && same_step &&
         loaded->component == options->component && loaded->smooth == smooth &&
         memcmp(loaded->spacing, options->spacing, sizeof loaded->spacing) == 0)
       return loaded;
@@ -174,6 +160,7 @@ static const hl_loaded_volume *put_on_shelf(hl_volume_shelf *shelf, char *source
   place->time = options->time, place->channel = options->channel, place->level = options->level;
   place->preview_pixels = options->preview_pixels;
   memcpy(place->spacing, options->spacing, sizeof place->spacing);
+  place->file_space = options->file_space;
   return place;
 }
 
@@ -205,6 +192,7 @@ hl_status hl_json_shelve_known(hl_json_reader *reader, hl_volume_shelf *shelf) {
     options.component = known->component;
     options.time = known->time, options.channel = known->channel, options.level = known->level;
     memcpy(options.spacing, known->spacing, sizeof options.spacing);
+    options.file_space = known->file_space;
     hl_volume_retain(known->volume);
     put_on_shelf(shelf, copy, &options, known->volume);
   }
@@ -237,6 +225,8 @@ static hl_status read_index(hl_json_reader *reader, const json_t *value, const c
 /* Reads the options for loading a volume's file. */
 static hl_status read_load_options(hl_json_reader *reader, const json_t *value,
                                    hl_volume_load_options *options) {
+  int axis_in_body[3];
+  double sign[3];
   hl_volume_load_options_defaults(options);
   hl_status status = hl_json_text(reader, value, "array", &options->array);
   if (status == HL_OK) status = hl_json_text(reader, value, "series", &options->series);
@@ -249,6 +239,11 @@ static hl_status read_load_options(hl_json_reader *reader, const json_t *value,
     if (json_object_get(value, "spacing") != NULL && !(options->spacing[axis] > 0))
       status = hl_json_fail(reader, HL_ERROR_INPUT, "spacing",
                             "has a number that is not above 0: give the distance of voxels");
+  if (status == HL_OK) status = hl_json_text(reader, value, "space", &options->file_space);
+  if (status == HL_OK && options->file_space != NULL &&
+      !hl_body_axes_read(options->file_space, axis_in_body, sign))
+    status = hl_json_fail(reader, HL_ERROR_INPUT, "space", "'%.40s': " HL_BODY_AXES_WANTED,
+                          options->file_space);
   return status;
 }
 
@@ -281,18 +276,24 @@ static hl_status smooth_loaded(hl_json_reader *reader, double smooth, hl_volume 
   return status;
 }
 
-/* Finds a mask that was already made from this file. over: the volume that it masks, whose spacing the mask
- * may have taken (hl_volume_load_beside()). */
+/* Finds a mask that was already made from this file. over: the volume that it masks, whose spacing and space
+ * the mask may have taken (hl_volume_load_beside()). */
 static const hl_loaded_volume *find_mask(const hl_json_reader *reader, const hl_volume_shelf *shelf,
                                          const char *path, const hl_volume_load_options *options,
                                          const hl_scene_volume *over) {
   const hl_loaded_volume *plain = find_loaded(shelf, path, options, 0);
-  if (options->spacing[0] > 0) return plain;
-  hl_volume_load_options spaced = *options;
-  hl_spacing_beside(over->volume, over->spacing, spaced.spacing);
-  const hl_loaded_volume *found = find_loaded(shelf, path, &spaced, 0);
+  const hl_loaded_volume *found = NULL;
+  for (int taken = 1; found == NULL && taken < 4; taken++) { /* bit 0: the spacing, bit 1: the space */
+    hl_volume_load_options beside = *options;
+    if ((taken & 1) != 0) hl_spacing_beside(over->volume, over->spacing, beside.spacing);
+    if ((taken & 2) != 0) beside.file_space = over->file_space;
+    found = find_loaded(shelf, path, &beside, 0);
+  }
   if (found != NULL || plain == NULL || reader->like != NULL) return found != NULL ? found : plain;
-  return hl_takes_spacing_beside(plain->volume, over->volume, over->spacing) ? NULL : plain;
+  return hl_takes_spacing_beside(plain->volume, over->volume, over->spacing) ||
+                 hl_takes_space_beside(plain->volume, over->file_space)
+             ? NULL
+             : plain;
 }
 
 /* Loads a volume's file, or takes the volume from the shelf if it was loaded before. over: the volume that
@@ -319,9 +320,9 @@ static hl_status load(hl_json_reader *reader, const char *file, const hl_volume_
     hl_volume *made = NULL;
     hl_volume_load_options with_space = *options;
     if (stays_as_it_is(volume)) with_space.space = shelf->space;
-    hl_status status = hl_volume_load_beside(reader->context, path, over != NULL ? over->volume : NULL,
-                                             over != NULL ? over->spacing : none, &with_space, &made,
-                                             reader->error);
+    hl_status status = hl_volume_load_beside(
+        reader->context, path, over != NULL ? over->volume : NULL, over != NULL ? over->spacing : none,
+        over != NULL ? over->file_space : NULL, &with_space, &made, reader->error);
     if (status != HL_OK) {
       hl_release(reader->context, path);
       hl_json_enter(reader, "file");
@@ -345,6 +346,7 @@ static hl_status load(hl_json_reader *reader, const char *file, const hl_volume_
   volume->component = options->component;
   volume->time = options->time, volume->channel = options->channel, volume->level = options->level;
   memcpy(volume->spacing, options->spacing, sizeof volume->spacing);
+  volume->file_space = options->file_space;
   return HL_OK;
 }
 

@@ -40,11 +40,13 @@ static hl_status check_volume(const hl_scene_volume *volume, size_t index, hl_er
     return hl_fail(error, HL_ERROR_ARGUMENT,
                    "/volumes/%zu/shapes: is no text that hl_volume_from_shapes() reads: give that, or null",
                    index);
-  if (is_utf8(volume->file) && is_utf8(volume->name) && is_utf8(volume->array) && is_utf8(volume->series))
+  if (is_utf8(volume->file) && is_utf8(volume->name) && is_utf8(volume->array) && is_utf8(volume->series) &&
+      is_utf8(volume->file_space))
     return HL_OK;
-  return hl_fail(error, HL_ERROR_ARGUMENT,
-                 "/volumes/%zu: name, file, array or series is not UTF-8, as JSON texts must be: rename it",
-                 index);
+  return hl_fail(
+      error, HL_ERROR_ARGUMENT,
+      "/volumes/%zu: name, file, array, series or file_space is not UTF-8, as JSON texts must be: rename it",
+      index);
 }
 
 /* The number of numbers in the arrays of a mesh. */

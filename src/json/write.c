@@ -289,6 +289,7 @@ static void write_source(hl_json_writer *w, const hl_scene_volume *volume) {
   if (volume->channel >= 0) hl_json_write_number(w, "channel", volume->channel);
   if (volume->level >= 0) hl_json_write_number(w, "level", volume->level);
   if (volume->spacing[0] > 0) hl_json_write_row(w, "spacing", volume->spacing, 3);
+  if (volume->file_space != NULL) hl_json_write_name(w, "space", volume->file_space);
   if (hl_volume_smoothing(volume->volume) > 0)
     hl_json_write_number(w, "smooth", hl_volume_smoothing(volume->volume));
 }

@@ -96,6 +96,7 @@ static void forget_reading(hl_scene_volume *volume) {
   volume->channel = plain.channel;
   volume->level = plain.level;
   memcpy(volume->spacing, plain.spacing, sizeof plain.spacing);
+  volume->file_space = plain.file_space;
 }
 
 static hl_status hold_volume(held_scene *held, const hl_scene *scene, size_t number, hl_error *error) {

@@ -79,6 +79,7 @@ static void release_volume(hl_context *context, hl_scene_volume *volume) {
   hl_release(context, (void *)volume->file);
   hl_release(context, (void *)volume->array);
   hl_release(context, (void *)volume->series);
+  hl_release(context, (void *)volume->file_space);
   hl_release(context, (void *)volume->shapes);
   hl_transfer_function_release(context, &volume->transfer_function);
   hl_release(context, (void *)volume->iso);
@@ -179,7 +180,7 @@ static hl_status copy_function(hl_context *context, const hl_transfer_function *
 static hl_status copy_volume(hl_context *context, const hl_scene_volume *from, hl_scene_volume *to,
                              hl_error *error) {
   *to = *from;
-  to->name = to->file = to->shapes = to->array = to->series = NULL;
+  to->name = to->file = to->shapes = to->array = to->series = to->file_space = NULL;
   to->transfer_function = (hl_transfer_function){0};
   to->iso = NULL;
   to->cuts = NULL;
@@ -193,6 +194,7 @@ static hl_status copy_volume(hl_context *context, const hl_scene_volume *from, h
   if (status == HL_OK) status = copy_text(context, from->shapes, &to->shapes, error);
   if (status == HL_OK) status = copy_text(context, from->array, &to->array, error);
   if (status == HL_OK) status = copy_text(context, from->series, &to->series, error);
+  if (status == HL_OK) status = copy_text(context, from->file_space, &to->file_space, error);
   if (status == HL_OK) status = hl_labels_copy(context, from->labels, from->label_count, &to->labels, error);
   if (status == HL_OK) status = copy_text(context, from->mask.file, &to->mask.file, error);
   if (status == HL_OK)

@@ -8,7 +8,9 @@
 #include "core/door.h"
 #include "core/file.h"
 #include "core/memory.h"
+#include "text/body_axes.h"
 #include "text/plain.h"
+#include "volume/file_space.h"
 #include "volume/formats/format.h"
 #include "volume/io/bundle_zip.h"
 #include "volume/io/decoders.h"
@@ -302,6 +304,10 @@ static hl_status check_options(const hl_volume_load_options *options, hl_error *
                    subject, options->pixels, options->preview_pixels);
   if (options->space != HL_SPACE_UNKNOWN && hl_space_name(options->space) == NULL)
     return hl_fail(error, HL_ERROR_ARGUMENT, "%s: there is no space %d", subject, (int)options->space);
+  int body_axis[3];
+  double sign[3];
+  if (options->file_space != NULL && !hl_body_axes_read(options->file_space, body_axis, sign))
+    return hl_fail(error, HL_ERROR_ARGUMENT, "space: '%.40s': " HL_BODY_AXES_WANTED, options->file_space);
   bool given = options->spacing[0] != 0 || options->spacing[1] != 0 || options->spacing[2] != 0;
   for (int axis = 0; axis < 3; axis++)
     if (given && !(options->spacing[axis] > 0 && isfinite(options->spacing[axis])))
@@ -309,27 +315,6 @@ static hl_status check_options(const hl_volume_load_options *options, hl_error *
                      "%s: spacing[%d] is %g: give three finite numbers above 0, or 0 for the file's", subject,
                      axis, options->spacing[axis]);
   return HL_OK;
-}
-
-/* Converts a volume's world to another anatomical space: changes the signs of x, of y or of both. Logs the
- * conversion. */
-static void turn_into(hl_context *context, const char *path, hl_space wanted, hl_volume *volume) {
-  static const double signs[][2] = {
-      [HL_SPACE_RAS] = {1, 1}, [HL_SPACE_LPS] = {-1, -1}, [HL_SPACE_LAS] = {-1, 1}};
-  if (wanted == HL_SPACE_UNKNOWN || volume->space == HL_SPACE_UNKNOWN || volume->space == wanted) return;
-  affine3 *place = &volume->index_to_world;
-  const vec3 zero = {0, 0, 0}; /* subtracting from zero avoids -0 */
-  if (signs[wanted][0] != signs[volume->space][0]) {
-    place->linear.row[0] = vec3_subtract(zero, place->linear.row[0]);
-    place->offset.x = 0 - place->offset.x;
-  }
-  if (signs[wanted][1] != signs[volume->space][1]) {
-    place->linear.row[1] = vec3_subtract(zero, place->linear.row[1]);
-    place->offset.y = 0 - place->offset.y;
-  }
-  hl_log(context, HL_LOG_WARNING, "%s: its world is %s: it is turned into %s, that of the volumes before it",
-         path, hl_space_name(volume->space), hl_space_name(wanted));
-  volume->space = wanted;
 }
 
 /* Refuses the name of a series if the file has no series. */
@@ -382,6 +367,13 @@ static hl_status finish(hl_load_request *request, const char *path, hl_status st
   return HL_OK;
 }
 
+/* Applies the options that say in which anatomical space the volume's world is. */
+static void place_in_body(hl_context *context, const char *path, const hl_volume_load_options *options,
+                          hl_volume *volume) {
+  hl_volume_state_space(context, path, options->file_space, volume);
+  hl_volume_turn_into(context, path, options->space, volume);
+}
+
 hl_status hl_volume_load_with(hl_context *context, const char *path, const hl_volume_load_options *options,
                               hl_volume **volume, hl_error *error) {
   HL_DOOR;
@@ -393,6 +385,8 @@ hl_status hl_volume_load_with(hl_context *context, const char *path, const hl_vo
   if (options == NULL) options = &chosen;
   hl_status status = check_options(options, error);
   if (status != HL_OK) return status;
+  /* the parts that pictures see lie in the world of a file only if this world is not turned afterwards */
+  const bool seen_in_file = options->file_space == NULL;
   hl_load_request request = {.context = context,
                              .array = options->array,
                              .component = options->component,
@@ -403,7 +397,7 @@ hl_status hl_volume_load_with(hl_context *context, const char *path, const hl_vo
                              .level = options->level,
                              .pixels = options->pixels,
                              .preview_pixels = options->preview_pixels,
-                             .coarse = options->coarse,
+                             .coarse = seen_in_file ? options->coarse : NULL,
                              .seen = options->seen,
                              .seen_count = options->seen_count,
                              .selection = {1, 1, 1, 0, 0, 0, 0}};
@@ -414,7 +408,7 @@ hl_status hl_volume_load_with(hl_context *context, const char *path, const hl_vo
     status = on_server ? load_from_server(path, &request, volume, error)
                        : load_folder(path, &request, volume, error);
     status = finish(&request, path, status, volume, error);
-    if (status == HL_OK) turn_into(context, path, options->space, *volume);
+    if (status == HL_OK) place_in_body(context, path, options, *volume);
     return status;
   }
   status = options->bytes != NULL
@@ -423,7 +417,7 @@ hl_status hl_volume_load_with(hl_context *context, const char *path, const hl_vo
   if (status == HL_OK) status = load(&stream, &request, volume, error);
   hl_stream_close(stream);
   status = finish(&request, path, status, volume, error);
-  if (status == HL_OK) turn_into(context, path, options->space, *volume);
+  if (status == HL_OK) place_in_body(context, path, options, *volume);
   return status;
 }
 

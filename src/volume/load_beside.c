@@ -32,6 +32,10 @@ bool hl_takes_spacing_beside(const hl_volume *map, const hl_volume *volume, cons
          (stated[0] > 0 || (tells_no_spacing(map) && !tells_no_spacing(volume)));
 }
 
+bool hl_takes_space_beside(const hl_volume *map, const char *stated_space) {
+  return stated_space != NULL && map->space == HL_SPACE_UNKNOWN;
+}
+
 /* Warns if the boxes of a map and of the volume have no place in common, so that nothing of the map is seen.
  */
 static void tell_of_place(hl_context *context, const char *path, const hl_volume *map,
@@ -54,14 +58,17 @@ static void tell_of_place(hl_context *context, const char *path, const hl_volume
 }
 
 hl_status hl_volume_load_beside(hl_context *context, const char *path, const hl_volume *volume,
-                                const double stated[3], hl_volume_load_options *options, hl_volume **map,
-                                hl_error *error) {
+                                const double stated[3], const char *stated_space,
+                                hl_volume_load_options *options, hl_volume **map, hl_error *error) {
   hl_status status = hl_volume_load_with(context, path, options, map, error);
   if (status != HL_OK || volume == NULL) return status;
-  if (!(options->spacing[0] > 0) && hl_takes_spacing_beside(*map, volume, stated)) {
+  const bool spaced = !(options->spacing[0] > 0) && hl_takes_spacing_beside(*map, volume, stated);
+  const bool turned = options->file_space == NULL && hl_takes_space_beside(*map, stated_space);
+  if (spaced) hl_spacing_beside(volume, stated, options->spacing);
+  if (turned) options->file_space = stated_space;
+  if (spaced || turned) {
     hl_volume_release(*map);
     *map = NULL;
-    hl_spacing_beside(volume, stated, options->spacing);
     status = hl_volume_load_with(context, path, options, map, error);
   }
   if (status == HL_OK) tell_of_place(context, path, *map, volume);

@@ -14,11 +14,16 @@ void hl_spacing_beside(const hl_volume *volume, const double stated[3], double s
  * spacing, because files of bare voxels tell none, or the map's file tells neither a spacing nor a unit. */
 bool hl_takes_spacing_beside(const hl_volume *map, const hl_volume *volume, const double stated[3]);
 
-/* Loads a label map as hl_volume_load_with() does, with the spacing of hl_spacing_beside() if the map takes
- * it. volume: may be null. options->spacing is set to the spacing by which the map was read; a spacing that
- * it has already stays. Warns if none of the map lies in the volume's box. */
+/* Returns whether a label map takes the anatomical space that the user has stated for the volume (null:
+ * none). It does if its own file tells no space. */
+bool hl_takes_space_beside(const hl_volume *map, const char *stated_space);
+
+/* Loads a label map as hl_volume_load_with() does, with the spacing of hl_spacing_beside() and the stated
+ * space if the map takes them. volume: may be null. options->spacing and options->file_space are set to those
+ * by which the map was read; those that they have already stay. Warns if none of the map lies in the volume's
+ * box. */
 hl_status hl_volume_load_beside(hl_context *context, const char *path, const hl_volume *volume,
-                                const double stated[3], hl_volume_load_options *options, hl_volume **map,
-                                hl_error *error);
+                                const double stated[3], const char *stated_space,
+                                hl_volume_load_options *options, hl_volume **map, hl_error *error);
 
 #endif

@@ -165,6 +165,7 @@ CASES = {
     "channel": [".ome.zarr --channel 1"],
     "level": [".ome.zarr --level 1", ".ome.zarr --size 6x6"],
     "spacing": ["--spacing 1,2,3", ".seg.nrrd --show all --spacing 1,2,3"],
+    "space": ["--space LPS", "--space PIR", ".seg.nrrd --show all --space PIR"],
     "look": [f"--look {look}" for look in ("auto", "surface", "translucent", "xray", "smoke", "vessels", "mip")],
     "tf": ["--tf look.json", "--tf ct-bone"],
     "colormap": ["--colormap viridis", "--colormap viridis --look mip"],

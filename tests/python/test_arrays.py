@@ -171,6 +171,31 @@ def test_masked_voxels_are_transparent(blob):
     assert halflight.info(masked).nonfinite_count == (blob < 100).sum()
 
 
+@pytest.mark.parametrize(("letters", "space", "columns"), [
+    ("RAS", "RAS", [(1, 0, 0), (0, 1, 0), (0, 0, 1)]), ("lps", "LPS", [(1, 0, 0), (0, 1, 0), (0, 0, 1)]),
+    ("PIR", "RAS", [(0, -1, 0), (0, 0, -1), (1, 0, 0)]), ("SLA", "RAS", [(0, 0, 1), (-1, 0, 0), (0, 1, 0)])])
+def test_directions_in_the_body(letters, space, columns, tmp_path):
+    """An array and a file of the same voxels lie in the body as three letters say."""
+    array = np.arange(24, dtype=np.uint8).reshape(2, 3, 4)
+    np.save(tmp_path / "box.npy", array)
+    for source in array, tmp_path / "box.npy":
+        info = halflight.info(source, spacing=(3, 2, 1), space=letters)
+        assert info.space == space and info.spacing.tolist() == [1, 2, 3]
+        assert list(map(tuple, info.direction.T.tolist())) == columns
+    placed = [halflight.info(array, origin=(7, 8, 9), space=one).origin.tolist() for one in ("LPS", "IRA")]
+    assert placed == [[7, 8, 9], [8, 9, -7]]
+    for wrong in "RA", "RAR", "RASS", "xyz":
+        with pytest.raises(ValueError, match="R or L"):
+            halflight.Volume(array, space=wrong)
+    pictures = [np.asarray(halflight.render(source, space=letters, slice="sagittal", size=32)) for source in (array, str(tmp_path / "box.npy"))]
+    assert np.array_equal(*pictures)
+
+
+def test_units_are_told(tmp_path):
+    halflight.Volume(np.zeros((2, 2, 2), np.uint8)).save(tmp_path / "a.nrrd", unit="um")
+    assert halflight.info(tmp_path / "a.nrrd").unit == "micrometre" and halflight.info(np.zeros((2, 2, 2), np.uint8)).unit is None
+
+
 def test_place():
     array = np.zeros((2, 3, 4), np.uint8)
     info = halflight.info(array, spacing=(3, 2, 1), origin=(7, 8, 9), direction=[[0, -1, 0], [1, 0, 0], [0, 0, 1]])

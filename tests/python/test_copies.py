@@ -39,11 +39,11 @@ def test_volumes_of_arrays(blob, kind):
 def test_volumes_of_files_name_them(tmp_path, blob, monkeypatch):
     np.save(tmp_path / "two.npy", np.stack([blob, blob[::-1]], axis=-1))
     monkeypatch.chdir(tmp_path)
-    volume = Volume("two.npy", component=1, spacing=(1, 1, 2))
+    volume = Volume("two.npy", component=1, spacing=(1, 1, 2), space="LPS")
     sent = pickle.dumps(volume)
     monkeypatch.chdir("/")
     assert len(sent) < 2000 and np.array_equal(np.asarray(pickle.loads(sent)), blob[::-1])
-    assert pickle.loads(sent).info().spacing.tolist() == [2, 1, 1]
+    assert pickle.loads(sent).info().spacing.tolist() == [2, 1, 1] and pickle.loads(sent).info().space == "LPS"
 
 
 def test_scenes(blob, tmp_path):

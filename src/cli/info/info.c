@@ -25,6 +25,7 @@ enum info_option {
   INFO_CHANNEL,
   INFO_LEVEL,
   INFO_SPACING,
+  INFO_SPACE,
   INFO_UNIT,
   INFO_LABEL_TABLE,
   INFO_MAX_MEMORY,
@@ -42,6 +43,7 @@ static const cli_option info_options[INFO_OPTION_COUNT] = {
     INPUT_OPTIONS(INFO_ARRAY, NULL),
     [INFO_CHANNEL] = INPUT_OPTION_CHANNEL,
     [INFO_SPACING] = INPUT_OPTION_SPACING,
+    [INFO_SPACE] = INPUT_OPTION_SPACE,
     [INFO_UNIT] = {.name = "unit",
                    .kind = OPTION_TEXT,
                    .argument = "UNIT",
@@ -59,6 +61,7 @@ static int info_of_volume(cli_host *host, const cli_value *values, const cli_inp
   hl_volume_load_options load;
   hl_error error = {0};
   json_writer json = {0};
+  if (input_check_place(&values[INFO_SPACING]) != EXIT_CODE_OK) return EXIT_CODE_USAGE;
   input_load_options(&values[INFO_ARRAY], &values[INFO_SPACING], &load);
   load.pixels = input_picture_side(); /* the properties are printed for the resolution that a picture shows */
   hl_status status = input_load_volume(host->context, input, &load, &volume, &error);

@@ -16,9 +16,9 @@ static bool has_any(const cli_value *values, const int *options, size_t count) {
 
 /* Returns whether the options ask for all voxels of volumes, so that no coarser ones are read first. */
 static bool reads_whole(const cli_value *values) {
-  static const int whole[] = {RENDER_LEVEL, RENDER_SPACING,     RENDER_SLICE,  RENDER_LABELS,
-                              RENDER_MASK,  RENDER_VOLUME,      RENDER_STRIPS, RENDER_LABEL_TABLE,
-                              RENDER_SHOW,  RENDER_RANGE_OF_ALL};
+  static const int whole[] = {RENDER_LEVEL,       RENDER_SPACING, RENDER_SPACE,       RENDER_SLICE,
+                              RENDER_LABELS,      RENDER_MASK,    RENDER_VOLUME,      RENDER_STRIPS,
+                              RENDER_LABEL_TABLE, RENDER_SHOW,    RENDER_RANGE_OF_ALL};
   return has_any(values, whole, sizeof whole / sizeof *whole);
 }
 

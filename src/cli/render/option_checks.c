@@ -71,6 +71,7 @@ int render_check_options(const cli_value *values) {
       return fail(EXIT_CODE_USAGE, "--%s shares a picture by sheets: remove --%s",
                   render_options[over_ranks].name, render_options[alone[n]].name);
   int exit_code = input_check_channels(&values[RENDER_CHANNEL]);
+  if (exit_code == EXIT_CODE_OK) exit_code = input_check_place(&values[RENDER_SPACING]);
   if (exit_code == EXIT_CODE_OK) exit_code = render_check_scene_options(values);
   if (exit_code != EXIT_CODE_OK) return exit_code;
   exit_code = check_linear_output(values, named);

@@ -163,6 +163,7 @@ const cli_option render_options[RENDER_OPTION_COUNT] = {
     [RENDER_LEVEL] = INPUT_OPTION_LEVEL,
     [RENDER_CHANNEL] = INPUT_OPTION_CHANNELS,
     [RENDER_SPACING] = INPUT_OPTION_SPACING,
+    [RENDER_SPACE] = INPUT_OPTION_SPACE,
     [RENDER_SMOOTH] =
         {.name = "smooth",
          .kind = OPTION_NUMBERS,

@@ -1,5 +1,5 @@
 # Words of other programs lead to the option that does the same; the nearest word is told beside it.
-for word in space panel-label bounding-box rotate pitch resize samples isovalue bg cmap resolution clim crop dump fov spp voxel-size field band light-dir slices hdri colorbar measure; do
+for word in anatomical-space panel-label bounding-box rotate pitch resize samples isovalue bg cmap resolution clim crop dump fov spp voxel-size field band light-dir slices hdri colorbar measure; do
   halflight render --$word 1 x.nrrd 2>>told || true
 done
 sed 's/.*unknown option //' told
