@@ -89,8 +89,8 @@ static void colormap_by_logarithms(void **state) {
   assert_int_equal(hl_transfer_function_colormap_scaled(context, "hot", refused, HL_RANGE_LOG, &f, &error),
                    HL_ERROR_INPUT);
   assert_string_equal(error.message,
-                      "a logarithmic range must be above 0, and 0 to 10 is not: give another "
-                      "range, or the linear scale");
+                      "a logarithmic range must begin above 0, and 0 to 10 does not: give a range such as "
+                      "0.01 to 10, or the linear scale");
   hl_transfer_function_release(context, &f);
   assert_int_equal(hl_context_memory_held(context), 0);
   hl_context_destroy(context);

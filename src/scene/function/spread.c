@@ -165,11 +165,13 @@ static hl_status spread_checked(hl_context *context, const hl_transfer_function 
   if (!(range[0] < range[1]) || !isfinite(range[1] - range[0]))
     return hl_fail(error, HL_ERROR_INPUT, "range %.9g to %.9g is empty: give two values, the lower one first",
                    range[0], range[1]);
-  if (scale == HL_RANGE_LOG && !(range[0] > 0 && isfinite(range[1] / range[0])))
+  if (scale == HL_RANGE_LOG && !(range[0] > 0 && isfinite(range[1] / range[0]))) {
+    const double high = range[1] > 0 ? range[1] : 1000;
     return hl_fail(error, HL_ERROR_INPUT,
-                   "a logarithmic range must be above 0, and %.9g to %.9g is not: give another range, or "
-                   "the linear scale",
-                   range[0], range[1]);
+                   "a logarithmic range must begin above 0, and %.9g to %.9g does not: give a range such as "
+                   "%.3g to %.9g, or the linear scale",
+                   range[0], range[1], high / 1000, high);
+  }
   hl_transfer_function made = {.unit_distance = from->unit_distance};
   hl_status status = spread_all(context, from, old, held, range, scale, &made, error);
   if (status == HL_OK) *to = made;

@@ -8,6 +8,7 @@
 #include "core/file.h"
 #include "core/memory.h"
 #include "scene/function/transfer_function.h"
+#include "text/color.h"
 #include "text/plain.h"
 #include "volume/io/text.h"
 
@@ -135,13 +136,10 @@ static bool read_color(const word *words, double color[3]) {
   return true;
 }
 
-/* Reads a colour that is written as "#rrggbb". */
+/* Reads a colour that is written as #rrggbb, or as a name of CSS. */
 static bool read_web_color(const char *text, double color[3]) {
-  char *end;
-  if (text[0] != '#' || strspn(text + 1, "0123456789abcdefABCDEF") != 6 || text[7] != 0) return false;
-  const unsigned long rgb = strtoul(text + 1, &end, 16);
-  for (int c = 0; c < 3; c++) color[c] = hl_srgb_decode((double)(rgb >> (16 - 8 * c) & 255) / 255);
-  return true;
+  const bool is_number = text[0] >= '0' && text[0] <= '9';
+  return !is_number && hl_parse_color(text, 0, 1, color);
 }
 
 /* Reads a label from one line. Returns false if the line has none of the known forms. */

@@ -19,12 +19,13 @@ shown snap.txt --show 'part: left,part:2:0.5'
 shown snap.txt --show 'part:2'
 shown mark.csv
 shown dseg.tsv --show 'Left Cortex=red:0.25'
-# Columns may be named in a first line, in any order, with colours as "#rrggbb" or as three columns; a "#rrggbb" after a name needs none.
+# Columns may be named in a first line, in any order, with colours as "#rrggbb" or as three columns or by their names in CSS; a colour after a name needs none.
 printf '%s\n' 'Name;Label;Red;Green;Blue' 'Left Cortex;13;0;255;0' 'b;42;0;0;255' >columns.csv
 printf '%s\n' '"name","id","color"' '"Cortex, left",13,#00ff00' 'b,42,n/a' >quoted.csv
 printf '%s\n' 'label,name,color' '13,Left Cortex,#00ff00' '42,b,#0000ff' >hex.csv
 printf '%s\n' '13,Left Cortex,#00ff00' '42,b,#0000ff' >bare.csv
-for table in columns.csv quoted.csv hex.csv bare.csv; do shown $table | sed -n 1p; done
+printf '%s\n' 'label,name,color' '13,Left Cortex,lime' '42,b,blue' >words.csv
+for table in columns.csv quoted.csv hex.csv bare.csv words.csv; do shown $table | sed -n 1p; done
 printf '%s\n' 'label,name,color' '13,Left Cortex,greenish' >wrong.csv
 if halflight render labels.npy --label-table wrong.csv -o p.png 2> refused.txt; then exit 1; fi
 grep -o 'wrong.csv: line 2: is no label' refused.txt
