@@ -80,8 +80,12 @@ void opened_close(server *s, long long number) {
 /* Makes a state of a scene, which is retained; null if there is no memory. */
 static opened_state *make_state(const server *s, hl_scene *scene, const char *title, long long number,
                                 int refined) {
-  const start_about about = {title, number, s->below != NULL, refined,
-                             s->options.refine != NULL && hl_scene_is_coarse(hl_scene_describe(scene))};
+  const start_about about = {title,
+                             number,
+                             s->below != NULL,
+                             refined,
+                             s->options.refine != NULL && hl_scene_is_coarse(hl_scene_describe(scene)),
+                             s->options.unit};
   opened_state *state = calloc(1, sizeof *state);
   char *start = state != NULL ? describe_start(s->options.context, scene, &about) : NULL;
   if (start == NULL) {

@@ -54,6 +54,8 @@ typedef struct server_options {
   hl_context *context; /* its `cancelled` callback is server_is_outdated() */
   hl_scene *scene;
   const char *title;  /* the input's name, for the page's title */
+  const char *unit;   /* unit of lengths, where the files of open scenes tell none; null if there is no such
+                       * unit */
   const char *folder; /* absolute path; pages may open files below it; if null, pages may open no files */
   hl_status (*open)(void *files_data, const server_file *file, hl_scene **scene, hl_error *error);
   /* Reads volumes whose files have finer resolutions than were read (hl_volume_selection.aim), at the next

@@ -142,6 +142,13 @@ static void put_resolution(FILE *out, const hl_volume *volume) {
   fprintf(out, ",\"level_follows_view\":%s", follows ? "true" : "false");
 }
 
+/* Writes a unit of lengths; null stands for an unknown one. */
+static void put_unit(FILE *out, const char *unit) {
+  fputs(",\"unit\":", out);
+  if (unit != NULL) put_json_text(out, unit);
+  else fputs("null", out);
+}
+
 static void put_volume(FILE *out, hl_context *context, const hl_scene_volume *volume) {
   hl_volume_info info = {.struct_size = sizeof info};
   if (hl_volume_get_info(volume->volume, &info) != HL_OK) {
@@ -162,10 +169,7 @@ static void put_volume(FILE *out, hl_context *context, const hl_scene_volume *vo
   fputs(",\"space\":", out);
   if (space != NULL) put_json_text(out, space);
   else fputs("null", out);
-  const char *unit = hl_volume_unit(volume->volume);
-  fputs(",\"unit\":", out);
-  if (unit != NULL) put_json_text(out, unit);
-  else fputs("null", out);
+  put_unit(out, hl_volume_unit(volume->volume));
   fputs(",\"plane\":", out);
   put_plane_histogram(out, volume->volume, &info);
   put_chosen(out, context, volume);
@@ -215,6 +219,7 @@ char *describe_start(hl_context *context, const hl_scene *opened, const start_ab
     put_json_text(out, about->title);
     fprintf(out, ",\"opened\":%lld,\"folder\":%s,\"refined\":%d,\"refining\":%s", about->number,
             about->folder ? "true" : "false", about->refined, about->refining ? "true" : "false");
+    put_unit(out, about->unit);
     fprintf(out, ",\"scene\":%s,\"volumes\":[", scene);
     for (size_t v = 0; v < d->volume_count; v++) {
       if (v > 0) fputc(',', out);

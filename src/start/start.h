@@ -16,6 +16,8 @@ typedef struct start_about {
   bool folder;      /* whether the page may list and open other files */
   int refined;      /* number of times that volumes were replaced by their finer resolutions */
   bool refining;    /* whether finer resolutions will still be read */
+  const char *unit; /* the unit of lengths with which the page begins, where the scene's files tell none; null
+                     * if there is no such unit */
 } start_about;
 
 /* Writes start.json of an open scene. The caller frees the text by free(). Returns null if memory is

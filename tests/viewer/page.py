@@ -375,6 +375,11 @@ with tempfile.TemporaryDirectory() as folder:
         counts = browser.run("halflight.frames.statistics")
         bar = "document.querySelector('.scale text').textContent"
         check(re.fullmatch(r"[\d.]+", browser.run(bar)), f"a scale without a unit: {browser.run(bar)}")
+        with Viewer(PROGRAM, "rings.nrrd", "--unit", "cm") as told:
+            browser.open(told.url)
+            rest(browser)
+            check(re.fullmatch(r"[\d.]+ cm", browser.run(bar)), f"a scale in the unit of --unit: {browser.run(bar)}")
+            check(browser.run("!document.getElementById('scale-bar').disabled && document.getElementById('unit').value === 'cm'"), "which fills the field")
         subprocess.run([PROGRAM, "convert", "rings.nrrd", "rings.mrc", "--quiet"], check=True)
         with Viewer(PROGRAM, "rings.mrc") as map_viewer:
             browser.open(map_viewer.url)

@@ -45,7 +45,6 @@ static bool has_render_option(size_t row) {
     case RENDER_SIZE:
     case RENDER_NO_METADATA:
     case RENDER_SCALE_BAR:
-    case RENDER_UNIT:
     case RENDER_LEGEND:
     case RENDER_AXES:
     case RENDER_MARKS:
@@ -152,6 +151,7 @@ static int run_view(const cli_value *values, char **inputs) {
     server_options server = {.context = job.host.context,
                              .scene = job.scene,
                              .title = title,
+                             .unit = render[RENDER_UNIT].text,
                              .folder = getcwd(folder, sizeof folder),
                              .open = view_open_file,
                              .refine = view_refine_scene,

@@ -228,7 +228,7 @@ export function mount(element, channel, whole, { keyboard = element, reopen = ()
   const root = element.firstElementChild, find = (id) => root.querySelector(`#${id}`);
   const ended = new AbortController();
   const start = startOf(kept?.scene ?? whole.scene, whole);
-  const store = new Store(kept?.scene ?? start.scene, { ...kept, source: kept?.own ?? source, title: kept?.title ?? whole.title }), report = messageBox(find("message"));
+  const store = new Store(kept?.scene ?? start.scene, { ...kept, page: { ...(whole.unit ? { unit: whole.unit } : {}), ...kept?.page }, source: kept?.own ?? source, title: kept?.title ?? whole.title }), report = messageBox(find("message"));
   const viewer = { store, start, channel, smallPicture: smallPictures(channel, store), report, reopen, root, find, source, startAfresh, choose, copy: copier(report, store), current: new Current(store), address, atRest: [], frames: () => frames, waits: (promise) => status.wait(promise) };
   const connection = watchConnection(root.querySelector("main"), channel, report, { onBack: () => { frames.move(); viewer.slices.update(); }, save: () => viewer.saveSession() });
   viewer.failed = connection.failed;
