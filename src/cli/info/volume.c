@@ -314,6 +314,11 @@ static const char *value_text(const hl_volume *volume, int end, double value,
   return text;
 }
 
+/* Returns whether data of this kind (hl_volume_guess()) may be a scan of a body. */
+static bool may_be_body(const char *kind) {
+  return strncmp(kind, "scanned", strlen("scanned")) == 0 || strcmp(kind, "vessels") == 0;
+}
+
 static void print_text(const char *path, const hl_volume *volume, const char *unit,
                        const hl_volume_info *info, const double percentiles[PERCENTS], const char *kind,
                        const char *next) {
@@ -330,7 +335,8 @@ static void print_text(const char *path, const hl_volume *volume, const char *un
   print_segments(volume);
   print_label_maps(NULL, path, volume);
   printf("  spacing     %.9g, %.9g, %.9g\n", info->spacing[0], info->spacing[1], info->spacing[2]);
-  if (unit != NULL) printf("  unit        %s\n", unit);
+  printf("  unit        %s\n",
+         unit != NULL ? unit : "not told by the file: --unit mm, or another one, states it");
   printf("  origin      %.9g, %.9g, %.9g\n", info->origin[0], info->origin[1], info->origin[2]);
   for (int axis = 0; axis < 3; axis++)
     printf("  %s      %c: %.9g, %.9g, %.9g\n", axis == 0 ? "axes  " : "      ", "ijk"[axis], d[0][axis],
@@ -340,6 +346,10 @@ static void print_text(const char *path, const hl_volume *volume, const char *un
   printf("  world box   x %.9g to %.9g, y %.9g to %.9g, z %.9g to %.9g\n", low[0], high[0], low[1], high[1],
          low[2], high[2]);
   if (info->space != HL_SPACE_UNKNOWN) printf("  space       %s\n", hl_space_name(info->space));
+  else if (may_be_body(kind))
+    printf(
+        "  space       not told by the file: --space RAS, or other letters, states the directions of a "
+        "body\n");
   char least[HL_NUMBER_TEXT_BYTES], greatest[HL_NUMBER_TEXT_BYTES];
   printf("  range       %s to %s, mean %.9g\n", value_text(volume, 0, info->range[0], least),
          value_text(volume, 1, info->range[1], greatest), info->mean);

@@ -8,8 +8,12 @@ grep -q '^  taken for   scanned matter' text
 grep -q '^  next best   --look translucent$' text
 grep -q '^  range       0 to 255, mean ' text
 test "$(grep -c '%$' text)" -eq 16
-# The unit of lengths, where the file tells one.
-if grep '^  unit' text; then exit 9; fi
+# The unit of lengths and the directions of a body, where the file tells them; else the options that state them.
+grep -q '^  unit        not told by the file: --unit mm' text
+grep -q '^  space       not told by the file: --space RAS' text
+halflight info ball_16x16x16_uint8.raw --space LAS --unit nm >stated
+grep -q '^  unit        nm$' stated
+grep -q '^  space       LAS$' stated
 halflight convert --quiet ball_16x16x16_uint8.raw ball.mrc
 halflight info ball.mrc | grep -q '^  unit        angstrom$'
 # A series of plain volumes has time steps, not components.
