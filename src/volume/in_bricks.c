@@ -85,32 +85,11 @@ void hl_volume_row_of_bricks(const hl_volume *volume, size_t j, size_t k, float 
 
 /* ---- statistics ---- */
 
-typedef struct brick_tally {
+typedef struct brick_walk {
   const hl_volume *volume;
-  double low, high, sum;
-  double counted;   /* cells of level 0 */
-  double nonfinite; /* the number of voxels whose coefficient is not finite; each voxel counts as one cell of
-                     * level 0 */
-  bool binned;      /* whether this is the second pass, which counts the values in the histogram; the first
-                     * pass finds the range */
-} brick_tally;
-
-static void add_value(brick_tally *tally, float value, uint64_t weight, uint64_t *histogram) {
-  if (!isfinite(value)) {
-    tally->nonfinite += (double)weight;
-    return;
-  }
-  if (tally->binned) {
-    double width = tally->high - tally->low;
-    double place = width > 0 ? ((double)value - tally->low) * (HL_HISTOGRAM_BINS / width) : 0;
-    histogram[place < HL_HISTOGRAM_BINS - 1 ? (int)place : HL_HISTOGRAM_BINS - 1] += weight;
-    return;
-  }
-  tally->low = fmin(tally->low, (double)value);
-  tally->high = fmax(tally->high, (double)value);
-  tally->sum += (double)value * (double)weight;
-  tally->counted += (double)weight;
-}
+  hl_coefficient_visit *visit;
+  void *data;
+} brick_walk;
 
 /* Finds the lattice points of level 0 in the volume's box, along an axis: range[0] to range[1] - 1. */
 static void points_in_box(const hl_volume *volume, int axis, int64_t range[2]) {
@@ -128,22 +107,22 @@ static int64_t share_of(const int64_t box[2], int64_t cell, int level) {
   return end > first ? end - first : 0;
 }
 
-/* Adds the values of the block's brick to the tally. A brick of several blocks is added only with its first
- * block. A block without a brick adds its constant. */
-static void add_block(brick_tally *tally, const int64_t block[3], uint64_t *histogram) {
-  const hl_bricks *bricks = tally->volume->bricks;
+/* Visits the coefficients of the block's brick. A brick of several blocks is visited only with its first
+ * block. A block without a brick has one coefficient, its constant. */
+static void visit_block(const brick_walk *walk, const int64_t block[3]) {
+  const hl_bricks *bricks = walk->volume->bricks;
   const hl_brick_entry *entry = hl_bricks_entry(bricks, block);
   int level = entry->slot >= 0 ? entry->level : 0;
   int64_t side = (int64_t)1 << bricks->shift, box[3][2], first[3];
   for (int axis = 0; axis < 3; axis++) {
     if ((block[axis] & (((int64_t)1 << level) - 1)) != 0) return;
     first[axis] = block[axis] >> level << bricks->shift;
-    points_in_box(tally->volume, axis, box[axis]);
+    points_in_box(walk->volume, axis, box[axis]);
   }
   if (entry->slot < 0) {
     int64_t points = 1;
     for (int axis = 0; axis < 3; axis++) points *= share_of(box[axis], block[axis], bricks->shift);
-    if (points > 0) add_value(tally, entry->constant, (uint64_t)points, histogram);
+    if (points > 0) walk->visit(walk->data, entry->constant, (uint64_t)points);
     return;
   }
   size_t width = hl_brick_width(bricks);
@@ -154,30 +133,56 @@ static void add_block(brick_tally *tally, const int64_t block[3], uint64_t *hist
       const float *row = brick + ((size_t)(k + 1) * width + (size_t)(j + 1)) * width + 1;
       for (int64_t i = 0; i < side && across > 0; i++) {
         int64_t points = across * share_of(box[0], first[0] + i, level);
-        if (points > 0) add_value(tally, row[i], (uint64_t)points, histogram);
+        if (points > 0) walk->visit(walk->data, row[i], (uint64_t)points);
       }
     }
 }
 
-static bool add_blocks(brick_tally *tally, uint64_t *histogram) {
-  const hl_bricks *bricks = tally->volume->bricks;
+bool hl_volume_visit_bricks(const hl_volume *volume, hl_coefficient_visit *visit, void *data) {
+  const brick_walk walk = {volume, visit, data};
   int64_t block[3], count[3];
-  for (int axis = 0; axis < 3; axis++) count[axis] = (int64_t)bricks->directory_size[axis];
+  for (int axis = 0; axis < 3; axis++) count[axis] = (int64_t)volume->bricks->directory_size[axis];
   for (block[2] = 0; block[2] < count[2]; block[2]++) {
-    if (hl_cancelled(tally->volume->context)) return false;
+    if (hl_cancelled(volume->context)) return false;
     for (block[1] = 0; block[1] < count[1]; block[1]++)
-      for (block[0] = 0; block[0] < count[0]; block[0]++) add_block(tally, block, histogram);
+      for (block[0] = 0; block[0] < count[0]; block[0]++) visit_block(&walk, block);
   }
   return true;
 }
 
+typedef struct brick_tally {
+  double low, high, sum;
+  double counted;      /* cells of level 0 */
+  double nonfinite;    /* the number of cells of level 0 whose coefficient is not finite */
+  uint64_t *histogram; /* [HL_HISTOGRAM_BINS] */
+} brick_tally;
+
+static void add_to_range(void *data, float value, uint64_t count) {
+  brick_tally *tally = data;
+  if (!isfinite(value)) {
+    tally->nonfinite += (double)count;
+    return;
+  }
+  tally->low = fmin(tally->low, (double)value);
+  tally->high = fmax(tally->high, (double)value);
+  tally->sum += (double)value * (double)count;
+  tally->counted += (double)count;
+}
+
+static void add_to_bin(void *data, float value, uint64_t count) {
+  brick_tally *tally = data;
+  if (!isfinite(value)) return;
+  const double width = tally->high - tally->low;
+  const double place = width > 0 ? ((double)value - tally->low) * (HL_HISTOGRAM_BINS / width) : 0;
+  tally->histogram[place < HL_HISTOGRAM_BINS - 1 ? (int)place : HL_HISTOGRAM_BINS - 1] += count;
+}
+
 hl_status hl_volume_measure_bricks(hl_volume *volume, const char *subject, hl_error *error) {
-  brick_tally tally = {.volume = volume, .low = INFINITY, .high = -INFINITY};
+  brick_tally tally = {.low = INFINITY, .high = -INFINITY, .histogram = volume->histogram};
   memset(volume->histogram, 0, sizeof volume->histogram);
-  bool finished = add_blocks(&tally, NULL);
+  bool finished = hl_volume_visit_bricks(volume, add_to_range, &tally);
   volume->nonfinite_count = (uint64_t)tally.nonfinite;
-  tally.binned = true;
-  if (finished && tally.counted > 0) finished = add_blocks(&tally, volume->histogram);
+  if (finished && tally.counted > 0) finished = hl_volume_visit_bricks(volume, add_to_bin, &tally);
   if (!finished) return hl_fail(error, HL_ERROR_CANCELLED, "%s: cancelled", subject);
   if (!(tally.counted > 0)) return HL_OK;
   volume->minimum = tally.low;

@@ -33,10 +33,16 @@ void hl_volume_set_field_error(hl_volume *volume, double value, const char *kind
 hl_status hl_volume_check_bricks(const hl_bricks *bricks, const hl_volume_description *grid,
                                  const char *subject, hl_error *error);
 
-/* Finds the statistics of a volume from the coefficients of its bricks. A coefficient counts as often as its
- * cell contains cells of level 0 in the volume's box, so that the counts of all coefficients add up to the
- * number of voxels. Coefficients that are not finite do not count in range and mean. */
+/* Finds the statistics of a volume from the coefficients that hl_volume_visit_bricks() visits. Coefficients
+ * that are not finite do not count in range and mean. */
 hl_status hl_volume_measure_bricks(hl_volume *volume, const char *subject, hl_error *error);
+
+/* A coefficient, and the number of cells of level 0 for which it counts. It counts as often as its cell
+ * contains cells of level 0 in the volume's box, so that the counts of all coefficients add up to the number
+ * of voxels. */
+typedef void hl_coefficient_visit(void *data, float value, uint64_t count);
+/* Calls `visit` for the coefficients of all bricks. Returns false if cancelled. */
+bool hl_volume_visit_bricks(const hl_volume *volume, hl_coefficient_visit *visit, void *data);
 
 /* The number of a voxel. If voxels are lattice points, it is the coefficient of level 0: a dense volume of
  * these numbers has the same field under the smoothing kernel. Otherwise it is the field's value. */

@@ -4,7 +4,8 @@
  * exactly. f32 voxels take one pass for range, sum and finiteness, and one for the histogram. Percentiles are
  * exact, too. They need the value at a given rank in ascending order. For floats this value is found by
  * counting first the upper halves of the values' bits and then the lower halves. For the file's own numbers
- * (exact.h) there are four such steps of 16 bits. */
+ * (exact.h) there are four such steps of 16 bits. Coefficients of a field in bricks are counted brick by
+ * brick, so that a field takes no longer than its bricks, however many voxels it has. */
 #include "volume/statistics.h"
 
 #include <float.h>
@@ -16,6 +17,7 @@
 #include "core/memory.h"
 #include "volume/counts.h"
 #include "volume/exact.h"
+#include "volume/in_bricks.h"
 #include "volume/store/pages.h"
 
 enum { LANES = 8 };
@@ -350,14 +352,23 @@ static double stored_of_key(const ranking *r, uint32_t key) {
   return (double)value;
 }
 
+static void count_upper_half(void *data, float value, uint64_t count) {
+  ranking *r = data;
+  if (fabsf(value) <= FLT_MAX) r->upper[key_of_f32(value) >> 16] += count;
+}
+
+static void count_lower_half(void *data, float value, uint64_t count) {
+  ranking *r = data;
+  const uint32_t key = key_of_f32(value);
+  if (key >> 16 == r->opened && fabsf(value) <= FLT_MAX) r->lower[key & 0xffffu] += count;
+}
+
 /* Counts the upper halves of the keys of floats. */
 static bool count_upper_f32(ranking *r) {
+  if (r->volume->bricks != NULL) return hl_volume_visit_bricks(r->volume, count_upper_half, r);
   walk w = {.volume = r->volume, .buffer = r->buffer, .count = counted_voxels(r->volume)};
   while (next_piece(&w))
-    for (size_t n = 0; n < w.piece; n++) {
-      float value = ((const float *)w.voxels)[n];
-      if (fabsf(value) <= FLT_MAX) r->upper[key_of_f32(value) >> 16]++;
-    }
+    for (size_t n = 0; n < w.piece; n++) count_upper_half(r, ((const float *)w.voxels)[n], 1);
   if (!w.cancelled) sum_counts(r->volume, r->upper, HALVES);
   return !w.cancelled;
 }
@@ -367,13 +378,10 @@ static bool open_upper(ranking *r, uint32_t upper) {
   if (r->opened == upper) return true;
   memset(r->lower, 0, sizeof r->lower);
   r->opened = upper;
+  if (r->volume->bricks != NULL) return hl_volume_visit_bricks(r->volume, count_lower_half, r);
   walk w = {.volume = r->volume, .buffer = r->buffer, .count = counted_voxels(r->volume)};
   while (next_piece(&w))
-    for (size_t n = 0; n < w.piece; n++) {
-      float value = ((const float *)w.voxels)[n];
-      uint32_t key = key_of_f32(value);
-      if (key >> 16 == upper && fabsf(value) <= FLT_MAX) r->lower[key & 0xffffu]++;
-    }
+    for (size_t n = 0; n < w.piece; n++) count_lower_half(r, ((const float *)w.voxels)[n], 1);
   if (!w.cancelled) sum_counts(r->volume, r->lower, HALVES);
   return !w.cancelled;
 }

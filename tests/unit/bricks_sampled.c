@@ -1,10 +1,11 @@
 /* Samples of fields at levels (bricks/evaluate.h, fill/). Every instruction set gives the same bytes, which
- * are the field's values. Constants and linear fields are exact. */
+ * are the field's values. Constants and linear fields are exact. Percentiles are those of all voxels. */
 #include <math.h>
 #include <setjmp.h>
 #include <stdarg.h>
 #include <stddef.h>
 #include <stdint.h>
+#include <stdlib.h>
 #include <string.h>
 
 #include <cmocka.h>
@@ -264,11 +265,68 @@ static void test_coarser(void **state) {
   }
 }
 
+/* ---- statistics ---- */
+
+static int compare_floats(const void *a, const void *b) {
+  const float x = *(const float *)a, y = *(const float *)b;
+  return (x > y) - (x < y);
+}
+
+/* The coefficient of the brick that contains a lattice point of level 0: it stands for the whole cell of the
+ * brick's level. */
+static float coefficient_around(const hl_bricks *bricks, const int64_t point[3]) {
+  int64_t block[3];
+  for (int a = 0; a < 3; a++) block[a] = point[a] >> bricks->shift;
+  const hl_brick_entry *entry = hl_bricks_entry(bricks, block);
+  if (entry->slot < 0) return entry->constant;
+  size_t at[3];
+  const size_t width = hl_brick_width(bricks);
+  for (int a = 0; a < 3; a++)
+    at[a] = (size_t)((point[a] >> entry->level) - (block[a] >> entry->level << bricks->shift)) + 1;
+  return hl_brick_pool(bricks, entry->slot)[(at[2] * width + at[1]) * width + at[0]];
+}
+
+/* A percentile has the rank that it has among the coefficients of all voxels, of which a brick of a coarser
+ * level has several for each of its own. */
+static void test_percentiles(void **state) {
+  (void)state;
+  static float sorted[SIDE * SIDE * SIDE];
+  for (int shift = 2; shift <= 4; shift++) {
+    field_bench bench;
+    open_bench(&bench, 41 + (uint64_t)shift, octree_random_value, shift);
+    size_t n = 0;
+    for (int64_t k = 0; k < SIDE; k++)
+      for (int64_t j = 0; j < SIDE; j++)
+        for (int64_t i = 0; i < SIDE; i++)
+          sorted[n++] = coefficient_around(&bench.bricks, (const int64_t[3]){i, j, k});
+    qsort(sorted, n, sizeof *sorted, compare_floats);
+    hl_volume_description grid;
+    hl_volume *volume = NULL;
+    hl_volume_description_defaults(&grid);
+    grid.type = HL_VOXEL_F32;
+    for (int a = 0; a < 3; a++) grid.dimensions[a] = SIDE;
+    assert_int_equal(hl_volume_take_bricks(bench.context, &bench.bricks, &grid, "test", &volume, NULL),
+                     HL_OK);
+    static const double percents[] = {0, 1, 37.5, 50, 99.9, 100};
+    double found[sizeof percents / sizeof *percents];
+    assert_int_equal(hl_volume_percentiles(volume, percents, sizeof percents / sizeof *percents, found, NULL),
+                     HL_OK);
+    for (size_t p = 0; p < sizeof percents / sizeof *percents; p++) {
+      const double place = percents[p] / 100 * (double)(n - 1);
+      const size_t rank = (size_t)place, after = rank + 1 < n ? rank + 1 : rank;
+      const double low = (double)sorted[rank], high = (double)sorted[after];
+      assert_true(found[p] == low + (place - (double)rank) * (high - low));
+    }
+    hl_volume_release(volume);
+    close_bench(&bench);
+  }
+}
+
 int main(void) {
   const struct CMUnitTest tests[] = {
-      cmocka_unit_test(test_coefficients),  cmocka_unit_test(test_windows),
-      cmocka_unit_test(test_coarser),       cmocka_unit_test(test_gathered),
-      cmocka_unit_test(test_ranges),        cmocka_unit_test(test_ranges_of_rows),
-      cmocka_unit_test(test_values_of_rows)};
+      cmocka_unit_test(test_coefficients),   cmocka_unit_test(test_windows),
+      cmocka_unit_test(test_coarser),        cmocka_unit_test(test_gathered),
+      cmocka_unit_test(test_ranges),         cmocka_unit_test(test_ranges_of_rows),
+      cmocka_unit_test(test_values_of_rows), cmocka_unit_test(test_percentiles)};
   return cmocka_run_group_tests(tests, NULL, NULL);
 }
