@@ -37,7 +37,8 @@ void hl_beyond_prepare(const hl_volume *coarse, const double (*seen)[4][4], size
   beyond->grid.offset = vec3_of(grid->origin);
 }
 
-/* A box touches a part unless all of it lies outside of one plane. */
+/* Returns whether a box touches a part that pictures see. A box does not touch the part if all corners of the
+ * box lie outside of one of the part's planes. */
 static bool touches(const double planes[4][4], const vec3 corners[8]) {
   for (int n = 0; n < 4; n++) {
     const vec3 normal = vec3_of(planes[n]);
@@ -63,15 +64,16 @@ bool hl_beyond_is_seen(const hl_beyond *beyond, const uint64_t begin[3], const u
   return false;
 }
 
-/* Scratch memory: a row of stored values, and a row of data values. */
+/* The scratch memory of hl_beyond_row() holds two rows of the coarser volume: one of stored values, and one
+ * of data values. */
 size_t hl_beyond_room(const hl_beyond *beyond) {
   return beyond->coarse != NULL ? 2 * beyond->coarse->dimension[0] : 0;
 }
 
-/* A place between two voxels of the coarser volume along an axis. */
+/* A position between two neighbouring voxels of the coarser volume, along one axis. */
 typedef struct between {
   size_t low, high;
-  double part; /* of the way from `low` to `high` */
+  double part; /* fraction of the distance from voxel `low` to voxel `high` */
 } between;
 
 static between place(const hl_beyond *beyond, int axis, uint64_t index) {
@@ -81,7 +83,7 @@ static between place(const hl_beyond *beyond, int axis, uint64_t index) {
   return (between){low, low < last ? low + 1 : last, at - (double)low};
 }
 
-/* Adds a row's voxels from `low` to `high`, as data values. */
+/* Adds the weighted data values of voxels `low` to `high` of row (j, k) to sums. */
 static void add_row(const hl_volume *volume, size_t j, size_t k, double weight, size_t low, size_t high,
                     void *buffer, float *sums) {
   if (weight == 0) return;
@@ -95,7 +97,7 @@ static double held(double value, double least, double greatest) {
   return fmin(fmax(floor(value + 0.5), least), greatest);
 }
 
-/* Stores a data value in place n of a row of stored values. */
+/* Converts a data value to a stored value, and writes it at index n of a row. */
 static void store(hl_voxel_type type, double value, void *row, size_t n) {
   const double bias = hl_voxel_type_bias(type);
   switch (hl_voxel_type_storage(type)) {

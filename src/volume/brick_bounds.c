@@ -78,8 +78,8 @@ void hl_brick_bounds_add(hl_brick_bounds *b, size_t k0, size_t k1, const void *v
   size_t scratch_values = 2 * (PADDED(b->dimension[0]) + b->count[0] * b->count[1]);
   void *scratch = hl_allocate(b->context, scratch_values, hl_storage_bytes(b->storage));
   if (scratch == NULL)
-    return; /* the bounds then lack these slices, and hl_brick_bounds_whole() returns
-             * false */
+    return; /* without scratch memory the slices are not added to the bounds, and hl_brick_bounds_whole()
+             * returns false */
   for (size_t k = k0; k < k1; k++) {
     size_t first = (k - k0) * voxels;
     switch (b->storage) {

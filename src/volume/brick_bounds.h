@@ -1,6 +1,6 @@
 /* volume/brick_bounds.h - bounds of bricks: the least and greatest stored value of the voxels on which each
  * brick of a volume depends. Bounds of a volume larger than memory are found while the volume is stored,
- * because later the whole volume would have to be read once more. */
+ * because otherwise the whole volume would have to be read a second time. */
 #ifndef HL_VOLUME_BRICK_BOUNDS_H
 #define HL_VOLUME_BRICK_BOUNDS_H
 
@@ -16,8 +16,8 @@ typedef struct hl_brick_bounds {
   hl_storage storage;
   size_t dimension[3], count[3]; /* number of voxels along each axis; number of bricks along each axis,
                                   * dimension / BRICK_SIDE + 1 */
-  void *bounds;                  /* owned; [count[2]][count[1]][count[0]][2]; least and greatest stored
-                                  * value */
+  void *bounds;                  /* owned; [count[2]][count[1]][count[0]][2]; least and greatest stored value
+                                  * of each brick */
   size_t slices;                 /* number of slices of voxels added so far */
   pthread_mutex_t lock;          /* held while bounds change */
 } hl_brick_bounds;

@@ -1,22 +1,22 @@
-/* volume/brick_bounds_of.h - bounds of bricks for one type of stored values, written once for all of them;
- * included once for each type by brick_bounds.c, which defines
+/* volume/brick_bounds_of.h - bounds of bricks for one type of stored values. The file brick_bounds.c includes
+ * this file once for each type, and defines
  *
  *
  *     BOUNDS_TYPE                the type
- *     BOUNDS_NAME(name)          a function's name for it
- *     BOUNDS_LEAST, BOUNDS_MOST  its least and greatest value
+ *     BOUNDS_NAME(name)          a function's name for the type
+ *     BOUNDS_LEAST, BOUNDS_MOST  the type's least and greatest value
  *
- * and the functions and macros that are the same for all types. Bounds are separable. The bounds of a slice's
- * voxels are found along y and then along x, and then widen the bounds of the bricks that depend on the
- * slice. A comparison with a value that is not a number is false, so that such a value widens nothing. */
+ * and the functions and macros that all types share. Bounds are separable. The bounds of a slice's voxels are
+ * found along y and then along x; these bounds then widen the bounds of the bricks that depend on the slice.
+ * Comparisons with NaN are false, so that NaN voxels do not widen the bounds. */
 
 static void BOUNDS_NAME(begin)(const hl_brick_bounds *b) {
   BOUNDS_TYPE *bounds = b->bounds;
   for (size_t n = 0; n < bricks_of(b); n++) bounds[2 * n] = BOUNDS_MOST, bounds[2 * n + 1] = BOUNDS_LEAST;
 }
 
-/* Finds the least or the greatest value along x of the voxels on which each brick depends: first of two, four
- * and eight neighbours, then of nine. row: [padded]; overwritten. out: [bricks]. */
+/* Finds, along x, the least or the greatest value of the nine voxels on which each brick depends. The values
+ * of two, four and eight neighbours are found first. row: [padded]; overwritten. out: [bricks]. */
 static void BOUNDS_NAME(reduce)(BOUNDS_TYPE *restrict row, size_t bricks, size_t padded, bool greatest,
                                 BOUNDS_TYPE *restrict out) {
   for (size_t shift = 1; shift <= 4; shift *= 2)
@@ -59,7 +59,8 @@ static void BOUNDS_NAME(widen)(BOUNDS_TYPE *restrict bounds, const BOUNDS_TYPE *
   }
 }
 
-/* Adds a slice. scratch: [2 * (PADDED(width) + bricks y * bricks x)]. */
+/* Widens the bounds of all bricks that depend on slice k by the bounds of its voxels. scratch: [2 *
+ * (PADDED(width) + bricks y * bricks x)]. */
 static void BOUNDS_NAME(add_slice)(hl_brick_bounds *b, size_t k, const BOUNDS_TYPE *slice,
                                    BOUNDS_TYPE *scratch) {
   const size_t plane = b->count[0] * b->count[1];

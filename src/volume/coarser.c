@@ -1,4 +1,4 @@
-/* volume/coarser.c - see coarser.h. The rows of the volume, or its bricks, are read once. */
+/* volume/coarser.c - see coarser.h. Each row or brick of the finer volume is read only once. */
 #include "volume/coarser.h"
 
 #include <math.h>
@@ -22,7 +22,7 @@ typedef struct coarsening {
   const hl_volume *volume;
   hl_coarser_kind kind;
   bool is_continued;     /* whether the volume is a field that is continued beyond walls */
-  size_t factor[3];      /* 1 or 2 */
+  size_t factor[3];      /* number of voxels merged along each axis: 1 or 2 */
   size_t dimension[3];   /* the dimensions of the coarser volume */
   unsigned char *voxels; /* [dimension[2]][dimension[1]][dimension[0]]; stored values of the coarser volume */
   unsigned char *stored; /* owned; [threads][bytes of a row]; scratch memory for reading rows of a volume with
@@ -43,8 +43,8 @@ static void choose_factors(coarsening *c) {
   }
 }
 
-/* Reads a row of stored values as floats, which hold all of them exactly. stored: scratch memory for a row of
- * a volume with pages. */
+/* Reads a row of stored values, and converts them to floats without rounding. stored: scratch memory for a
+ * row of a volume with pages. */
 static void read_row(const hl_volume *volume, size_t j, size_t k, void *stored, float *numbers) {
   const void *row = hl_volume_row_in(volume, j, k, stored);
   const size_t count = volume->dimension[0];
@@ -59,14 +59,15 @@ static void read_row(const hl_volume *volume, size_t j, size_t k, void *stored, 
   }
 }
 
-/* The mean of the values; NAN if there are no values. */
+/* The mean of the values that are merged in one voxel; NAN if there are no values. */
 static double mean_of(const float *values, size_t count) {
   double sum = 0;
   for (size_t n = 0; n < count; n++) sum += (double)values[n];
   return count > 0 ? sum / (double)count : (double)NAN;
 }
 
-/* The most frequent value; of several equally frequent values, the first one. NAN if there are no values. */
+/* The most frequent of the values that are merged in one voxel. If several values are equally frequent, the
+ * result is the first of them; without values it is NAN. */
 static double commonest_of(const float *values, size_t count) {
   size_t best = 0, most = 0;
   for (size_t n = 0; n + most < count; n++) {
@@ -90,7 +91,7 @@ static size_t collect(const coarsening *c, const float *rows, size_t row_count, 
   return count;
 }
 
-/* Stores row (j, k) of the coarser volume. */
+/* Computes and stores row (j, k) of the coarser volume. */
 static void make_row(const coarsening *c, size_t j, size_t k, int worker) {
   const hl_volume *volume = c->volume;
   const size_t width = volume->dimension[0], bytes = hl_storage_bytes(volume->storage);
@@ -117,9 +118,9 @@ static void make_slice(void *data, size_t k, int worker) {
   for (size_t j = 0; j < c->dimension[1]; j++) make_row(c, j, k, worker);
 }
 
-/* Sets the place of the coarser grid. Each voxel of the coarser grid lies in the middle of the voxels that
- * are merged in it. At the volume's end some of these voxels may be missing; the merged voxel lies where it
- * would lie if none were missing. */
+/* Sets the origin and the axes of the coarser grid. Each voxel of the coarser grid lies in the middle of the
+ * voxels that are merged in it. At the volume's end some of these voxels may be missing; the merged voxel is
+ * placed as if no voxel were missing. */
 static void place(const coarsening *c, hl_volume_description *d) {
   static const hl_voxel_type types[] = {
       [HL_STORAGE_U8] = HL_VOXEL_U8, [HL_STORAGE_U16] = HL_VOXEL_U16, [HL_STORAGE_F32] = HL_VOXEL_F32};
@@ -153,7 +154,8 @@ static void inherit(const hl_volume *volume, hl_volume *made) {
   memcpy(made->window, volume->window, sizeof made->window);
 }
 
-/* Makes the coarser field by leaving out the finest level (bricks/coarser.h). */
+/* Makes the coarser volume of a field in bricks by leaving out the field's finest level
+ * (bricks/coarser.h). */
 static hl_status coarsen_bricks(const coarsening *c, hl_pool *pool, hl_volume **coarser, hl_error *error) {
   hl_context *context = c->volume->context;
   hl_volume_description description;
@@ -204,8 +206,8 @@ static hl_status make_coarser(const hl_volume *volume, hl_coarser_kind kind, boo
   return status;
 }
 
-/* Makes the walls of a coarser mesh of cells. Matter rises across a wall over the distance of one voxel. If
- * the depths that are kept reach twice as far, it rises over twice the distance. */
+/* Makes the walls of a coarser mesh of cells. Matter rises across a wall over the distance of one voxel. In a
+ * coarser mesh whose stored depths reach twice as far, matter rises over the distance of two voxels. */
 static hl_status coarsen_wall(const hl_volume *volume, hl_volume *made, hl_error *error) {
   const hl_volume *wall = volume->wall;
   if (wall == NULL) return HL_OK;

@@ -5,14 +5,14 @@
 #include "volume/volume.h"
 
 /* The ways in which voxels are merged. HL_COARSER_MEANS: the result is the mean of the finite values, rounded
- * if values are whole numbers. HL_COARSER_LABELS: the result is the most common label; if several are equally
- * common, the first one of them. */
+ * if values are whole numbers. HL_COARSER_LABELS: the result is the most common label; if several labels are
+ * equally common, the result is the first of them. */
 typedef enum hl_coarser_kind { HL_COARSER_MEANS, HL_COARSER_LABELS } hl_coarser_kind;
 
-/* Makes a volume by merging two voxels along axes. Only axes whose step is less than 1.5 times the shortest
- * step are halved. In a field in bricks, the finest level is left out, which halves all axes
- * (bricks/coarser.h). Such a field cannot have labels. Refuses volumes of colours, volumes over ranks, and
- * label maps whose numbers floats round (volume/exact.h). */
+/* Makes a coarser volume by merging pairs of voxels along its axes. Only axes whose step is less than 1.5
+ * times the shortest step are halved. In a field in bricks, the finest level is left out, which halves all
+ * axes (bricks/coarser.h). Fields in bricks cannot have labels. Refuses volumes of colours, volumes over
+ * ranks, and label maps whose numbers floats round (volume/exact.h). */
 hl_status hl_volume_make_coarser(const hl_volume *volume, hl_coarser_kind kind, hl_volume **coarser,
                                  hl_error *error);
 

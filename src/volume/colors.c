@@ -8,8 +8,8 @@
 #include "core/memory.h"
 #include "elementary/elementary.h"
 
-/* VOXELS_MOST: the greatest number of voxels with colours, as the bytes of the colours are numbered in 32
- * bits. */
+/* VOXELS_MOST: the greatest number of voxels of a volume with colours; an index of 32 bits then reaches each
+ * byte of the colours. */
 enum { ALPHA = 3, VOXELS_MOST = 1 << 29 };
 
 bool hl_can_be_colors(hl_voxel_type type, size_t components) {
@@ -29,8 +29,8 @@ void hl_colors_store(hl_voxel_type type, const void *stored, size_t step, size_t
                                             : (unsigned char)((wide[n * step] * 255U + 32767U) / 65535U);
 }
 
-/* The luma of a colour's codes. The weights, in units of 1/256, are the weights of ITU-R BT.709: .2126, .7152
- * and .0722. */
+/* The luma of a colour's three sRGB codes. The weights, in units of 1/256, are the weights of ITU-R BT.709:
+ * .2126, .7152 and .0722. */
 static unsigned char luminance_of(const unsigned char *color) {
   return (unsigned char)((54U * color[0] + 183U * color[1] + 19U * color[2] + 128U) >> 8);
 }
@@ -49,8 +49,8 @@ static void divide_by_alpha(unsigned char *color) {
 }
 
 /* Splits each colour into the density from which opacity is computed, and the colour with a weight. The
- * weight is the density, so that the colours of transparent voxels do not tint edges. It is at least 1, so
- * that a mean of weights is never 0. */
+ * weight is the density, so that the colours of transparent voxels do not tint edges. Each weight is at least
+ * 1, so that a mean of weights is never 0. */
 static void split(const hl_color_source *source, bool use_alpha, size_t count, unsigned char *colors,
                   unsigned char *densities) {
   for (size_t n = 0; n < count; n++) {
@@ -79,7 +79,7 @@ hl_status hl_volume_adopt_colors(hl_context *context, const hl_color_source *sou
   bool use_alpha = source->components > ALPHA && source->component == HL_COMPONENT_COLOR &&
                    alpha_tells(colors, count);
   split(source, use_alpha, count, colors, densities);
-  if (grid.type == HL_VOXEL_U16) grid.value_scale *= 257; /* 65535 / 255 */
+  if (grid.type == HL_VOXEL_U16) grid.value_scale *= 257; /* 257 = 65535 / 255 */
   grid.type = HL_VOXEL_U8;
   hl_status status = hl_volume_adopt(context, &grid, source->path, densities, volume, error);
   if (status != HL_OK) {
@@ -91,7 +91,7 @@ hl_status hl_volume_adopt_colors(hl_context *context, const hl_color_source *sou
   return HL_OK;
 }
 
-/* Decodes sRGB (IEC 61966-2-1). */
+/* Converts an sRGB code from 0 to 1 to linear light (IEC 61966-2-1). */
 static double decode(double code) {
   return code <= 0.04045 ? code / 12.92 : hl_pow((code + 0.055) / 1.055, 2.4);
 }

@@ -1,7 +1,8 @@
 /* volume/colors.h - makes volumes whose voxels have colours of their own, from the data that readers collect.
  *
- * A volume keeps the densities from which opacity is computed and, [k][j][i], colours of 4 bytes: red, green
- * and blue as sRGB codes, and the colour's weight for interpolation between voxels. */
+ * A volume keeps two arrays, [k][j][i]. The first holds the densities from which opacity is computed. The
+ * second holds colours of 4 bytes: red, green and blue as sRGB codes, and the colour's weight for
+ * interpolation between voxels. */
 #ifndef HL_VOLUME_COLORS_H
 #define HL_VOLUME_COLORS_H
 
@@ -18,7 +19,7 @@ bool hl_can_be_colors(hl_voxel_type type, size_t components);
 bool hl_component_is_colors(int component);
 
 /* Stores component 0 to 3 of the colours of `count` voxels. stored: values of type u8 or u16; every `step`-th
- * one is taken. colors: points to the first voxel's colour. Values of 16 bits are rounded to 8. */
+ * value is taken. colors: points to the first voxel's colour. Values of 16 bits are rounded to 8. */
 void hl_colors_store(hl_voxel_type type, const void *stored, size_t step, size_t count, size_t component,
                      unsigned char *colors);
 
@@ -28,18 +29,18 @@ typedef struct hl_color_source {
   const hl_volume_description *grid; /* the file's grid; its `type` is the type of one component */
   const char *path;
   size_t components;  /* 3 or 4 */
-  int component;      /* the component that is asked for: HL_COMPONENT_COLOR takes opacity from alpha, if
-                       * there is one; HL_COMPONENT_LUMINANCE takes it from the luminance */
+  int component;      /* the wanted component. HL_COMPONENT_COLOR: opacity is computed from alpha if the file
+                       * has alpha. HL_COMPONENT_LUMINANCE: opacity is computed from luminance */
   bool premultiplied; /* whether alpha is multiplied into the colours */
 } hl_color_source;
 
-/* Makes the volume; its chosen component tells whether opacity is computed from alpha or from luminance.
- * colors: [voxels][HL_COLOR_BYTES], in a block of hl_allocate() that the volume takes over, also on
- * failure. */
+/* Makes a volume of colours. source->component tells whether opacity is computed from alpha or from
+ * luminance. colors: [voxels][HL_COLOR_BYTES], in a block of hl_allocate() that the volume takes over, also
+ * on failure. */
 hl_status hl_volume_adopt_colors(hl_context *context, const hl_color_source *source, unsigned char *colors,
                                  hl_volume **volume, hl_error *error);
 
-/* The linear colour of the voxel at coordinates in the grid; white if the volume has no colours. */
+/* The linear RGB colour of voxel (i, j, k); white if the volume has no colours. */
 void hl_volume_color(const hl_volume *volume, size_t i, size_t j, size_t k, double color[3]);
 
 #endif

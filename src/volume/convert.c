@@ -1,7 +1,8 @@
 /* volume/convert.c - converts packed voxels to stored form.
  *
- * In: bytes as a file or a caller gives them. Out: u8, u16 or f32, native byte order. One loop per type, so
- * that compilers vectorise each; loads go through memcpy because bytes from files are not aligned. */
+ * In: bytes as a file or a caller gives them. Out: voxels of type u8, u16 or f32 in native byte order. Each
+ * type has a loop of its own, which compilers vectorise. Values are loaded by memcpy, because bytes from
+ * files are not aligned. */
 #include "volume/convert.h"
 
 #include <string.h>
@@ -111,11 +112,13 @@ static void store_f64(bool swap, const unsigned char *source, size_t count, unsi
   }
 }
 
-/* Converts an IEEE 754 binary16: a sign, five bits of exponent (bias 15), ten of fraction. */
+/* Converts an IEEE 754 binary16 number, which has a sign bit, five bits of exponent (bias 15) and ten bits of
+ * fraction. */
 static float half_to_float(uint16_t half) {
   uint32_t sign = (uint32_t)(half & 0x8000) << 16, exponent = half >> 10 & 31, fraction = half & 0x3ff, bits;
   if (exponent == 0) {
-    float value = (float)fraction * 0x1p-24f; /* a subnormal is fraction / 2^10 times 2^-14 */
+    float value = (float)fraction * 0x1p-24f; /* the value of a subnormal number is fraction / 2^10 times
+                                               * 2^-14 */
     return sign != 0 ? -value : value;
   }
   bits = sign | (exponent == 31 ? 255 : exponent + 112) << 23 | fraction << 13;

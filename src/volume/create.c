@@ -1,7 +1,8 @@
-/* volume/create.c - makes volumes of voxels in memory, counts their users, and answers for their numbers.
+/* volume/create.c - makes volumes of voxels in memory, counts their users, and returns the values of their
+ * voxels.
  *
  * In: a description from the caller, or decoded voxels from the readers of files. Out: an hl_volume with its
- * statistics. It never changes, and counts its users. */
+ * statistics. A finished volume never changes, and counts its users. */
 #include "volume/volume.h"
 
 #include <math.h>
@@ -52,9 +53,9 @@ static affine3 index_to_world(const hl_volume_description *description) {
                    vec3_of(description->origin)};
 }
 
-/* Checks that a volume's size can be computed with. The bytes of all voxels must fit into a size_t, both as
- * the caller gives the voxels and as the library stores them. A file with voxels of the largest type must
- * have a number of bytes that fits into 64 bits. */
+/* Checks that computations with a volume's size do not overflow. The bytes of all voxels must fit into a
+ * size_t, both as the caller gives the voxels and as the library stores them. A file with voxels of the
+ * largest type must have a number of bytes that fits into 64 bits. */
 static hl_status check_size(const hl_volume_description *description, const char *subject, hl_error *error) {
   const size_t *dimension = description->dimensions, given = hl_voxel_type_bytes(description->type),
                stored = hl_storage_bytes(hl_voxel_type_storage(description->type));
@@ -79,8 +80,8 @@ static hl_status check_size(const hl_volume_description *description, const char
  * cannot overflow. */
 static double greatest_part(const double v[3]) { return fmax(fmax(fabs(v[0]), fabs(v[1])), fabs(v[2])); }
 
-/* The least and the greatest allowed length of a step. Beyond them, squares or cubes of lengths leave the
- * range of doubles. */
+/* The least and the greatest allowed length of a step. Squares and cubes of lengths between these bounds stay
+ * in the range of doubles. */
 static const double SHORTEST_STEP = 1e-100, LONGEST_STEP = 1e100;
 
 static hl_status check_step(const double axis[3], int number, const char *subject, hl_error *error) {
@@ -135,7 +136,7 @@ hl_status hl_volume_check_grid(const hl_volume_description *description, const c
   return check_place(description, subject, error);
 }
 
-/* Makes a volume without its voxels. */
+/* Makes a volume of the description's grid, without voxels. */
 static hl_volume *make_volume(hl_context *context, const hl_volume_description *description) {
   hl_volume *volume = hl_allocate_zeroed(context, 1, sizeof *volume);
   if (volume == NULL) return NULL;
@@ -230,7 +231,7 @@ bool hl_volume_is_exact(const hl_volume *volume) {
   return volume->exact != NULL || (volume->pages != NULL && volume->pages->exact_file >= 0);
 }
 
-/* The type that each hl_storage stores. */
+/* The voxel type of each hl_storage, in the order of the enumeration. */
 static const hl_voxel_type stored_types[] = {HL_VOXEL_U8, HL_VOXEL_U16, HL_VOXEL_F32};
 
 size_t hl_volume_row_room(const hl_volume *volume) {
@@ -240,7 +241,7 @@ size_t hl_volume_row_room(const hl_volume *volume) {
 }
 
 /* Reads a row of the file's own numbers of a volume with pages. These numbers lie in a second scratch file.
- * Null if the file cannot be read. */
+ * Returns null if that file cannot be read. */
 static const void *numbers_in(const hl_volume *volume, size_t j, size_t k, unsigned char *buffer) {
   size_t width = volume->dimension[0], first = (k * volume->dimension[1] + j) * width;
   float *stored = (float *)(void *)(buffer + width * hl_voxel_type_bytes(volume->type));
@@ -268,7 +269,7 @@ double hl_row_number(hl_number_row row, size_t i) {
   }
 }
 
-/* The least number above 0 that int64_t cannot hold. */
+/* The least positive number that int64_t cannot hold: 2^63. */
 static const double TOO_GREAT = 0x1p63;
 
 bool hl_row_whole(const hl_volume *volume, hl_number_row row, size_t i, int64_t *whole) {
@@ -284,7 +285,7 @@ bool hl_row_whole(const hl_volume *volume, hl_number_row row, size_t i, int64_t 
   return true;
 }
 
-/* Copies strided voxels into stored form. row: scratch memory for one row in the caller's type. */
+/* Copies strided voxels into stored form. row: scratch memory for one row of voxels of the caller's type. */
 static void copy_voxels(const hl_volume_description *description, const ptrdiff_t stride[3],
                         unsigned char *row, unsigned char *destination, hl_exact *exact) {
   const size_t *dimension = description->dimensions;
@@ -429,8 +430,8 @@ double hl_volume_value(const hl_volume *volume, size_t i, size_t j, size_t k) {
   return hl_volume_value_within(volume, i, j, k);
 }
 
-/* The number of one voxel, as a row of length 1. own: memory for the number, which is used if the number is
- * not in memory elsewhere. */
+/* The file's own number of voxel (i, j, k), as a row of length 1. own: memory for the number, which is used
+ * if the number is not in memory elsewhere. */
 static hl_number_row number_of(const hl_volume *volume, size_t i, size_t j, size_t k, uint64_t *own) {
   const hl_pages *pages = volume->pages;
   if (volume->bricks != NULL) {

@@ -1,5 +1,5 @@
-/* volume/create_grids.c - hl_volume_create_cells() and hl_volume_create_amr(): volumes of a caller's meshes
- * of cells and adaptive grids. */
+/* volume/create_grids.c - makes volumes of a caller's meshes of cells (hl_volume_create_cells()) and of a
+ * caller's adaptive grids (hl_volume_create_amr()). */
 #include <halflight/grids.h>
 #include <string.h>
 
@@ -16,7 +16,7 @@ void hl_cells_description_defaults(hl_cells_description *description) {
   *description = (hl_cells_description){.struct_size = sizeof *description};
 }
 
-/* Numbers in the types that the readers of files have. */
+/* Copies whole numbers to new memory as doubles, the type that the reader of cells takes. */
 static double *doubles_of(hl_context *context, const int64_t *numbers, size_t count) {
   double *made = hl_allocate(context, count, sizeof *made);
   for (size_t n = 0; made != NULL && n < count; n++) made[n] = (double)numbers[n];
@@ -105,7 +105,7 @@ hl_status hl_volume_create_amr(hl_context *context, const hl_amr_description *de
   for (int axis = 0; axis < 3; axis++)
     shape.first[axis] = description->first[axis] > INT32_MIN && description->first[axis] < INT32_MAX
                             ? (ptrdiff_t)description->first[axis]
-                            : INT32_MAX; /* refused by hl_amr_begin() */
+                            : INT32_MAX; /* hl_amr_begin() refuses the index INT32_MAX */
   memcpy(shape.count, description->count, sizeof shape.count);
   memcpy(shape.origin, description->origin, sizeof shape.origin);
   memcpy(shape.spacing, description->spacing, sizeof shape.spacing);

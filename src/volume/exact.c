@@ -12,8 +12,8 @@
 #include "volume/convert.h"
 #include "volume/store/scratch_file.h"
 
-/* The number 2^24. Floats hold all whole numbers up to it. Smaller numbers count as held even if they have
- * fractions. */
+/* The number 2^24. Floats hold all whole numbers up to 2^24 exactly. The rounding of fractions of smaller
+ * numbers is ignored. */
 #define HELD_BELOW 0x1p24
 
 void hl_exact_begin(hl_context *context, hl_voxel_type type, size_t count, hl_exact_place place,
@@ -41,15 +41,15 @@ static bool rounds_whole(uint64_t magnitude) {
 }
 
 static bool rounds_double(double value) {
-  /* the comparison is false for NaN, too */
+  /* the comparison fabs(NaN) >= HELD_BELOW is false, so that NaN does not count as rounded */
   return fabs(value) >= HELD_BELOW && (double)(float)value != value;
 }
 
 /* The magnitude of a signed number. */
 static uint64_t magnitude_of(int64_t value) { return value < 0 ? 0 - (uint64_t)value : (uint64_t)value; }
 
-/* Returns whether any number may lie beyond 2^24 or -2^24. Most files have no such number. For them, this
- * quick test saves slower tests. Compilers vectorise the loop. */
+/* Returns whether any number may lie beyond 2^24 or -2^24. Most files have no such number. For such files,
+ * this quick test, whose loop compilers vectorise, saves slower tests. */
 static bool any_great_32(bool is_signed, bool swap, const unsigned char *from, size_t count) {
   uint32_t bits = 0;
   for (size_t n = 0; n < count; n++) {
@@ -99,7 +99,8 @@ static void copy_number(size_t bytes, bool swap, const unsigned char *from, unsi
   for (size_t n = 0; n < bytes; n++) to[n] = from[swap ? bytes - 1 - n : n];
 }
 
-/* The memory for the numbers. The first thread that needs it allocates it; null if memory is short. */
+/* The memory for the file's numbers; null if memory is short. The first thread that calls this function
+ * allocates the memory. */
 static unsigned char *numbers_of(hl_exact *exact) {
   void *made = atomic_load(&exact->numbers), *none = NULL;
   if (made != NULL) return made;
@@ -109,7 +110,8 @@ static unsigned char *numbers_of(hl_exact *exact) {
   return none;
 }
 
-/* The file for the numbers. The first thread that needs it makes it; -1 if this fails. */
+/* The scratch file for the numbers; -1 if the file cannot be made. The first thread that calls this function
+ * makes the file. */
 static int file_of(hl_exact *exact) {
   int made = atomic_load(&exact->file), none = -1;
   if (made >= 0) return made;
@@ -119,8 +121,8 @@ static int file_of(hl_exact *exact) {
   return none;
 }
 
-/* Writes numbers to the file, piece by piece. If a float rounds a number of a piece, the whole piece is
- * written; all other pieces are left out. */
+/* Writes numbers to the scratch file in pieces of 2048 numbers. A piece is written whole if a float rounds
+ * any of its numbers, else left out. */
 static void note_in_file(hl_exact *exact, bool swap, const unsigned char *from, size_t first, size_t count) {
   enum { PIECE = 2048 };
   unsigned char piece[8 * PIECE];
@@ -168,8 +170,8 @@ void hl_exact_note(hl_exact *exact, bool swap, const void *source, size_t first,
   else note_in_memory(exact, swap, from, first, count);
 }
 
-/* Sets the number of voxel n to the value of its float `stored`. This is right for voxels whose number was
- * not recorded, because the float holds such a number exactly. */
+/* Sets the number of voxel n to the value of its float `stored`. The float of a voxel whose number was not
+ * recorded holds the number exactly. */
 static void fill_number(hl_voxel_type type, double stored, size_t n, void *numbers) {
   switch (type) {
     case HL_VOXEL_U32:
@@ -188,8 +190,8 @@ static void fill_number(hl_voxel_type type, double stored, size_t n, void *numbe
   }
 }
 
-/* Sets the numbers that were not recorded to the voxels' stored values. A number was not recorded if it is
- * zero, and the stored value is not. */
+/* Sets the numbers that were not recorded to the voxels' stored values. A number was not recorded if the
+ * number is zero, but the voxel's stored value is not zero. */
 void hl_exact_fill(hl_voxel_type type, const float *stored, size_t count, void *numbers) {
   for (size_t n = 0; n < count; n++)
     if (!((float)hl_exact_number(type, numbers, n) == stored[n]))
@@ -221,7 +223,7 @@ bool hl_exact_read(int file, hl_voxel_type type, size_t first, size_t count, con
     ssize_t got = pread(file, (unsigned char *)numbers + done, wanted - done, (off_t)(first * bytes + done));
     if (got < 0 && errno == EINTR) continue;
     if (got < 0) return false;
-    if (got == 0) break; /* the rest of the file was never written, and reads as zeros */
+    if (got == 0) break; /* numbers beyond the end of the file count as zeros */
     done += (size_t)got;
   }
   memset((unsigned char *)numbers + done, 0, wanted - done);

@@ -1,10 +1,10 @@
 /* volume/exact.h - keeps the file's own numbers beside stored values that round some of them.
  *
  * Stored values of 32-bit and 64-bit integers and of doubles are floats, which hold whole numbers exactly up
- * to 2^24. Where a file has greater numbers that a float rounds (the ids of atlases), the numbers themselves
- * are kept too, in the file's type: for labels, masks, `info`, `convert` and percentiles. Pictures of values
- * use the floats. If the voxels lie in pages, the numbers lie in a second scratch file. If several ranks
- * share the volume, each rank keeps the numbers of its own voxels.
+ * to 2^24. If a float rounds any number of a file (for example the ids of an atlas), the numbers are also
+ * kept in the file's type. Labels, masks, `info`, `convert` and percentiles use these numbers. Pictures of
+ * values use the rounded floats. If the voxels lie in pages, the numbers lie in a second scratch file. If
+ * several ranks share the volume, each rank keeps the numbers of its own voxels.
  *
  * In: voxels as a file or a caller gives them, in pieces of any size and order, from several threads at once.
  * Out: the numbers of all voxels, or null if floats hold all of them. */
@@ -16,7 +16,7 @@
 
 typedef enum hl_exact_place {
   HL_EXACT_IN_MEMORY,
-  HL_EXACT_IN_FILE /* in a scratch file, for voxels that lie in pages */
+  HL_EXACT_IN_FILE /* the numbers are kept in a scratch file, for voxels that lie in pages */
 } hl_exact_place;
 
 typedef struct hl_exact {
@@ -28,19 +28,19 @@ typedef struct hl_exact {
   atomic_bool rounds;      /* whether floats round any of the recorded numbers */
   atomic_int failure;      /* the system's error number if memory or disk had no room for the numbers, else
                             * 0 */
-  _Atomic(void *) numbers; /* owned; [count], of the file's type; a number is 0 until it is noted. Null until
-                            * the first number comes that a float rounds */
+  _Atomic(void *) numbers; /* owned; [count], of the file's type; a number is 0 until it is recorded. Null
+                            * until a number is recorded that a float rounds */
   atomic_int file; /* owned; the file that holds the numbers, if they are not in memory; -1 if there is none.
-                    * Numbers that were not noted are holes of the file, which read as zeros */
+                    * Numbers that were not recorded are holes of the file, which read as zeros */
 } hl_exact;
 
 void hl_exact_begin(hl_context *context, hl_voxel_type type, size_t count, hl_exact_place place,
                     hl_exact *exact);
 
-/* Records the numbers of `count` voxels, of which the first is voxel number `first`. source: the numbers as
- * they stand in the file, adjacent, of any alignment. swap: whether the file has the other byte order. Voxels
- * of other ranks are skipped. If memory or the disk is short, hl_exact_take() fails later. exact: may be
- * null. */
+/* Records the numbers of `count` voxels, of which the first is voxel number `first`. source: the adjacent
+ * numbers as the file has them, at an address of any alignment. swap: whether the file's byte order differs
+ * from the native order. Voxels of other ranks are skipped. If memory or the disk is short, hl_exact_take()
+ * fails later. exact: may be null. */
 void hl_exact_note(hl_exact *exact, bool swap, const void *source, size_t first, size_t count);
 
 /* Hands the recorded numbers to the caller, who owns them. stored: the stored values of all voxels, [count].
@@ -55,8 +55,8 @@ bool hl_exact_read(int file, hl_voxel_type type, size_t first, size_t count, con
                    void *numbers);
 void hl_exact_release(hl_exact *exact);
 
-/* Sets the numbers that were not noted to the values of their voxels' floats. stored: the floats of the
- * voxels. numbers: [count] of the type; zeros where nothing was noted. */
+/* Sets each number that was not recorded to the value of its voxel's float. stored: [count], the floats of
+ * the voxels. numbers: [count] of the type; a number that was not recorded is zero. */
 void hl_exact_fill(hl_voxel_type type, const float *stored, size_t count, void *numbers);
 
 /* The number at index i of a row. row: numbers of the type, in native byte order. */
