@@ -59,7 +59,7 @@ void hl_exact_release(hl_exact *exact);
  * the voxels. numbers: [count] of the type; a number that was not recorded is zero. */
 void hl_exact_fill(hl_voxel_type type, const float *stored, size_t count, void *numbers);
 
-/* The number at index i of a row. row: numbers of the type, in native byte order. */
+/* The number at index i of a row, as a double. row: numbers of the type, in native byte order. */
 static inline double hl_exact_number(hl_voxel_type type, const void *row, size_t i) {
   switch (type) {
     case HL_VOXEL_U32: return ((const uint32_t *)row)[i];

@@ -1,5 +1,5 @@
-/* volume/info.c - tells the facts that are known about a volume: its grid, its type and range, and the facts
- * that its file states. */
+/* volume/info.c - returns the facts that are known about a volume: its grid, its type and range, and the
+ * facts that its file states. */
 #include <inttypes.h>
 #include <math.h>
 #include <stdio.h>
@@ -158,8 +158,8 @@ hl_volume_description hl_volume_own_grid(const hl_volume *volume) {
   return grid;
 }
 
-/* Copies an array for a volume. *copy: receives the copy, which hl_release() releases; it stays as it is if
- * there is no array. */
+/* Copies an array for a volume. *copy: set to the copy, which hl_release() releases; not changed if the array
+ * is null. */
 static hl_status copy_array(const hl_volume *volume, const void *array, size_t bytes, const char *subject,
                             void **copy, hl_error *error) {
   if (array == NULL || bytes == 0) return HL_OK;

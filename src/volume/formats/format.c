@@ -69,7 +69,8 @@ static bool is_ghost(const hl_array_entry *array) {
   return hl_text_is_one_of(array->name, "vtkGhostType|vtkGhostLevels|vtkValidPointMask");
 }
 
-/* Numbers of points and cells are a volume only if the file has nothing else. */
+/* Chooses the array to read if the caller names none. An array of the numbers of points or cells is chosen
+ * only if the file has no other array. */
 static size_t choose_default(const hl_load_request *request) {
   for (int cells = 0; cells < 2; cells++)
     for (size_t n = 0; n < request->array_count; n++) {
@@ -116,7 +117,8 @@ static hl_status choose_step(const char *path, const char *kind, int wanted, siz
   return HL_OK;
 }
 
-/* Tells which time step and which channel were taken where the caller chose none of several. */
+/* Writes a warning that names the time step and the channel that were chosen by default, if the file has
+ * several. */
 static void tell_of_steps(hl_load_request *request, const char *path) {
   const hl_selection *selection = &request->selection;
   char counts[2][40] = {"", ""};
@@ -133,14 +135,15 @@ static void tell_of_steps(hl_load_request *request, const char *path) {
            channel ? "\"channel\" (--channel)" : "");
 }
 
-/* The number that a text is; -1 if it is none. */
+/* Converts a text of digits to a number; -1 for any other text. */
 static int number_of(const char *text) {
   enum { DIGITS_MOST = 9 };
   const size_t digits = strspn(text, "0123456789");
   return digits > 0 && digits <= DIGITS_MOST && text[digits] == 0 ? atoi(text) : -1;
 }
 
-/* Takes the text of the wanted channel as its number, if the file has a channel of this number. */
+/* If the text that names the wanted channel is the number of a channel in the file, chooses the channel by
+ * this number. */
 static void take_number(hl_load_request *request, size_t channels) {
   const int number = request->channel_name != NULL ? number_of(request->channel_name) : -1;
   if (number < 0 || (size_t)number >= channels) return;
@@ -177,7 +180,7 @@ void hl_channel_name(hl_channel *channel, const char *name) {
     if ((unsigned char)*c < ' ' || *c == 0x7f) *c = '?';
 }
 
-/* Lists the names of the channels, as ", or by name: DAPI, GFP"; "" if they have none. */
+/* Writes the names of the channels as ", or by name: DAPI, GFP"; "" if the channels have no names. */
 static void list_channels(const hl_load_request *request, char *list, size_t size) {
   size_t used = 0;
   list[0] = 0;
@@ -222,8 +225,8 @@ hl_status hl_channel_find(hl_load_request *request, const char *path, hl_error *
 
 /* ---- levels ---- */
 
-/* The greatest number of voxels of a level that is chosen by default. More voxels would take minutes, and
- * would not change a picture that is a thousand pixels wide. */
+/* The greatest number of voxels of a level that is chosen by default. A larger level would take minutes to
+ * read, and would not change a picture that is a thousand pixels wide. */
 static const uint64_t VOXELS_OF_A_PICTURE = (uint64_t)1 << 30;
 
 /* The number of voxels along the longest axis of a level. */
@@ -256,14 +259,14 @@ static uint64_t level_bytes(const hl_level_size *level) {
              : bytes;
 }
 
-/* The coarsest level at which a picture of this size looks as at `level`. The result is `level` itself if the
- * size is 0. */
+/* Returns the coarsest level that has at least as many voxels along its longest axis as the picture has
+ * pixels, or `level` if no coarser level has. If the number of pixels is 0, the result is `level`. */
 static size_t coarsest_for(int pixels, const hl_level_size *levels, size_t count, size_t level) {
   while (level + 1 < count && pixels > 0 && fills_picture(&levels[level + 1], pixels)) level++;
   return level;
 }
 
-/* Selects a level, and the level of the first picture. */
+/* Sets the level to read, and the coarser level of the first picture. */
 static void aim_at(hl_load_request *request, const hl_level_size *levels, size_t level) {
   hl_selection *selection = &request->selection;
   selection->aim = (int)level;
@@ -299,7 +302,7 @@ hl_status hl_level_choose(hl_load_request *request, const char *path, const hl_l
   return HL_OK;
 }
 
-/* Refuses a number that is out of range. */
+/* Refuses a time, a channel or a level that the file does not have. */
 static hl_status check_steps(const hl_load_request *request, const char *path, hl_error *error) {
   const hl_selection *selection = &request->selection;
   int unused;
@@ -310,7 +313,8 @@ static hl_status check_steps(const hl_load_request *request, const char *path, h
                          : status;
 }
 
-/* Chooses the default component, and writes a warning that names it. For colours there is no warning. */
+/* Chooses the default component, and writes a warning that names it. If the component is the colours, no
+ * warning is written. */
 static int default_component(hl_load_request *request, const char *path, bool is_series,
                              const hl_payload *payload) {
   size_t components = payload->components;
@@ -345,7 +349,7 @@ static hl_status component_of_steps(hl_load_request *request, const char *path, 
         error, HL_ERROR_INPUT,
         "%s: its components are its time steps and channels: leave \"component\" (--component) out", path);
   int time = request->time >= 0 ? request->time : 0, channel = request->channel >= 0 ? request->channel : 0;
-  int first; /* the component of the channel's first time step */
+  int first; /* index of the component that holds the channel's first time step */
   if (!__builtin_mul_overflow(selection->times, channel, &first) &&
       !__builtin_add_overflow(first, time, wanted))
     return HL_OK;

@@ -3,7 +3,8 @@
  *
  * The reader of a format is one file NAME.c, which defines `const hl_format hl_format_NAME`. formats.h is the
  * registry of these NAMEs. A reader lists the file's arrays in its request, asks for a choice, and reads the
- * chosen array. If the caller did not name an array or component, a warning says which one is read. */
+ * chosen array. If the caller names no array or no component, a warning says which array or component is
+ * read. */
 #ifndef HL_VOLUME_FORMAT_H
 #define HL_VOLUME_FORMAT_H
 
@@ -12,8 +13,8 @@
 
 enum { HL_ARRAYS_MOST = 256 }; /* greatest number of arrays that are listed for one file */
 
-/* One request to load a volume. It holds the choices of the caller, and the facts that the reader finds in
- * the file. */
+/* One request to load a volume. A request holds the choices of the caller, and the facts that the reader
+ * finds in the file. */
 typedef struct hl_load_request {
   hl_context *context;
   const char *array;        /* null if the reader may choose */
@@ -24,8 +25,8 @@ typedef struct hl_load_request {
                              * file; null if there is none */
   int pixels;               /* pixels of the picture's longer side; 0 if unknown */
   int preview_pixels;       /* pixels of the longer side of a first picture; 0 if there is none */
-  const hl_volume *coarse;  /* see hl_volume_load_options; null if everything is read */
-  const double (*seen)[4][4]; /* [seen_count]; see hl_volume_load_options */
+  const hl_volume *coarse;  /* the coarser volume in hl_volume_load_options; null if all voxels are read */
+  const double (*seen)[4][4]; /* [seen_count]; the planes in hl_volume_load_options */
   size_t seen_count;
   double window[2];       /* set by readers: the data values that are shown black and white; both equal if
                            * the file does not state them */
@@ -39,7 +40,7 @@ typedef struct hl_load_request {
   bool says_fog;          /* set by readers: whether the file says that its values are the density of a fog */
   const char *series;     /* DICOM: the number, UID or description of the wanted series; null if the
                            * reader may choose */
-  hl_array_entry *arrays; /* owned; [array_count]; in the file's order */
+  hl_array_entry *arrays; /* owned; [array_count]; the arrays, in the file's order */
   size_t array_count;
   size_t chosen; /* index of the array that is read */
   int chosen_component;
@@ -54,28 +55,29 @@ typedef struct hl_load_request {
                             * chosen by default; "" if there are none */
 } hl_load_request;
 
-/* Adds an array to the list. name: "" if arrays have no names in the format; type: 0 if an array of its type
- * cannot be read. */
+/* Adds an array to the list. name: "" if arrays have no names in the format; type: 0 if arrays of the array's
+ * type cannot be read. */
 hl_status hl_arrays_add(hl_load_request *request, const char *name, size_t components, hl_voxel_type type,
                         bool of_cells, hl_error *error);
 
-/* Sets request->chosen to the array that the caller has named. If the caller has named none, the choice is
- * the array `active` (-1 if there is none), else the first array of one component at points, else the first
- * one at cells, else the first array. Arrays of numbers of points or cells come last. The list must not be
- * empty. */
+/* Sets request->chosen to the array that the caller has named. If the caller has named no array, the choice
+ * is the array `active` (-1: the file has no active array), else the first array of one component at points,
+ * else the first array of one component at cells, else the first array. Arrays that number the points or the
+ * cells are chosen only if the file has no other arrays. The list must not be empty. */
 hl_status hl_arrays_choose(hl_load_request *request, const char *path, int active, hl_error *error);
 
 /* Chooses the component to read, and stores it in the payload, whose `components` and `block` must be set.
- * The choice is the wanted component, else the only one, else the magnitude of vectors of two or three
- * components, else the first component. is_series: whether components are time steps and channels. The time
- * steps of a channel follow each other. The numbers of times and channels are in request->selection; if they
- * are not, all components are times. By default the first time step of the first channel is read. Refuses a
- * time, a channel or a level that request->selection does not have. */
+ * The choice is the wanted component. If the caller wants none, the choice is the only component, or the
+ * magnitude of vectors of two or three components, or the first component. is_series: whether components are
+ * time steps and channels. In such a series the time steps of a channel are adjacent components.
+ * request->selection has the numbers of times and channels; if it does not have them, all components are
+ * times. By default the first time step of the first channel is read. Refuses a time, a channel or a level
+ * that request->selection does not have. */
 hl_status hl_component_choose(hl_load_request *request, const char *path, bool is_series, hl_payload *payload,
                               hl_error *error);
 
-/* Chooses a time step and a channel, and sets request->selection except its levels. Refuses numbers that are
- * out of range. */
+/* Chooses a time step and a channel, and sets the members of request->selection that concern times and
+ * channels. Refuses a time or a channel that the file does not have. */
 hl_status hl_steps_choose(hl_load_request *request, const char *path, size_t times, size_t channels,
                           hl_error *error);
 
@@ -83,26 +85,26 @@ hl_status hl_steps_choose(hl_load_request *request, const char *path, size_t tim
 hl_status hl_channels_make(hl_load_request *request, hl_error *error);
 
 /* Selects the channel that the caller has named. Readers call this function when request->channels has the
- * names, before they read voxels. An error lists the names. */
+ * names, before they read voxels. The error for an unknown name lists the names of the channels. */
 hl_status hl_channel_find(hl_load_request *request, const char *path, hl_error *error);
 
-/* Refuses the name of a channel that no reader has found. */
+/* Fails if the caller has named a channel, but the reader has not found the channel in the file. */
 hl_status hl_channel_check(hl_load_request *request, const char *path, hl_error *error);
 
 /* Sets the name of a channel. A long name is cut, and unprintable characters become '?'. */
 void hl_channel_name(hl_channel *channel, const char *name);
 
-/* A level of a pyramid. */
+/* The size in voxels of one level of a pyramid of resolutions. */
 typedef struct hl_level_size {
   size_t dimensions[3];
   hl_voxel_type type;
 } hl_level_size;
 
 /* Sets request->selection's level among `count` levels, of which the finest is first. The choice is the
- * wanted level, else the finest that leaves half of the memory limit free and has at most 2^30 voxels. A
- * coarser level is chosen if it is as fine as the request's pixels can show. The choice becomes the
- * selection's aim. The selection's level is a coarser one, if a first picture of preview_pixels pixels cannot
- * show more. */
+ * wanted level. If the caller wants none, the choice is the finest level that leaves half of the memory limit
+ * free and has at most 2^30 voxels, or a coarser level that still has a voxel for each of the request's
+ * pixels. The chosen level becomes the selection's aim. For a first picture, the selection's level is the
+ * coarsest level that has a voxel for each of its preview_pixels pixels. */
 hl_status hl_level_choose(hl_load_request *request, const char *path, const hl_level_size *levels,
                           size_t count, hl_error *error);
 
@@ -114,10 +116,11 @@ enum { HL_FORMAT_SNIFFED_BYTES = 1024, HL_FORMAT_ENDINGS = 3 };
 
 /* A format's reader. Every member except load may be null. */
 typedef struct hl_format {
-  const char *name;                       /* the format's name in error lines */
+  const char *name;                       /* name of the format in error lines */
   const char *endings[HL_FORMAT_ENDINGS]; /* extensions of the names of files that must start with
-                                           * `beginning`; null follows the last one */
-  const char *title;                      /* the name in lists of formats; if null, lists show `name` */
+                                           * `beginning`; null follows the last extension */
+  const char *title;                      /* name of the format in lists of formats; if null, lists show
+                                           * `name` */
   const char *more_endings;     /* other extensions of files of this format, separated by blanks; used only in
                                  * lists of formats */
   const char *(*missing)(void); /* returns the name of the library that the format needs, if this build lacks
@@ -129,11 +132,11 @@ typedef struct hl_format {
    * less if the file is shorter. */
   bool (*has_content)(const unsigned char *bytes, size_t length);
 
-  /* Returns whether the file's name alone proves the format, independently of the file's bytes. All formats
-   * are asked this before any has_content() is called. */
+  /* Returns whether the file's name alone proves the format, independently of the file's bytes. The fits() of
+   * all formats are called before any has_content(). */
   bool (*fits)(const hl_stream *stream);
 
-  /* Sets *claimed to whether the file's name suggests the format. Formats are asked this only if
+  /* Sets *claimed to whether the file's name suggests the format. The function is called only if
    * has_content() of all formats is false. May replace *stream by the file that holds the header. */
   hl_status (*claim_name)(hl_stream **stream, bool *claimed, hl_error *error);
 
@@ -141,18 +144,18 @@ typedef struct hl_format {
    * it. */
   hl_status (*load)(hl_stream **stream, hl_load_request *request, hl_volume **volume, hl_error *error);
 
-  /* Reads a folder or a zip archive. *claimed: set to false if it contains nothing of the format. Then the
-   * next format is asked. */
+  /* Reads a folder or a zip archive. *claimed: set to false if the folder or archive contains nothing of the
+   * format. Then load_bundle() of the next format is called. */
   hl_status (*load_bundle)(hl_bundle *bundle, hl_load_request *request, bool *claimed, hl_volume **volume,
                            hl_error *error);
 
-  /* This flag says whether load_bundle opens files by their names, without a list of all files. Only such
-   * formats can be read from servers. */
+  /* This flag says whether load_bundle opens files by their names, without a list of all files. Only formats
+   * with this flag can be read from servers. */
   bool finds_by_name;
 } hl_format;
 
-/* All formats, in the order in which they are asked whether they know a file (formats.h); null after the
- * last. */
+/* All formats, in the order in which their functions are called for a file (formats.h); null after the last
+ * format. */
 extern const hl_format *const hl_formats[];
 
 /* The name that a format gives to a voxel type. name may list alternatives, as in hl_text_is_one_of(). */
@@ -161,7 +164,7 @@ typedef struct hl_named_type {
   hl_voxel_type type;
 } hl_named_type;
 
-/* Finds the type with this name; false if there is none. */
+/* Finds the voxel type with this name. Returns false if no type has the name. */
 bool hl_find_type(const hl_named_type *types, size_t count, const char *name, hl_voxel_type *type);
 
 /* For text headers: fails with "PATH, line N: ...". */

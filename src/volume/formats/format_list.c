@@ -1,5 +1,5 @@
 /* volume/formats/format_list.c - lists the formats of volumes that this build of the library reads and
- * writes, and the packings of bytes and pictures in their files. */
+ * writes, and the ways to compress bytes and pictures in files. */
 #include <string.h>
 
 #include "core/endings.h"

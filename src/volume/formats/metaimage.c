@@ -22,7 +22,8 @@ typedef struct meta_header {
     int dimension; /* 0 if not yet stated */
     size_t size[MOST_AXES];
     double spacing[MOST_AXES], element_size[MOST_AXES], offset[MOST_AXES];
-    double matrix[MOST_AXES * MOST_AXES]; /* row a is the direction of index axis a */
+    double matrix[MOST_AXES * MOST_AXES]; /* row `a` of the matrix is the direction in the world of index axis
+                                           * `a` */
     bool has_sizes, has_spacing, has_element_size, has_offset, has_matrix, is_anatomical;
   } grid;
   hl_voxel_type type; /* 0 if not yet stated */
@@ -201,8 +202,8 @@ static void make_grid(const meta_header *header, hl_volume_description *grid) {
   grid->value_offset = header->intercept;
 }
 
-/* Finds the components. They are either the channels of a voxel, which lie side by side, or whole volumes
- * along a fourth or later axis, which follow each other. */
+/* Finds the components. Components are either the channels of a voxel, which lie side by side, or whole
+ * volumes along a fourth or later axis, which follow each other. */
 static hl_status find_components(const meta_header *header, bool *is_series, hl_payload *payload,
                                  hl_error *error) {
   size_t series = 1;
@@ -222,8 +223,8 @@ static hl_status find_components(const meta_header *header, bool *is_series, hl_
   return HL_OK;
 }
 
-/* Goes to the voxels. With "LOCAL" they follow the header. Another file may begin with a header of its own,
- * which is skipped. */
+/* Moves the stream to the first voxel. If ElementDataFile is "LOCAL", the voxels follow the header. A
+ * separate data file may begin with a header of its own, which is skipped. */
 static hl_status go_to_voxels(hl_stream **stream, meta_header *header, const hl_payload *payload,
                               hl_error *error) {
   if (header->is_list || header->files.count > 0) {

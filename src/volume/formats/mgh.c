@@ -1,4 +1,5 @@
-/* volume/formats/mgh.c - reads FreeSurfer's volumes: .mgh, and .mgz, which is packed by gzip.
+/* volume/formats/mgh.c - reads FreeSurfer's volumes: .mgh files, and .mgz files, which are .mgh files packed
+ * by gzip.
  *
  * All numbers are big-endian: the version 1, three sizes and the number of frames, the type, and a flag. If
  * the flag is set, voxel sizes, the directions of the axes and the middle of the volume follow (RAS,
@@ -40,8 +41,8 @@ static bool has_content(const unsigned char *bytes, size_t length) {
   return bytes[IS_GOOD] == 0 && bytes[IS_GOOD + 1] <= 1;
 }
 
-/* Sets the volume's axes and origin. The file states the position of the middle, which has the index size /
- * 2, even if the size is odd. */
+/* Sets the volume's axes and origin. The file states the position of the middle, which has the index size / 2
+ * along each axis, even if the size is odd. */
 static void place(const unsigned char *header, hl_volume_description *grid) {
   /* The axes i, j, k and the position of the middle that are used if the file states none. */
   static const double usual[12] = {-1, 0, 0, 0, 0, -1, 0, 1, 0, 0, 0, 0};
@@ -89,7 +90,8 @@ static hl_status load(hl_stream **stream, hl_load_request *request, hl_volume **
   return status == HL_OK ? hl_payload_read(*stream, &payload, request->spacing, volume, error) : status;
 }
 
-/* Claims files by their names, so that load() is called for damaged headers, too, and reports the damage. */
+/* Claims files by their names, so that load() is also called for files with damaged headers, and reports the
+ * damage. */
 static hl_status claim_name(hl_stream **stream, bool *claimed, hl_error *error) {
   (void)error;
   static const char *const endings[] = {".mgh", ".mgz", ".mgh.gz"};

@@ -2,9 +2,9 @@
  * .ccp4, .rec, .st.
  *
  * Source of the fields: the MRC2014 format (Cheng et al., Journal of Structural Biology 192, 2015, and the
- * CCP-EM project's page of it). The header has 1024 bytes of 4-byte words. The byte order is found by trying
- * both: in the right one, the numbers are possible. World coordinates are the cell's X, Y, Z in Angstroms.
- * MAPC, MAPR and MAPS say along which of these axes the file's columns, rows and sections run. */
+ * CCP-EM project's page of it). The header has 1024 bytes of 4-byte words. The byte order is the order in
+ * which the header's sizes and mode are possible numbers. World coordinates are the cell's X, Y, Z in
+ * Angstroms. MAPC, MAPR and MAPS say along which of these axes the file's columns, rows and sections run. */
 #include <math.h>
 #include <string.h>
 
@@ -15,7 +15,7 @@
 
 enum {
   HEADER_BYTES = 1024,
-  /* offsets of the words */
+  /* offsets in bytes of the header's words */
   AT_SIZES = 0,
   AT_MODE = 12,
   AT_START = 16,
@@ -96,8 +96,9 @@ static hl_status read_header(hl_stream *stream, mrc_header *header, hl_error *er
   return HL_OK;
 }
 
-/* Returns whether the bytes of a file of mode 0 are unsigned. By the format they are signed, but IMOD writes
- * unsigned bytes, too. A file of IMOD has IMOD's stamp, and a flag says whether its bytes are signed. */
+/* Returns whether the bytes of a file of mode 0 are unsigned. The format prescribes signed bytes, but IMOD
+ * also writes unsigned bytes. A file that IMOD has written has IMOD's stamp, and a flag says whether its
+ * bytes are signed. */
 static bool has_unsigned_bytes(const mrc_header *header) {
   enum { STAMP = 1146047817, SIGNED = 1 };
   return load_integer(header, AT_IMOD_STAMP) == STAMP && (load_integer(header, AT_IMOD_FLAGS) & SIGNED) == 0;
@@ -124,7 +125,8 @@ static void read_type(const mrc_header *header, hl_payload *payload) {
 }
 
 /* Finds the grid's dimensions, and whether the file is a stack of volumes. Stacks have space groups from 401
- * on; MZ says how many sections each volume has. Of a stack, also sets the components and the block. */
+ * on; MZ says how many sections each volume has. For a stack, also sets the payload's components and
+ * block. */
 static hl_status read_stack(const mrc_header *header, const char *path, hl_payload *payload, bool *is_series,
                             hl_error *error) {
   int64_t group = load_integer(header, AT_SPACE_GROUP), each = load_integer(header, AT_INTERVALS + 8),
@@ -141,22 +143,23 @@ static hl_status read_stack(const mrc_header *header, const char *path, hl_paylo
   size_t rows;
   if (!hl_multiply(payload->grid.dimensions[0], payload->grid.dimensions[1], &rows) ||
       !hl_multiply(rows, (size_t)each, &payload->block))
-    payload->block = SIZE_MAX; /* an impossible size, which makes the check of the grid refuse the file */
+    payload->block = SIZE_MAX; /* SIZE_MAX is an impossible size, so that the check of the grid refuses the
+                                * file */
   return HL_OK;
 }
 
-/* Finds the cosine and the sine of an angle in degrees. An angle of 0 means that none was written, and counts
- * as 90. */
+/* Finds the cosine and the sine of an angle in degrees. An angle of 0 means that the program wrote no angle,
+ * and counts as 90 degrees. */
 static void turn(double degrees, double *cosine, double *sine) {
   bool right = degrees == 90 || degrees == 0 || !isfinite(degrees);
   *cosine = right ? 0 : hl_cos(degrees * (HL_PI / 180));
   *sine = right ? 1 : hl_sin(degrees * (HL_PI / 180));
 }
 
-/* Finds the steps, one interval long, along the cell's axes a, b, c. The cell's angles are alpha (between b
- * and c), beta (c and a) and gamma (a and b). Axis a lies along X, and b in the plane of X and Y, as in
- * International Tables for Crystallography, volume F (2001), chapter 11.1, and in PDB files. The third
- * coordinate of c follows from its length 1. */
+/* Finds the vectors along the cell's axes a, b, c that are as long as one interval of the grid. The cell's
+ * angles are alpha (between b and c), beta (c and a) and gamma (a and b). Axis a lies along X, and b in the
+ * plane of X and Y, as in International Tables for Crystallography, volume F (2001), chapter 11.1, and in PDB
+ * files. The third coordinate of c follows from its length 1. */
 static void place_cell(const mrc_header *header, double step[3][3]) {
   double length[3], cosine[3], sine[3];
   for (int axis = 0; axis < 3; axis++) {
@@ -180,8 +183,8 @@ static void read_axes(const mrc_header *header, int axes[3]) {
   for (int n = 0; n < 3; n++) {
     int64_t axis = load_integer(header, AT_AXES + 4 * n);
     if (axis >= 1 && axis <= 3) seen |= 1 << axis;
-    axes[n] = (int)(axis - 1); /* the subtraction is done in 64 bits, as the number may be any; numbers other
-                                * than 1, 2, 3 are replaced below */
+    axes[n] = (int)(axis - 1); /* the subtraction in 64 bits cannot overflow; numbers other than 1, 2, 3 are
+                                * replaced below */
   }
   if (seen == (1 << 1 | 1 << 2 | 1 << 3)) return;
   for (int n = 0; n < 3; n++) axes[n] = n;
@@ -283,8 +286,8 @@ static hl_status load(hl_stream **stream, hl_load_request *request, hl_volume **
   return status == HL_OK ? hl_payload_read(*stream, &payload, request->spacing, volume, error) : status;
 }
 
-/* Claims files by their names, so that load() reads headers older than the mark "MAP", and reports damaged
- * ones. */
+/* Claims files by their names, so that load() reads files older than the mark "MAP", and reports damaged
+ * headers. */
 static hl_status claim_name(hl_stream **stream, bool *claimed, hl_error *error) {
   static const char *const endings[] = {".mrc", ".mrcs", ".map", ".ccp4", ".rec", ".ali", ".st"};
   const unsigned char *bytes;

@@ -1,13 +1,14 @@
-/* volume/formats/nifti.c - reads NIfTI-1 and NIfTI-2: .nii, and pairs of .hdr and .img; ANALYZE 7.5 and
- * SPM99, whose headers are like NIfTI-1's.
+/* volume/formats/nifti.c - reads NIfTI-1 and NIfTI-2: .nii, and pairs of .hdr and .img; also ANALYZE 7.5 and
+ * SPM99 files, whose headers are like the header of NIfTI-1.
  *
  * ANALYZE headers state no orientation. As in nibabel, the orientation is taken from SPM's file NAME.mat
- * beside the header. Without this file, x runs to the left, and the world's origin is a voxel: the one that
- * SPM's field states, if it lies near the volume, else the middle of the volume.
+ * beside the header. Without this file, x runs to the left, and the world's origin is a voxel: the voxel that
+ * SPM's field states, if this voxel lies near the volume, else the voxel in the middle of the volume.
  *
- * World coordinates are the file's (x to the right, y to the front, z up). They come from the sform, else
- * from the qform, else from the voxel sizes alone. Source of the fields: nifti1.h and nifti2.h of the NIfTI
- * Data Format Working Group. */
+ * World coordinates are the coordinates of the file (x to the right, y to the front, z up). The map from
+ * indices to the world is the sform; without an sform it is the qform, and without a qform it follows from
+ * the voxel sizes alone. Source of the fields: nifti1.h and nifti2.h of the NIfTI Data Format Working
+ * Group. */
 #include <math.h>
 #include <string.h>
 
@@ -47,7 +48,8 @@ static uint64_t load_bits(const nifti_header *header, size_t place, size_t lengt
   return bits;
 }
 
-/* Loads a whole number, whose width differs between the two versions. */
+/* Loads a whole number from the header. The width of the number differs between the two versions of the
+ * format. */
 static int64_t load_short(const nifti_header *header, size_t place) {
   return (int16_t)load_bits(header, place, 2);
 }
@@ -124,7 +126,8 @@ static hl_status read_dimensions(const nifti_header *header, size_t dimensions[3
                           (long long)count);
   for (int n = 1; n <= count; n++) {
     int64_t size = load_dimension(header, n);
-    if (size < 1 && n > 1) { /* a size below 1 counts as 1, as in the format's reference implementation */
+    if (size < 1 && n > 1) { /* a size below 1 counts as 1, as in the format's reference implementation
+                              * nifti1_io.c */
       hl_log(header->context, HL_LOG_WARNING, "%s: dim[%d] is %lld: 1 is taken", header->path, n,
              (long long)size);
       size = 1;
@@ -148,15 +151,15 @@ static const char *unit_of(const nifti_header *header) {
   return units[code & 7];
 }
 
-/* Returns whether the header's intent code says that values are labels (nifti1.h, NIFTI_INTENT_LABEL).
- * ANALYZE has another field at this place. */
+/* Returns whether the header's intent code says that values are labels (nifti1.h, NIFTI_INTENT_LABEL). In
+ * ANALYZE headers the bytes of the intent code hold another field. */
 static bool says_labels(const nifti_header *header) {
   enum { LABEL = 1002 };
   return !header->is_analyze && load_code(header, header->layout->intent) == LABEL;
 }
 
-/* Reads the type. components: set to the number of values that lie side by side in each voxel, as for
- * colours. */
+/* Reads the voxel type. *components: set to the number of values that lie side by side in each voxel; greater
+ * than 1 for colours and complex numbers. */
 static hl_status read_type(const nifti_header *header, hl_voxel_type *type, size_t *components,
                            hl_error *error) {
   static const struct {
@@ -213,14 +216,14 @@ static void place_by_sform(const nifti_header *header, hl_volume_description *gr
   }
 }
 
-/* The limit of a * a below which a counts as 0. A half turn has a = 0, and an a * a below the limit is only
- * the rounding error of the three floats b, c, d. The function nifti_quatern_to_mat44() of the reference
- * implementation, nifti1_io.c, does the same. */
+/* The limit of a * a below which a counts as 0. For a half turn the component a of the quaternion is 0; an a
+ * * a below the limit is only the rounding error of the floats b, c, d. The function nifti_quatern_to_mat44()
+ * of the reference implementation, nifti1_io.c, does the same. */
 static const double HALF_TURN = 1e-7;
 
 /* Sets axes and origin by the format's method 2, in which the header states a rotation, voxel sizes and an
- * offset. The rotation is the unit quaternion (a, b, c, d). The header does not state a, which follows from
- * the others, as a >= 0. */
+ * offset. The rotation is the unit quaternion (a, b, c, d). The header states only b, c and d; the number a
+ * >= 0 follows from them. */
 static void place_by_qform(const nifti_header *header, const double spacing[3], hl_volume_description *grid) {
   double b = load_real(header, header->layout->quaternion, 0),
          c = load_real(header, header->layout->quaternion, 1);
@@ -244,8 +247,8 @@ static void place_by_sizes(const double spacing[3], hl_volume_description *grid)
   for (int axis = 0; axis < 3; axis++) grid->axis[axis][axis] = spacing[axis];
 }
 
-/* Sets axes and origin of an ANALYZE volume, as the beginning of this file describes. SPM's origin is a
- * voxel: three whole numbers at byte 253, which count from 1. */
+/* Sets axes and origin of an ANALYZE volume, as the beginning of this file describes. SPM's origin is the
+ * index of a voxel: three whole numbers at byte 253, counted from 1. */
 static void place_by_origin(const nifti_header *header, const double spacing[3],
                             hl_volume_description *grid) {
   enum { ORIGIN = 253 };
@@ -274,7 +277,7 @@ static void place_by_origin(const nifti_header *header, const double spacing[3],
          header->path, any && near ? "SPM's origin" : "the volume's middle");
 }
 
-/* Sets axes and origin by the first method for which the file has numbers, and which gives possible axes. */
+/* Sets axes and origin by the first method for which the file has numbers and which results in valid axes. */
 static void place(const nifti_header *header, hl_volume_description *grid) {
   double spacing[3];
   for (int axis = 0; axis < 3; axis++) {
@@ -331,8 +334,8 @@ static hl_status go_to_voxels(hl_stream **stream, const nifti_header *header, co
                           header->layout->vox_offset, offset);
   uint64_t skip = (uint64_t)offset;
   if (!header->is_pair) {
-    uint64_t least = header->layout->header_bytes + 4; /* after the header, four bytes say whether extensions
-                                                        * follow */
+    uint64_t least = header->layout->header_bytes + 4; /* the header is followed by four bytes, which say
+                                                        * whether extensions follow */
     skip = (skip < least ? least : skip) - header->layout->header_bytes;
     return hl_stream_skip(*stream, skip, error);
   }
@@ -342,8 +345,8 @@ static hl_status go_to_voxels(hl_stream **stream, const nifti_header *header, co
   return status == HL_OK ? hl_stream_skip(*stream, skip, error) : status;
 }
 
-/* Finds the components. They are either the colours of a voxel, which lie side by side, or the volumes of a
- * series and of further axes, which follow each other. */
+/* Finds the components. Components are either the colours of a voxel, which lie side by side, or the volumes
+ * of a series and of further axes, which follow each other. */
 static hl_status find_components(const nifti_header *header, size_t side_by_side, size_t series,
                                  size_t others, hl_payload *payload, hl_error *error) {
   const size_t *dimension = payload->grid.dimensions;
@@ -383,7 +386,7 @@ static hl_status load(hl_stream **stream, hl_load_request *request, hl_volume **
 }
 
 /* If *stream is NAME.img, which holds the voxels of a pair, replaces it by the header NAME.hdr. *switched:
- * set to whether this was done. */
+ * set to whether *stream was replaced. */
 static hl_status switch_to_header(hl_stream **stream, bool *switched, hl_error *error) {
   const char *slash = strrchr((*stream)->path, '/'), *name = slash == NULL ? (*stream)->path : slash + 1;
   char header[NAME_BYTES];
@@ -405,7 +408,8 @@ static hl_status switch_to_header(hl_stream **stream, bool *switched, hl_error *
   return HL_OK;
 }
 
-/* Claims files by their names, so that load() is called for damaged headers, too, and reports the damage. */
+/* Claims files by their names, so that load() is also called for files with damaged headers, and reports the
+ * damage. */
 static hl_status claim_name(hl_stream **stream, bool *claimed, hl_error *error) {
   const unsigned char *bytes;
   size_t length;

@@ -1,10 +1,10 @@
 /* volume/formats/npy.c - reads NumPy arrays, .npy format 1.0 to 3.0: axes [z][y][x], in C or Fortran order.
  *
  * The header consists of a mark, two bytes of version, the length of a text, and the text, which is a
- * dictionary of descr, fortran_order and shape. Two axes are [y][x]. Of four axes, the last one holds the
- * components of voxels if its size is at most four. Otherwise the first one is a series of volumes. The file
- * has no positions: the spacing is 1 and the origin 0. Source: NumPy's format specification,
- * numpy/lib/format.py (NEP 1). */
+ * dictionary of descr, fortran_order and shape. The axes of an array with two axes are [y][x]. If an array
+ * has four axes, the last axis holds the components of voxels if its size is at most four; otherwise the
+ * first axis is a series of volumes. Since the file states no positions, the spacing is 1 and the origin 0.
+ * Source: NumPy's format specification, numpy/lib/format.py (NEP 1). */
 #include <string.h>
 
 #include "core/memory.h"
@@ -49,7 +49,7 @@ static bool take(npy_header *header, const char *token) {
   return true;
 }
 
-/* Takes a text in quotes of either kind. */
+/* Reads a text in single or double quotes. */
 static bool take_text(npy_header *header, char *text, size_t capacity) {
   skip_spaces(header);
   char quote = *header->at;
@@ -173,8 +173,8 @@ static hl_status read_header(hl_stream *stream, npy_header *header, char *text, 
 
 /* ---- the voxels ---- */
 
-/* Makes the payload. Its sizes are in the order of the file, which begins with the fastest axis: the last
- * axis in C order, the first axis in Fortran order. */
+/* Makes the payload. The payload's sizes are in the order of the file, which begins with the fastest axis.
+ * The fastest axis is the last axis in C order, and the first axis in Fortran order. */
 static hl_status make_payload(const npy_header *header, bool *is_series, hl_payload *payload,
                               hl_error *error) {
   int axes = header->axes, first = 0;
@@ -187,7 +187,8 @@ static hl_status make_payload(const npy_header *header, bool *is_series, hl_payl
   *is_series = four && !last_is_component;
   if (*is_series) first = 1;
   int grid_axes = four ? 3 : axes;
-  for (int n = 0; n < grid_axes; n++) /* shape[first] is the size along z, or along y of a plane */
+  for (int n = 0; n < grid_axes; n++) /* shape[first] is the size along z; for two axes it is the size along
+                                       * y */
     payload->grid.dimensions[header->fortran ? n : grid_axes - 1 - n] = header->shape[first + n];
   if (extra == 0)
     return hl_fail(error, HL_ERROR_INPUT, "%s: the shape has a zero: each must be at least 1", header->path);
@@ -199,7 +200,7 @@ static hl_status make_payload(const npy_header *header, bool *is_series, hl_payl
   payload->components = extra * header->numbers;
   if (last_is_component && header->type == HL_VOXEL_U8) payload->colors = HL_COLORS_MEANT;
   if (header->fortran)
-    payload->colors = HL_COLORS_UNREAD; /* in Fortran order the components of a voxel lie apart */
+    payload->colors = HL_COLORS_UNREAD; /* in Fortran order the components of a voxel are not adjacent */
   hl_status status = hl_volume_check_grid(&payload->grid, header->path, error);
   if (status != HL_OK) return status;
   size_t voxels = payload->grid.dimensions[0] * payload->grid.dimensions[1] * payload->grid.dimensions[2];
@@ -213,19 +214,19 @@ static hl_status transpose(int grid_axes, hl_volume **volume, hl_error *error) {
   const hl_volume *read = *volume;
   hl_volume_description description;
   hl_volume_description_defaults(&description);
-  bool exact = read->exact != NULL; /* if there are exact numbers, they are rearranged; they have the file's
-                                     * type, and are packed */
+  bool exact = read->exact != NULL; /* whether the volume keeps the file's exact numbers; then these packed
+                                     * numbers are rearranged */
   size_t bytes = exact ? hl_voxel_type_bytes(read->type) : hl_storage_bytes(read->storage);
   const ptrdiff_t stride[3] = {(ptrdiff_t)bytes, (ptrdiff_t)(bytes * read->dimension[0]),
                                (ptrdiff_t)(bytes * read->dimension[0] * read->dimension[1])};
-  for (int axis = 0; axis < 3; axis++) { /* axis 0 of the file is z, or y of a plane */
+  for (int axis = 0; axis < 3; axis++) { /* axis 0 of the file is z; in a file of two axes it is y */
     int turned = axis < grid_axes ? grid_axes - 1 - axis : axis;
     description.dimensions[turned] = read->dimension[axis];
     description.stride_bytes[turned] = stride[axis];
     vec3 step = mat3_column(read->index_to_world.linear, axis);
     description.axis[turned][turned] = vec3_length(step);
   }
-  /* The types of the storages. */
+  /* The voxel type of each hl_storage. */
   static const hl_voxel_type types[] = {HL_VOXEL_U8, HL_VOXEL_U16, HL_VOXEL_F32};
   description.type = exact ? read->type : types[read->storage];
   description.value_scale = read->value_scale;

@@ -37,8 +37,8 @@ static bool is_first_of_components(const nrrd_header *header) {
   return unsaid && thick > 3;
 }
 
-/* Reduces the axes of voxels to at most three. First drops axes of one sample, beginning with the last; then
- * drops all axes after the third, which become a series. */
+/* Reduces the axes of voxels to at most three. Axes of one sample are dropped first, beginning with the last
+ * such axis. Then all axes after the third are dropped, and become a series. */
 static int drop_thin_axes(int axes[NRRD_MOST_AXES], const nrrd_header *header, int count) {
   for (int n = count - 1; n >= 0 && count > 3; n--)
     if (header->axis[axes[n]].size == 1) {
@@ -57,8 +57,8 @@ static int choose_axes(const nrrd_header *header, int chosen[NRRD_MOST_AXES]) {
   return drop_thin_axes(chosen, header, count);
 }
 
-/* Finds the components, which are the samples along all axes that are not the grid's. These axes must be
- * neighbours. Axes of the grid may come before and after them. */
+/* Finds the components, which are the samples along all axes that do not belong to the grid. The axes of
+ * components must be neighbours. Axes of the grid may come before and after the axes of components. */
 static hl_status find_components(const nrrd_header *header, const int chosen[NRRD_MOST_AXES], int count,
                                  bool *is_series, hl_payload *payload, hl_error *error) {
   size_t before = 1, since = 1; /* before: the product of the sizes of the grid's axes before the axes of
@@ -141,8 +141,8 @@ static hl_status place_grid(const nrrd_header *header, hl_payload *payload, bool
 
 /* ---- the voxels ---- */
 
-/* Goes to the last `bytes` bytes of packed data. Unpacks all data once to find where these bytes begin, and
- * then unpacks once more up to this place. */
+/* Moves the stream to the last `bytes` bytes of packed data. Unpacks all data once to find where these bytes
+ * begin, and then unpacks once more up to this place. */
 static hl_status skip_to_last_unpacked(hl_stream **stream, const nrrd_header *header, uint64_t bytes,
                                        hl_error *error) {
   unsigned char piece[8192];
@@ -157,7 +157,7 @@ static hl_status skip_to_last_unpacked(hl_stream **stream, const nrrd_header *he
     if (status == HL_OK && hl_cancelled((*stream)->context))
       status = hl_fail(error, HL_ERROR_CANCELLED, "%s: cancelled", (*stream)->path);
   }
-  bool nested = (*stream)->below->below != NULL; /* whether the whole file is packed, too */
+  bool nested = (*stream)->below->below != NULL; /* whether the whole file is packed as well as its data */
   if (status == HL_OK) status = hl_stream_restart(stream, error);
   if (status == HL_OK && nested) status = hl_stream_unpack(stream, error);
   if (status == HL_OK) status = hl_stream_skip(*stream, begin, error);

@@ -77,7 +77,7 @@ static hl_status read_type(nrrd_header *header, const char *value, hl_error *err
 
 static hl_status read_encoding(nrrd_header *header, const char *value, hl_error *error) {
   static const char *const names[] = {"raw", "gzip|gz", "bzip2|bz2", "ascii|text|txt",
-                                      "hex"}; /* in the order of nrrd_encoding */
+                                      "hex"}; /* names of the encodings, in the order of nrrd_encoding */
   for (int n = NRRD_RAW; n <= NRRD_HEX; n++)
     if (hl_text_is_one_of(value, names[n])) {
       header->encoding = (nrrd_encoding)n;
@@ -164,9 +164,9 @@ static bool scan_vector(const char **cursor, double vector[3], bool *beyond) {
   return count >= 1;
 }
 
-/* Returns whether a vector is no direction in space. This is the case if the vector's numbers are NaN, which
- * some programs write in place of "none". It is also the case if the vector runs only along a fourth axis,
- * such as time. */
+/* Returns whether a vector is no direction in space. Vectors of NaN, which some programs write in place of
+ * "none", are no directions. A vector that runs only along a fourth axis, such as time, is no direction in
+ * space either. */
 static bool is_no_direction(const double v[3], bool beyond) {
   return (isnan(v[0]) && isnan(v[1]) && isnan(v[2])) || (beyond && v[0] == 0 && v[1] == 0 && v[2] == 0);
 }
@@ -200,7 +200,8 @@ static hl_status read_origin(nrrd_header *header, const char *value, hl_error *e
   return HL_OK;
 }
 
-/* Reads the field "space". Names other than these three, with or without time, say nothing about anatomy. */
+/* Reads the field "space". Only the three names in this function, with or without time, state an anatomical
+ * space. */
 static hl_status read_space(nrrd_header *header, const char *value, hl_error *error) {
   (void)error;
   static const struct {
@@ -214,7 +215,7 @@ static hl_status read_space(nrrd_header *header, const char *value, hl_error *er
   return HL_OK;
 }
 
-/* The unit of length that a word names, in quotes; null if it names none. */
+/* The unit of length that a word in quotes names; null if the word names no unit of length. */
 static const char *find_unit(const char *word) {
   static const struct {
     const char *words, *unit;
@@ -227,8 +228,9 @@ static const char *find_unit(const char *word) {
   return NULL;
 }
 
-/* Reads units such as "mm" "mm" "mm", or "" "mm" "mm" "mm" where an axis has components. Returns the unit
- * that three axes have; null if there is no such unit, or if another axis has another unit of length. */
+/* Reads units such as "mm" "mm" "mm", or "" "mm" "mm" "mm" if the first axis has components. Returns the unit
+ * that three axes share; null if three axes share no unit, or if a further axis has a different unit of
+ * length. */
 static const char *scan_units(const char *text) {
   char word[NRRD_KIND_BYTES];
   const char *told = NULL;
@@ -248,7 +250,7 @@ static hl_status read_space_units(nrrd_header *header, const char *value, hl_err
   return HL_OK;
 }
 
-/* Reads the units of a header without a space. */
+/* Reads the field "units", which counts only in a header without the field "space units". */
 static hl_status read_units(nrrd_header *header, const char *value, hl_error *error) {
   (void)error;
   if (!header->space.has_units) header->space.unit = scan_units(value);
@@ -323,7 +325,7 @@ static bool is_color(const double srgb[3]) {
 
 /* ---- segmentations: pairs "Segment0_Name:=liver", as Slicer writes them in .seg.nrrd files ---- */
 
-/* Makes room for a segment. */
+/* Makes the list of segments long enough for segment `number`. */
 static hl_status need_segment(nrrd_header *header, size_t number, hl_error *error) {
   if (number < header->segment_count) return HL_OK;
   hl_context *context = header->stream->context;
@@ -393,7 +395,7 @@ hl_status hl_nrrd_read_header(hl_stream *stream, nrrd_header *header, hl_error *
     hl_status status = hl_stream_line(stream, line, &ended, error);
     if (status != HL_OK) return status;
     if (ended || (line[0] == 0 && header->line > 1)) break;
-    if (header->data.is_list) { /* from here on, each line is the name of a data file */
+    if (header->data.is_list) { /* each further line is the name of a data file */
       status = hl_file_list_add(&header->data.files, hl_text_trim(line), error);
       if (status != HL_OK) return status;
       continue;

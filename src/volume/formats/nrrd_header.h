@@ -32,11 +32,11 @@ typedef struct nrrd_header {
     hl_space kind;
     double origin[3];
     bool has_origin, has_directions;
-    bool has_units;   /* whether the field "space units" was read, which goes before "units" */
-    const char *unit; /* unit of the axes, static; null if there is no unit, an unknown one, or not the same
-                       * for all axes */
+    bool has_units;   /* whether the field "space units" was read, which has priority over "units" */
+    const char *unit; /* unit of the axes, static; null if the unit is absent, unknown, or not the same for
+                       * all axes */
   } space;
-  /* The places of the voxels. */
+  /* The file names and positions at which the voxels are found. */
   struct {
     char file[NRRD_NAME_BYTES]; /* "" if the voxels are attached, or in several files */
     hl_file_list files;         /* owned; the list of several data files */

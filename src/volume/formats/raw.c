@@ -91,15 +91,15 @@ static hl_status load(hl_stream **stream, hl_load_request *request, hl_volume **
   return status == HL_OK ? hl_payload_read(*stream, &payload, request->spacing, volume, error) : status;
 }
 
-/* Returns whether the name states the size of the file. Then the name decides, as voxels may begin with any
- * bytes, even with another format's mark. */
+/* Returns whether the name states the size of the file. Such a name proves the format, because bare voxels
+ * may begin with any bytes, even with another format's mark. */
 static bool fits(const hl_stream *stream) {
   hl_payload payload;
   return hl_raw_name(stream->path, &payload) && !hl_text_ends(stream->path, ".gz") &&
          hl_stream_at_most(stream) == hl_payload_bytes(&payload);
 }
 
-/* Claims all files named .raw. If the name lacks the size or the type, load() says so. */
+/* Claims all files named .raw. If the name lacks the size or the type, load() reports this error. */
 static hl_status claim_name(hl_stream **stream, bool *claimed, hl_error *error) {
   (void)error;
   hl_payload payload;

@@ -1,10 +1,11 @@
 /* volume/formats/slc.c - reads VolVis' volumes (.slc), as VTK's example data have them.
  *
  * The header is text: the mark 11111, three sizes and the bits of a voxel, three spacings, and four numbers
- * that name the unit of length, the origin of the data, what was done to them, and how voxels are packed. The
- * size of a small picture and an X follow, then the picture's bytes, three for each pixel. The slices of
- * voxels come last, x fastest. A packed slice begins with the number of its packed bytes and an X. Source:
- * the files of VTK's example data, and the names that VolVis' own header gives to these numbers. */
+ * that stand for the unit of length, the origin of the data, the processing of the data, and the packing of
+ * voxels. The size of a small picture and an X follow, then the picture's bytes, three for each pixel. The
+ * slices of voxels come last; x is the fastest axis. A packed slice begins with the number of its packed
+ * bytes and an X. Source: the files of VTK's example data, and the names that VolVis' own source gives to the
+ * header's numbers. */
 #include <string.h>
 
 #include "core/memory.h"
@@ -100,8 +101,8 @@ static hl_status read_header(hl_stream *stream, slc_header *header, hl_error *er
 /* ---- packed slices ---- */
 
 /* A stream that unpacks slices. The packed data are runs. The first byte of a run holds a count of 1 to 127
- * in its lower seven bits. If its highest bit is set, `count` bytes follow. If not, one byte follows, which
- * is repeated `count` times. A count of 0 ends the slice. */
+ * in its lower seven bits. If the highest bit of this byte is set, `count` bytes follow. If it is not set,
+ * one byte follows, which is repeated `count` times. A count of 0 ends the slice. */
 typedef struct run_stream {
   hl_stream base;
   size_t slice_bytes, slices; /* number of bytes of an unpacked slice; number of slices that have not begun */
@@ -118,7 +119,7 @@ static hl_status next_byte(run_stream *runs, unsigned char *byte, hl_error *erro
   return hl_stream_read_all(runs->base.below, byte, 1, error);
 }
 
-/* Skips what is left of a packed slice, and begins the next slice. */
+/* Skips the remaining bytes of a packed slice, and begins the next slice. */
 static hl_status begin_slice(run_stream *runs, hl_error *error) {
   hl_status status = hl_stream_skip(runs->base.below, runs->packed, error);
   if (status == HL_OK) status = read_sizes(runs->base.below, &runs->packed, 1, error);
@@ -140,7 +141,7 @@ static hl_status begin_run(run_stream *runs, hl_error *error) {
   return runs->repeats ? next_byte(runs, &runs->value, error) : HL_OK;
 }
 
-/* Gives some bytes of the run. */
+/* Copies bytes of the current run to the reader's buffer. */
 static hl_status give(run_stream *runs, unsigned char *bytes, size_t capacity, size_t *count,
                       hl_error *error) {
   *count = runs->run < capacity ? runs->run : capacity;

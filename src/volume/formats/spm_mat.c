@@ -1,9 +1,9 @@
 /* volume/formats/spm_mat.c - reads the file in which SPM keeps the place of an ANALYZE volume.
  *
- * The file is a MAT-file of version 4: variables one after the other, each with five integers, its name and
- * its numbers, column by column. The variable "mat" is the matrix from voxel indices, which SPM counts from
- * 1, to the world in millimetres. In older files the matrix is "M", whose x runs to the left, as nibabel
- * takes it (spm99analyze.py). Source of the format: MathWorks, "MAT-File Format", Level 4. */
+ * The file is a MAT-file of version 4: a sequence of variables, each of which has five integers, a name and
+ * the numbers of a matrix, column by column. The variable "mat" is the matrix from voxel indices, which SPM
+ * counts from 1, to the world in millimetres. In older files the matrix is named "M"; its x runs to the left,
+ * as in nibabel (spm99analyze.py). Source of the format: MathWorks, "MAT-File Format", Level 4. */
 #include "volume/formats/spm_mat.h"
 
 #include <math.h>
@@ -26,7 +26,7 @@ typedef struct mat_file {
 
 typedef struct matrix {
   bool found;
-  double numbers[NUMBERS]; /* column by column */
+  double numbers[NUMBERS]; /* the matrix, column by column */
 } matrix;
 
 static uint32_t load_word(const unsigned char *bytes, bool big_endian) {
@@ -35,9 +35,10 @@ static uint32_t load_word(const unsigned char *bytes, bool big_endian) {
   return word;
 }
 
-/* Reads one variable. Returns false at the end, and if the file is not a MAT-file of version 4. */
+/* Reads the file's next variable. Returns false at the end of the file, and if the file is not a MAT-file of
+ * version 4. */
 static bool read_variable(mat_file *file, matrix *mat, matrix *older) {
-  static const size_t sizes[] = {8, 4, 4, 2, 2, 1}; /* the sizes in bytes of numbers, by their kind */
+  static const size_t sizes[] = {8, 4, 4, 2, 2, 1}; /* the size in bytes of each kind of number */
   if (file->left < HEAD_BYTES) return false;
   const bool big_endian = load_word(file->at, false) > 9999;
   uint32_t head[5];
@@ -81,7 +82,7 @@ static bool put(const matrix *from, const char *path, hl_volume_description *gri
 static bool place(const char *path, mat_file file, hl_volume_description *grid) {
   matrix mat = {.found = false}, older = {.found = false};
   while (read_variable(&file, &mat, &older)) {}
-  for (int column = 0; column < 4; column++) older.numbers[4 * column] *= -1; /* x to the right */
+  for (int column = 0; column < 4; column++) older.numbers[4 * column] *= -1; /* x now runs to the right */
   if (!mat.found) mat = older;
   return mat.found && put(&mat, path, grid);
 }

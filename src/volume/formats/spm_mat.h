@@ -8,7 +8,7 @@
 
 /* Reads the .mat file beside a volume's header, and sets the axes and the origin of the volume's grid (x to
  * the right, y to the front, z up). If there is no such file, the function returns false and does not change
- * the grid. If the file cannot be read, the function does the same, and warns. */
+ * the grid. If the file cannot be read, the function warns, returns false and does not change the grid. */
 bool hl_spm_mat_place(hl_context *context, const char *header_path, hl_volume_description *grid);
 
 #endif

@@ -1,9 +1,9 @@
 /* volume/formats/vgi.c - reads .vgi headers of VGStudio, which describe bare voxels in another file.
  *
- * The text has parts "{volume1}", sections "[file1]" in them and lines "Key = value". The first part
- * "{volumeN}" has the sections [representation] and [file1], which state the number and the type of the
- * voxels, and their file. The section [geometry] of the part "{volumeprimitiveN}" states the distances of
- * voxels. Bytes are in little-endian order. */
+ * The text consists of parts such as "{volume1}", which contain sections such as "[file1]" with lines "Key =
+ * value". The first part "{volumeN}" has the sections [representation] and [file1], which state the number,
+ * the type and the file of the voxels. The section [geometry] of the part "{volumeprimitiveN}" states the
+ * distances of voxels. Voxels are little-endian. */
 #include <string.h>
 
 #include "volume/formats/format.h"
@@ -22,7 +22,8 @@ typedef struct voxel_section {
 typedef struct vgi_header {
   const hl_stream *stream;
   int line;
-  char part[WORD_BYTES], section[WORD_BYTES], volume[WORD_BYTES]; /* volume: the part that is read */
+  char part[WORD_BYTES], section[WORD_BYTES], volume[WORD_BYTES]; /* volume: name of the first part
+                                                                   * "{volumeN}", which is read */
   voxel_section grid, file; /* the sections [representation] and [file1]; a value that [file1] states has
                              * priority */
   size_t skip;
@@ -37,7 +38,8 @@ static bool is_word_byte(unsigned char byte) {
   return is_digit(byte) || (byte >= 'a' && byte <= 'z') || (byte >= 'A' && byte <= 'Z');
 }
 
-/* Returns whether a file begins with a word in braces. In JSON a quotation mark follows the brace. */
+/* Returns whether a file begins with a word in braces. JSON files are excluded, because there a quotation
+ * mark follows the brace. */
 static bool has_content(const unsigned char *bytes, size_t length) {
   size_t at = length >= 3 && memcmp(bytes, "\xef\xbb\xbf", 3) == 0 ? 3 : 0;
   while (at < length && hl_is_space((char)bytes[at])) at++;
@@ -53,12 +55,12 @@ static hl_status refuse(const vgi_header *header, const char *key, const char *v
                       hl_text_printable(shown, value));
 }
 
-/* Returns whether a part's name is `word` and a number. */
+/* Returns whether a part's name consists of `word` and a number. */
 static bool is_numbered(const char *name, const char *word) {
   return hl_text_starts(name, word) && is_digit((unsigned char)name[strlen(word)]);
 }
 
-/* Keeps the name of a part or a section, which the pair of brackets encloses. */
+/* Stores the name of the part or section that begins at a line in brackets. */
 static hl_status enter(vgi_header *header, char *text, hl_error *error) {
   bool is_part = text[0] == '{';
   size_t length = strlen(text);
@@ -179,8 +181,8 @@ static hl_status make_grid(const vgi_header *header, hl_volume_description *grid
   return find_type(header, &grid->type, error);
 }
 
-/* Refuses a header without a resolution, unless the caller gives the spacing. A header that was cut off has
- * no resolution. */
+/* Refuses a header without a resolution, unless the caller gives the spacing. A missing resolution is a sign
+ * that the file was cut off. */
 static hl_status check_spacing(const vgi_header *header, const double wanted[3], hl_error *error) {
   if (header->has_spacing || wanted[0] != 0 || wanted[1] != 0 || wanted[2] != 0) return HL_OK;
   return hl_fail(error, HL_ERROR_INPUT,

@@ -1,4 +1,4 @@
-/* volume/io/bundle.c - lists and opens the files of a folder. bundle_zip.c does so for the files of an
+/* volume/io/bundle.c - lists and opens the files of a folder. bundle_zip.c lists and opens the files of an
  * archive. */
 #define _GNU_SOURCE
 #include "volume/io/bundle.h"
@@ -69,9 +69,9 @@ void hl_bundle_sort(hl_bundle *bundle) {
 
 typedef struct folder_walk {
   hl_bundle *bundle;
-  char name[PATH_MAX]; /* the current entry, relative to the folder */
+  char name[PATH_MAX]; /* path of the current entry, relative to the folder */
   dev_t device;        /* the folder's file system; folders on other file systems are not searched */
-  size_t files, depth; /* number of entries of all kinds that were met so far */
+  size_t files, depth; /* files: number of entries of all kinds that were met so far */
 } folder_walk;
 
 /* Returns whether a name below the folder is a regular file, which is reached without a link that leads out

@@ -1,8 +1,8 @@
 /* volume/io/bundle_server.c - opens the files of a store on a server. The context's `fetch` callback fetches
- * them.
+ * the files.
  *
- * Many files are fetched at a time, on the caller's thread. They stay open until hl_bundle_forget() is
- * called, so that any thread can read them. A file of which only parts are fetched has an entry for each
+ * Many files are fetched at a time, on the caller's thread. Fetched files stay open until hl_bundle_forget()
+ * is called, so that any thread can read them. A file of which only parts are fetched has an entry for each
  * part. */
 #include <string.h>
 #include <unistd.h>
@@ -54,8 +54,8 @@ void hl_bundle_forget(const hl_bundle *bundle, size_t count) {
   }
 }
 
-/* Finds a fetched file. The search begins at the end, because the files that were fetched last are needed
- * most often. */
+/* Finds a fetched file by its name. The search begins at the end of the list, because the files that were
+ * fetched last are needed most often. */
 static const brought_file *find(const hl_brought *brought, const char *name) {
   for (size_t n = brought->count; n > 0; n--)
     if (strcmp(brought->files[n - 1].name, name) == 0) return &brought->files[n - 1];
@@ -77,7 +77,7 @@ static hl_status make_room(const hl_bundle *bundle, size_t count, hl_error *erro
   return HL_OK;
 }
 
-/* Checks that a part is of the same file as the parts that were fetched before. */
+/* Checks that a file has not changed since earlier parts of it were fetched. */
 static hl_status check_state(const hl_bundle *bundle, const char *name, const hl_fetched_file *file,
                              hl_error *error) {
   const brought_file *known = find(bundle->brought, name);
@@ -88,8 +88,8 @@ static hl_status check_state(const hl_bundle *bundle, const char *name, const hl
                  bundle->path, name);
 }
 
-/* Adds files that were fetched to the list of known files, which then owns them. Files for which there is no
- * memory are closed. */
+/* Adds fetched files to the list of known files, which then owns them. If memory for the list is short, files
+ * that do not fit are closed. */
 static hl_status take(const hl_bundle *bundle, const char *const *names, size_t count,
                       const hl_fetched_file *files, hl_error *error) {
   hl_brought *brought = bundle->brought;
@@ -104,7 +104,7 @@ static hl_status take(const hl_bundle *bundle, const char *const *names, size_t 
   return status;
 }
 
-/* Asks the server for files. ranges: null for whole files. */
+/* Requests files or parts of files from the server. ranges: [count]; null for whole files. */
 static hl_status ask(const hl_bundle *bundle, const char *const *names, const hl_fetch_range *ranges,
                      size_t count, uint64_t most, hl_error *error) {
   const hl_context_options *options = &bundle->context->options;

@@ -1,8 +1,8 @@
-/* volume/io/bundle_zip.c - lists and opens the files of a zip archive, zip64 included.
+/* volume/io/bundle_zip.c - lists and opens the files of zip archives, also of zip64 archives.
  *
  * Source: PKWARE's APPNOTE.TXT 6.3.10, sections 4.3.7 (local header), 4.3.12 (central directory), 4.3.14 to
- * 4.3.16 (its end) and 4.5.3 (zip64). Nothing is unpacked to disk, so that names in the archive cannot do
- * harm. */
+ * 4.3.16 (end of the central directory) and 4.5.3 (zip64). No file is unpacked to disk, so that names in the
+ * archive cannot do harm. */
 #include "volume/io/bundle_zip.h"
 
 #include <string.h>
@@ -42,7 +42,7 @@ static hl_status read_exactly(const hl_bundle *bundle, hl_source *source, uint64
   return status == HL_OK && got < count ? fail_damaged(bundle, error) : status;
 }
 
-/* Finds the end record, which is the last record of the file. Only a comment may follow it. */
+/* Finds the end record, which is the last record of the file. Only a comment may follow the end record. */
 static hl_status find_end(const hl_bundle *bundle, hl_source *source, uint64_t *at, hl_error *error) {
   enum { TAIL = END_BYTES + COMMENT_MOST };
   uint64_t size = hl_source_size(source), begin = size > TAIL ? size - TAIL : 0;
@@ -80,8 +80,8 @@ static hl_status find_directory(const hl_bundle *bundle, hl_source *source, uint
   return HL_OK;
 }
 
-/* Takes an entry's size, packed size and position from the extra field of zip64. Of these three numbers, the
- * field contains only the ones that did not fit into 32 bits, in this order. */
+/* Reads an entry's size, packed size and position from the extra field of zip64. The field contains, in this
+ * order, only those of the three numbers that did not fit into 32 bits. */
 static void take_extra(const unsigned char *extra, size_t length, hl_bundle_entry *entry) {
   for (size_t n = 0; n + 4 <= length;) {
     size_t bytes = u16(extra + n + 2);

@@ -14,11 +14,12 @@
 /* ---- compressed: gzip, zlib, VTK's blocks ---- */
 
 enum {
-  DEFLATE_GREATEST_RATIO = 1032, /* the greatest number of bytes that one deflated byte gives: a length and a
-                                  * distance, with a code of one bit each, give 258 bytes (RFC 1951) */
-  PENDING_BYTES = 65536,         /* a number of bytes that is greater than zlib can hold back, because its
-                                  * window and its bit buffer are smaller */
-  /* zlib.h: 15 is the largest window; with 32 added, zlib finds out whether the data are gzip or zlib. */
+  DEFLATE_GREATEST_RATIO = 1032, /* the greatest number of bytes to which one deflated byte unpacks: two bits,
+                                  * the codes of a length and a distance, can stand for 258 bytes (RFC
+                                  * 1951) */
+  PENDING_BYTES = 65536,         /* more bytes than zlib can hold back in its window and its bit buffer */
+  /* In zlib.h, 15 is the largest window; 32 added to it makes zlib find out whether the data are gzip or
+   * zlib. */
   AUTOMATIC_WINDOW = 15 + 32
 };
 
@@ -36,7 +37,8 @@ typedef struct blocks_stream {
                                                   * last unpacked block */
   uint64_t *compressed_bytes;                    /* owned; [block_count] */
   uint64_t block;                                /* index of the current block */
-  uint64_t plain_left, compressed_left;          /* bytes left of the current block */
+  uint64_t plain_left, compressed_left;          /* number of unpacked and of packed bytes of the current
+                                                  * block that are left */
   hl_vtk_packing packing;
   unsigned char *packed, *whole; /* owned; the current block of LZ4 or xz, before and after it is unpacked;
                                   * null for zlib */
@@ -63,7 +65,8 @@ typedef struct inflate_result {
   int code;              /* the result of inflate() */
 } inflate_result;
 
-/* Calls inflate() once, on at most input_limit bytes of the stream below. bytes: [capacity]. */
+/* Calls zlib's inflate() once, on at most input_limit bytes of the stream below. bytes: [capacity]; the
+ * unpacked bytes. */
 static hl_status inflate_step(hl_stream *stream, z_stream *zlib, uint64_t input_limit, unsigned char *bytes,
                               size_t capacity, inflate_result *result, hl_error *error) {
   const unsigned char *input;
@@ -134,7 +137,7 @@ hl_status hl_stream_push_inflate(hl_stream **stream, hl_error *error) {
   made->base.pull = inflate_pull;
   made->base.at_most = inflate_at_most;
   made->base.close = inflate_close;
-  *stream = &made->base; /* from here on the caller must close *stream, even if zlib cannot be started */
+  *stream = &made->base; /* the caller must close *stream even if zlib cannot be started */
   return start_zlib(&made->zlib, &made->base, &made->started, error);
 }
 
@@ -155,8 +158,8 @@ static hl_status fail_block(const blocks_stream *stream, hl_error *error) {
                                                                     : stream->block_bytes));
 }
 
-/* Ends the current block after all of its bytes were given. Lets zlib verify the checksum, and skips the rest
- * of the packed bytes. */
+/* Ends the current block after the reader got all its bytes. zlib verifies the checksum, and the rest of the
+ * packed bytes is skipped. */
 static hl_status end_block(blocks_stream *stream, hl_error *error) {
   inflate_result step = {.code = Z_OK};
   while (step.code != Z_STREAM_END) {
@@ -267,13 +270,13 @@ static hl_status read_integers(hl_stream *stream, size_t header_bytes, bool big_
   return HL_OK;
 }
 
-/* Reads the header, which states the sizes of the blocks. Their sum must be the size of the array, which the
- * file states elsewhere. This also limits the number of blocks. */
+/* Reads the header, which states the sizes of the blocks. The sum of the blocks' sizes must be the size of
+ * the array, which the file states elsewhere. This check also limits the number of blocks. */
 static hl_status read_block_header(blocks_stream *stream, size_t header_bytes, bool big_endian,
                                    uint64_t promised, hl_error *error) {
   hl_stream *below = stream->base.below;
   uint64_t first[3]; /* number of blocks; bytes of an unpacked block; bytes of the last unpacked block, or 0
-                      * if it is as long as the others */
+                      * if the last block is as long as the others */
   hl_status status = read_integers(below, header_bytes, big_endian, first, 3, error);
   if (status != HL_OK) return status;
   stream->block_count = first[0];
@@ -318,16 +321,17 @@ hl_status hl_stream_push_vtk_blocks(hl_stream **stream, hl_vtk_packing packing, 
 
 /* ---- written as text: base64 (RFC 4648) and hexadecimal ----
  *
- * White space may stand anywhere. A base64 text may hold several padded parts one after the other (VTK
- * encodes a header and its data apart); it ends at the first character of another kind, such as '<'. */
+ * White space may stand anywhere in the text. A base64 text may hold several padded parts one after the
+ * other, because VTK encodes a header and its data separately. The text ends at the first character that is
+ * no digit, padding or white space, such as '<'. */
 
 enum { NOT_A_DIGIT = 255, SPACE = 254, PADDING = 253 };
 
 typedef struct coded_stream {
   hl_stream base;
   unsigned char digit[256]; /* value of each character */
-  unsigned group_digits;    /* digits in a full group: 4 or 2 */
-  unsigned digit_bits;      /* bits in a digit: 6 or 4 */
+  unsigned group_digits;    /* digits in a full group: 4 for base64, 2 for hexadecimal */
+  unsigned digit_bits;      /* bits in a digit: 6 for base64, 4 for hexadecimal */
   uint32_t bits;            /* the value of the digits of the current group that were read so far */
   unsigned held, padding;   /* numbers of digits and of padding characters of the current group so far */
   unsigned char left[3];    /* decoded bytes of the last group that did not fit into the reader's memory */

@@ -10,7 +10,7 @@
 #include "volume/convert.h"
 
 /* The least size in bytes of a volume that is spread over ranks. Smaller volumes, such as most label maps,
- * lie as a whole in the memory of every rank. */
+ * are stored as a whole in the memory of every rank. */
 enum { LEAST_OVER_RANKS = 1 << 20 };
 
 /* Warns, before a file is read, if the volume will be too large for renderers. A renderer takes memory for
@@ -33,8 +33,8 @@ static void warn_of_pictures(hl_context *context, const hl_volume_description *g
            path, bytes / (1 << 20), limit / (1 << 20));
 }
 
-/* Finds the numbers of this rank's first voxel and of the voxel after its last one. A rank's voxels are
- * consecutive, because they form whole slices. */
+/* Finds the numbers of this rank's first voxel and of the voxel after its last one. A rank's voxels have
+ * consecutive numbers, because they form whole slices. */
 static void own_range(const hl_own_voxels *own, size_t *begin, size_t *end) {
   size_t slice = own->box.count[0] * own->box.count[1];
   *begin = own->box.begin[2] * slice;
@@ -70,9 +70,9 @@ hl_status hl_destination_open(hl_context *context, const hl_volume_description *
 /* ---- sparse pages ---- */
 
 /* CROWDED: the greatest fraction of a volume's pages that sparse pages hold. If more pages are stored, the
- * voxels are moved into one array: pages are slower to sample, and moving a quarter of the voxels takes
- * little time beside reading all of them. LEAST_SPARSE: the least size in bytes of a volume in sparse pages.
- * Smaller volumes would save too little memory. */
+ * voxels are moved into one array, because pages are slower to sample. Moving a quarter of the voxels takes
+ * little time compared with reading all voxels. LEAST_SPARSE: the least size in bytes of a volume in sparse
+ * pages. For smaller volumes, sparse pages would save too little memory. */
 #define CROWDED 0.25
 enum { LEAST_SPARSE = 4 << 20 };
 

@@ -21,19 +21,22 @@ typedef struct hl_destination {
 } hl_destination;
 
 typedef enum hl_destination_kind {
-  HL_DESTINATION_PIECES, /* in memory; in pages if memory is short, or if several ranks share the volume */
-  HL_DESTINATION_VOXELS, /* always in memory, for readers that access voxels more than once */
-  HL_DESTINATION_COLORS  /* always in memory; the values are colours (colors.h) */
+  HL_DESTINATION_PIECES, /* voxels are stored in memory; in pages if memory is short, or if several ranks
+                          * share the volume */
+  HL_DESTINATION_VOXELS, /* voxels are always stored in memory, for readers that access voxels more than
+                          * once */
+  HL_DESTINATION_COLORS  /* voxels are colours (colors.h), and are always stored in memory */
 } hl_destination_kind;
 
-/* Opens a destination. grid: must have been checked. Close the destination also after a failure. */
+/* Opens a destination. grid: the volume's grid, which the caller has checked. Close the destination also
+ * after a failure. */
 hl_status hl_destination_open(hl_context *context, const hl_volume_description *grid,
                               hl_destination_kind kind, const char *path, hl_destination *destination,
                               hl_error *error);
 
 /* Opens a destination of HL_DESTINATION_PIECES whose voxels have one value until they are stored, if sparse
- * pages can hold the voxels. value: the stored value. If sparse pages cannot hold the voxels, works as
- * hl_destination_open() does, and every voxel must be stored. */
+ * pages can hold the voxels. value: the stored value. If sparse pages cannot hold the voxels, the function
+ * does what hl_destination_open() does, and the caller must store every voxel. */
 hl_status hl_destination_open_sparse(hl_context *context, const hl_volume_description *grid,
                                      const void *value, const char *path, hl_destination *destination,
                                      hl_error *error);
@@ -46,19 +49,19 @@ bool hl_destination_is_crowded(const hl_destination *destination);
  * No other thread may use the destination meanwhile. */
 hl_status hl_destination_spread(hl_destination *destination, hl_error *error);
 
-/* Gives memory into which the caller writes `count` voxels, of which the first is number `first`. It is the
- * volume's own memory for these voxels, or a separate block. Afterwards the caller must call
+/* Gives memory into which the caller writes `count` voxels, of which the first is number `first`. The memory
+ * is either the volume's own memory for these voxels, or a separate block. Afterwards the caller must call
  * hl_destination_put(), which stores the voxels of such a block and releases it. */
 hl_status hl_destination_take(hl_destination *destination, size_t first, size_t count, void **place,
                               hl_error *error);
 void hl_destination_put(hl_destination *destination, size_t first, size_t count, void *place);
 
-/* Returns whether any of these voxels is kept. If the work is divided among ranks, the voxels of other ranks
- * are not kept, and need not be read. */
+/* Returns whether the destination keeps any of `count` voxels, of which the first is number `first`. If the
+ * work is divided among ranks, the voxels of other ranks are not kept, and need not be read. */
 bool hl_destination_wants(const hl_destination *destination, size_t first, size_t count);
 
-/* Returns whether voxels are not in one array in memory. Then hl_destination_store() must copy them to their
- * places. */
+/* Returns whether the destination's voxels are not in one array in memory, so that hl_destination_store()
+ * must copy voxels into the destination. */
 static inline bool hl_destination_is_apart(const hl_destination *destination) {
   return destination->voxels == NULL;
 }

@@ -36,7 +36,7 @@ void hl_file_list_release(hl_file_list *list) {
 }
 
 /* Finds the number in a pattern: the only "%d", "%5d" or "%05d", where 'i' or 'u' may stand for 'd'. Returns
- * its begin; null if the pattern has none, or if it has another percent sign. */
+ * a pointer to the number's percent sign; null if the pattern has no number, or has another percent sign. */
 static const char *find_number(const char *pattern, hl_number_word *word) {
   const char *percent = strchr(pattern, '%');
   return percent != NULL && hl_number_word_read(percent, "diu", word) &&
@@ -75,14 +75,14 @@ typedef struct files_stream {
   hl_stream base;
   char *header_path; /* owned; path of the header, in whose folder the files are looked for */
   hl_file_list list;
-  size_t next;         /* index of the file that is opened next */
+  size_t next;         /* index of the file that will be opened next */
   hl_stream *file;     /* owned; the current file, whose next byte belongs to its voxels; null if no file is
                         * open */
   uint64_t each, left; /* number of bytes of voxels in each file; number of bytes of voxels that are left in
                         * the current file */
 } files_stream;
 
-/* Opens a file and goes to its voxels. *file is owned by the caller, also on failure. */
+/* Opens a file, and moves its stream to the first voxel. *file is owned by the caller, also on failure. */
 static hl_status open_one(const files_stream *stream, size_t index, hl_stream **file, hl_error *error) {
   const hl_file_list *list = &stream->list;
   char line[HL_LINE_BYTES];

@@ -20,13 +20,13 @@ typedef struct hl_file_list {
 } hl_file_list;
 
 hl_status hl_file_list_add(hl_file_list *list, const char *name, hl_error *error);
-/* Adds the names for which the text "PATTERN FROM TO STEP ..." stands. *sound: set to false if the text is
- * not of this form. */
+/* Adds the names that the text "PATTERN FROM TO STEP ..." describes. *sound: set to false if the text is not
+ * of this form. */
 hl_status hl_file_list_pattern(hl_file_list *list, const char *text, bool *sound, hl_error *error);
 void hl_file_list_release(hl_file_list *list);
 
-/* Replaces *stream by one stream of all files. It gives `bytes` bytes, the same number from each file. The
- * files lie in the folder of the file of *stream. The new stream takes over the list. */
+/* Replaces *stream by one stream of all files. The new stream gives `bytes` bytes, the same number from each
+ * file. The files lie in the folder of the file of *stream. The new stream takes over the list. */
 hl_status hl_stream_push_files(hl_stream **stream, hl_file_list *list, uint64_t bytes, hl_error *error);
 
 #endif

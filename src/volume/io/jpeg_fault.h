@@ -1,5 +1,5 @@
-/* volume/io/jpeg_fault.h - turns an error of libjpeg into a jump with a message. Only builds with libjpeg
- * include this file. */
+/* volume/io/jpeg_fault.h - converts an error of libjpeg to a longjmp() with a message. Only builds with
+ * libjpeg include this file. */
 #ifndef HL_VOLUME_JPEG_FAULT_H
 #define HL_VOLUME_JPEG_FAULT_H
 

@@ -1,5 +1,5 @@
-/* volume/formats/amr/amr.c - makes volumes of adaptive grids, as amr.h describes. A grid of one level becomes
- * dense voxels, because none of its cells are refined. */
+/* volume/formats/amr/amr.c - makes volumes of adaptive grids, as amr.h describes. A grid of one level has no
+ * refined cells, and becomes an ordinary volume of dense voxels. */
 #include "volume/formats/amr/amr.h"
 
 #include <math.h>
@@ -88,7 +88,7 @@ void hl_amr_set_spacing(hl_amr *amr, const double spacing[3]) {
     amr->shape.spacing[axis] = spacing[axis] * (double)refinement(amr, amr->shape.levels - 1);
 }
 
-/* Describes the volume's grid, whose voxels are the cells of the finest level. */
+/* Describes the volume's grid, whose voxels have the size of the finest level's cells. */
 static hl_volume_description grid_of(const hl_amr *amr) {
   hl_volume_description grid;
   double cells = (double)((size_t)1 << amr->lattice_level[0]); /* number of cells of the finest level along a

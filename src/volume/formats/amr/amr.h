@@ -18,8 +18,8 @@ typedef struct hl_amr_shape {
                                   * along a cell's edge; a power of two */
   ptrdiff_t first[3];            /* index of the first cell of level 0 in the domain */
   size_t count[3];               /* cells of level 0 in the domain */
-  double origin[3];              /* world: the corner of the domain with the least coordinates */
-  double spacing[3];             /* world: edges of a cell of level 0 */
+  double origin[3];              /* in the world: the corner of the domain with the least coordinates */
+  double spacing[3];             /* in the world: lengths of the edges of a cell of level 0 */
 } hl_amr_shape;
 
 typedef struct hl_amr {
@@ -31,7 +31,7 @@ typedef struct hl_amr {
   const char *subject;                   /* borrowed; starts error lines */
 } hl_amr;
 
-/* Checks the shape. amr: zeros on failure. */
+/* Checks the shape. *amr is all zeros after a failure. */
 hl_status hl_amr_begin(hl_context *context, const hl_amr_shape *shape, const char *subject, hl_amr *amr,
                        hl_error *error);
 
@@ -44,7 +44,7 @@ hl_status hl_amr_add(hl_amr *amr, int level, const ptrdiff_t first[3], const siz
  * 0, the size is not changed. */
 void hl_amr_set_spacing(hl_amr *amr, const double spacing[3]);
 
-/* Makes the volume. Its voxels have the size of the finest cells. */
+/* Makes the volume. The volume's voxels have the size of the finest level's cells. */
 hl_status hl_amr_finish(hl_amr *amr, hl_volume **volume, hl_error *error);
 void hl_amr_close(hl_amr *amr);
 

@@ -3,9 +3,10 @@
  * where their values are.
  *
  * Source: AMReX's documentation, "AMReX Plotfile", and its source (VisMF and FAB). Before a patch's values
- * stands a line "FAB ((8, (64 11 52 0 1 12 0 1023)),(8, (8 7 6 5 4 3 2 1)))((0,0,0) (7,7,7) (0,0,0)) 2". It
- * states the layout of a real number, the order of its bytes, the box of cells and the number of components.
- * The components follow one after the other, each as [z][y][x]. They are the volume's arrays. */
+ * stands a line "FAB ((8, (64 11 52 0 1 12 0 1023)),(8, (8 7 6 5 4 3 2 1)))((0,0,0) (7,7,7) (0,0,0)) 2". The
+ * line states the layout of a real number, the order of its bytes, the box of cells and the number of
+ * components. The components follow one after the other, each as [z][y][x]. Each component is an array that
+ * can be loaded as a volume. */
 #include <math.h>
 #include <stdio.h>
 #include <string.h>
@@ -23,7 +24,7 @@ enum { NAME_BYTES = 128, FILE_NAME_BYTES = 256, TEXT_BYTES_MOST = 1 << 28, FAB_L
 /* A text that is being read. */
 typedef struct text_cursor {
   const char *at, *end;
-  const char *name; /* the file's, for error lines */
+  const char *name; /* the file's name, for error lines */
   int line;
 } text_cursor;
 
@@ -149,14 +150,14 @@ static hl_status read_shape(plotfile *file, text_cursor *text, hl_error *error) 
   return HL_OK;
 }
 
-/* Warns if the coordinates are not Cartesian. */
+/* Warns if the plotfile's header states coordinates that are not Cartesian. */
 static void tell_coordinates(const plotfile *file, text_cursor *text) {
   ptrdiff_t first[3], system;
   size_t count[3];
   double number;
   for (int level = 1; level < file->shape.levels; level++)
     if (!take_box(text, first, count)) return;
-  for (int n = 0; n < 4 * file->shape.levels; n++) /* steps and the sizes of cells */
+  for (int n = 0; n < 4 * file->shape.levels; n++) /* skips the steps and the sizes of cells */
     if (!take_number(text, &number)) return;
   if (take_integer(text, &system) && system != 0)
     hl_log(file->request->context, HL_LOG_WARNING,
@@ -306,14 +307,15 @@ static hl_status read_boxes(const plotfile *file, text_cursor *text, patch_box *
                    "%s/%s: version %td of the list of patches is not read: write the plotfile with "
                    "vismf.headerversion=1",
                    file->bundle->path, text->name, version);
-  /* skips the number of ghost cells, which is one number or three in brackets, up to "(patches 0" */
+  /* the loops skip the number of ghost cells, which is one number or three numbers in brackets, up to
+   * "(patches 0" */
   while (text->at < text->end && hl_is_space(*text->at)) text->line += *text->at++ == '\n';
   int ghosts = text->at < text->end && *text->at == '(' ? 3 : 1;
   for (int n = 0; n < ghosts; n++)
     if (!take_integer(text, &unused)) return fail_text(file, text, "the number of ghost cells", error);
   if (!take_integer(text, &number) || number < 0 || !take_integer(text, &unused))
     return fail_text(file, text, "the number of patches", error);
-  if ((size_t)number > (size_t)(text->end - text->at) / 12) /* a box has more characters */
+  if ((size_t)number > (size_t)(text->end - text->at) / 12) /* each box takes more than 12 characters */
     return fail_text(file, text, "as many boxes as it promises", error);
   *boxes = hl_allocate(file->request->context, (size_t)number, sizeof **boxes);
   if (*boxes == NULL) return hl_fail_memory(error, (size_t)number * sizeof **boxes, file->bundle->path);
@@ -389,7 +391,7 @@ static hl_status read_level(plotfile *file, int level, hl_error *error) {
 
 /* ---- all steps together ---- */
 
-/* Returns whether the folder has a Header of a plotfile. */
+/* Finds out whether the folder has the file "Header" of a plotfile. */
 static hl_status recognise(hl_bundle *bundle, bool *claimed, hl_error *error) {
   hl_source *source = NULL;
   const unsigned char *bytes;

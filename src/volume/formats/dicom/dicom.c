@@ -18,7 +18,7 @@ static bool has_content(const unsigned char *bytes, size_t length) {
   return hl_dicom_has_mark(bytes, length);
 }
 
-/* Claims files by the extensions of their names, as old DICOM files lack the mark "DICM". */
+/* Claims files by the extensions of their names, because old DICOM files lack the mark "DICM". */
 static hl_status claim_name(hl_stream **stream, bool *claimed, hl_error *error) {
   const unsigned char *bytes;
   size_t length;

@@ -1,5 +1,5 @@
-/* volume/formats/dicom/directory.c - lists the files that a DICOMDIR names. Names that lead out of its folder
- * are ignored. */
+/* volume/formats/dicom/directory.c - lists the files that a DICOMDIR names. Names that lead out of the folder
+ * of the DICOMDIR are ignored. */
 #define _GNU_SOURCE
 #include "volume/formats/dicom/directory.h"
 
@@ -21,8 +21,8 @@ static hl_status look_for(const hl_bundle *bundle, const char *name, bool *there
   return HL_OK;
 }
 
-/* Adds a file. The name DICOM\IM0001 becomes DICOM/IM0001, or dicom/im0001 if the disc was copied with names
- * in lower case. */
+/* Adds a file to the bundle's entries. The name DICOM\IM0001 becomes DICOM/IM0001, or dicom/im0001 if the
+ * disc was copied with names in lower case. */
 static hl_status add_file(hl_bundle *bundle, char *name, hl_error *error) {
   for (char *c = name; *c != 0; c++)
     if (*c == '\\') *c = '/';

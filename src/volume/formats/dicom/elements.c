@@ -30,8 +30,8 @@ static bool is_vr(const unsigned char *letters) {
   return letters[0] >= 'A' && letters[0] <= 'Z' && letters[1] >= 'A' && letters[1] <= 'Z';
 }
 
-/* Returns whether elements of a representation have two reserved bytes and a length of four bytes (PS3.5,
- * table 7.1-1). */
+/* Returns whether elements of a value representation (VR) have two reserved bytes and a length of four bytes
+ * (PS3.5, table 7.1-1). */
 static bool is_long(uint16_t vr) {
   static const char names[] = "OBODOFOLOVOWSQSVUCUNURUTUV";
   for (size_t n = 0; n + 1 < sizeof names; n += 2)
@@ -40,8 +40,8 @@ static bool is_long(uint16_t vr) {
 }
 
 /* Returns whether an element is a sequence whose items are read. In files without value representations,
- * nothing marks a sequence whose length is stated. Therefore the sequences that are needed are listed
- * here. */
+ * nothing marks a sequence whose length is stated. Therefore this function lists the tags of all sequences
+ * that readers need. */
 static bool is_wanted_sequence(uint32_t tag) {
   static const uint32_t tags[] = {
       0x52009229, 0x52009230, /* functional groups: shared, per frame */
@@ -118,7 +118,7 @@ static hl_status take_item(hl_dicom_reader *reader, bool *ended, hl_error *error
   return HL_OK;
 }
 
-/* Leaves all items and sequences that end at the reader's position. Afterwards an element comes next. */
+/* Leaves all items and sequences that end at the reader's position, so that an element comes next. */
 static hl_status settle(hl_dicom_reader *reader, bool *ended, hl_error *error) {
   *ended = false;
   while (reader->depth > 0 && !*ended) {
@@ -135,8 +135,8 @@ static hl_status settle(hl_dicom_reader *reader, bool *ended, hl_error *error) {
   return HL_OK;
 }
 
-/* Reads an element's tag, representation and length at reader->at. *header: the number of bytes that these
- * take; 0 at the end of the file. */
+/* Reads an element's tag, representation and length at reader->at. *header: set to the number of bytes of
+ * tag, representation and length; 0 at the end of the file. */
 static hl_status take_header(hl_dicom_reader *reader, hl_dicom_element *element, size_t *header,
                              hl_error *error) {
   const unsigned char *bytes;
@@ -218,8 +218,8 @@ static void cut_part_of_character(char *text) {
   if (begin < count && hl_utf8_length((const unsigned char *)text + begin) == 0) text[begin] = 0;
 }
 
-/* Converts a text from Latin-1 to UTF-8. Latin-1 is the other character set that is common in DICOM files
- * (PS3.3, C.12.1.1.2). If the result does not fit, its end is cut off. */
+/* Converts a text from Latin-1 to UTF-8. Beside UTF-8, Latin-1 is the character set that is common in DICOM
+ * files (PS3.3, C.12.1.1.2). If the UTF-8 text does not fit into `size` bytes, its end is cut off. */
 static void convert_latin_1(char *text, size_t size) {
   char copy[MOST_TEXT_BYTES];
   size_t used = 0;

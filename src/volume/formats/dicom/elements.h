@@ -1,7 +1,7 @@
 /* volume/formats/dicom/elements.h - reads the data elements of a DICOM file, one after the other.
  *
- * Elements inside sequences are returned, too. The place of an element is described by its own tag and by the
- * tags of the sequences around it. Source: DICOM PS3.5, sections 7.1 (elements) and 7.5 (sequences). */
+ * Elements inside sequences are returned, too. An element is identified by its own tag and by the tags of the
+ * sequences around the element. Source: DICOM PS3.5, sections 7.1 (elements) and 7.5 (sequences). */
 #ifndef HL_VOLUME_DICOM_ELEMENTS_H
 #define HL_VOLUME_DICOM_ELEMENTS_H
 
@@ -17,7 +17,7 @@ typedef struct hl_dicom_element {
   uint32_t tag; /* group << 16 | element */
   uint16_t vr;  /* value representation; 0 if the file states none */
   uint32_t length;
-  uint64_t offset; /* position of the value */
+  uint64_t offset; /* position of the element's value in the file */
 } hl_dicom_element;
 
 /* A sequence that is being read. */
@@ -42,15 +42,17 @@ typedef struct hl_dicom_reader {
  * data at the file's top level. */
 hl_status hl_dicom_next(hl_dicom_reader *reader, hl_dicom_element *element, bool *found, hl_error *error);
 
-/* Copies a text without the blanks around it, cut to the buffer. */
+/* Copies an element's text without leading and trailing blanks. The text is cut if the buffer is too
+ * short. */
 hl_status hl_dicom_text(hl_dicom_reader *reader, const hl_dicom_element *element, char *text, size_t size,
                         hl_error *error);
-/* Reads up to `most` numbers. vr: the type of the binary numbers, for files that state none. *count: the
- * number of values in the element. Places of `numbers` beyond this count are not changed. */
+/* Reads up to `most` numbers of an element's value. vr: the type of the binary numbers, for files that state
+ * none. *count: set to the number of values in the element. Entries of `numbers` beyond this count are not
+ * changed. */
 hl_status hl_dicom_numbers(hl_dicom_reader *reader, const hl_dicom_element *element, uint16_t vr,
                            double *numbers, int most, int *count, hl_error *error);
 
-/* Read whole numbers at any address. */
+/* Read a whole number of 16 or 32 bits at an address of any alignment. */
 uint32_t hl_dicom_u16(const unsigned char *bytes, bool big_endian);
 uint32_t hl_dicom_u32(const unsigned char *bytes, bool big_endian);
 

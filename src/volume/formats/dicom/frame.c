@@ -1,8 +1,8 @@
 /* volume/formats/dicom/frame.c - converts the bytes of a file to the values of a frame.
  *
  * Encapsulated (compressed) pixel data are a list of items (PS3.5, annex A.4): a table of the frames'
- * offsets, which may be empty, then fragments of frames. In a file of one frame, all fragments belong to
- * it. */
+ * offsets, which may be empty, then fragments of frames. In a file of one frame, all fragments belong to this
+ * frame. */
 #include "volume/formats/dicom/frame.h"
 
 #include <stdlib.h>
@@ -78,8 +78,8 @@ static hl_status count_fragments(hl_source *source, const hl_dicom_pixels *p, ui
   }
 }
 
-/* Returns whether a fragment begins a new frame. This is the case if it begins with the first marker of JPEG
- * or JPEG 2000, and for every fragment of RLE. */
+/* Returns whether a fragment begins a new frame. A fragment of RLE always begins a frame; another fragment
+ * begins a frame if its first bytes are the first marker of JPEG or JPEG 2000. */
 static hl_status begins_picture(hl_source *source, const hl_dicom_pixels *p, uint64_t at, bool *begins,
                                 hl_error *error) {
   const unsigned char *bytes;
@@ -132,7 +132,7 @@ hl_status hl_dicom_find_frames(const hl_dicom_set *set, hl_dicom_file *file, hl_
   return status;
 }
 
-/* Joins the fragments of a frame. */
+/* Reads the fragments of a frame, and joins them in the workspace. */
 static hl_status read_fragments(hl_source *source, const hl_dicom_file *file, uint32_t index,
                                 hl_dicom_workspace *space, size_t *total, hl_error *error) {
   const hl_dicom_pixels *p = &file->pixels;
@@ -257,7 +257,7 @@ static void place_bits(const hl_dicom_pixels *p, size_t count, hl_dicom_workspac
     if (space->value_bytes == 2) value = ((const uint16_t *)(const void *)space->values)[n];
     if (space->value_bytes == 4) value = ((const uint32_t *)(const void *)space->values)[n];
     value = (value >> shift & mask) ^ flip;
-    value = (value ^ sign) - sign; /* the sign bit, copied upwards */
+    value = (value ^ sign) - sign; /* copies the sign bit to all higher bits */
     if (space->value_bytes == 1) space->values[n] = (unsigned char)value;
     if (space->value_bytes == 2) ((uint16_t *)(void *)space->values)[n] = (uint16_t)value;
     if (space->value_bytes == 4) ((uint32_t *)(void *)space->values)[n] = value;
@@ -268,7 +268,7 @@ static unsigned char to_byte(double value) {
   return (unsigned char)(value < 0 ? 0 : value > 255 ? 255 : value + 0.5);
 }
 
-/* Converts to RGB by the inverse of YBR_FULL (PS3.3, C.7.6.3.1.2). */
+/* Converts pixels from YBR_FULL to RGB (PS3.3, C.7.6.3.1.2). */
 static void to_rgb(size_t pixels, unsigned char *values) {
   for (size_t n = 0; n < pixels; n++, values += 3) {
     double y = values[0], b = values[1] - 128.0, r = values[2] - 128.0;
@@ -302,8 +302,8 @@ static void cut_tile(const hl_dicom_pixels *p, size_t tile, size_t size, unsigne
     memmove(values + row * columns * size, values + ((y + row) * p->columns + x) * size, columns * size);
 }
 
-/* Replaces pixel values by their colours, in place. The last pixel is replaced first, because a colour takes
- * more bytes than a value. */
+/* Replaces pixel values by their colours, in place. The loop runs from the last pixel to the first, because a
+ * colour takes more bytes than a value. */
 static void apply_palette(const hl_dicom_pixels *p, const hl_dicom_palette *palette, size_t count,
                           hl_dicom_workspace *space) {
   for (size_t n = count; n-- > 0;) {

@@ -4,7 +4,7 @@
 
 #include "volume/formats/dicom/set.h"
 
-/* One thread's memory for reading frames; must be zero at first. */
+/* One thread's memory for reading frames. All bytes of a new workspace must be zero. */
 typedef struct hl_dicom_workspace {
   hl_context *context;
   unsigned char *packed; /* owned; a frame as it is stored in the file */
@@ -19,8 +19,8 @@ void hl_dicom_workspace_release(hl_dicom_workspace *space);
 /* Finds where each frame of an encapsulated file with several frames begins. */
 hl_status hl_dicom_find_frames(const hl_dicom_set *set, hl_dicom_file *file, hl_error *error);
 
-/* Reads a frame into the workspace's values. They become integers of 8, 16 or 32 bits, floats or doubles.
- * Signed integers have their sign bit at the top. Colours become RGB. */
+/* Reads a frame into the workspace's values. The values become integers of 8, 16 or 32 bits, floats or
+ * doubles. Signed integers have their sign bit at the top. Colours become RGB. */
 hl_status hl_dicom_read_frame(const hl_dicom_set *set, const hl_dicom_frame *frame, hl_dicom_workspace *space,
                               hl_error *error);
 

@@ -1,7 +1,7 @@
 /* volume/formats/dicom/header.c - reads a file's attributes by one table, and checks them.
  *
- * In: a file's elements. Out: its header. Whether the frames can be read is checked here, before anything is
- * allocated for them. */
+ * In: a file's elements. Out: the file's header. The checks here find out whether the frames can be read,
+ * before memory for the frames is allocated. */
 #include "volume/formats/dicom/header.h"
 
 #include <math.h>
@@ -39,8 +39,8 @@ bool hl_dicom_is_remnant(const char *path, const unsigned char *bytes, size_t le
   return length < PREAMBLE_BYTES + 4 && (zeros == length || hl_dicom_is_named(path));
 }
 
-/* Returns whether the bytes begin a DICOM file, also one without the mark "DICM". Such a file begins with an
- * element of group 2 or 8 that has a short value. */
+/* Returns whether the bytes begin a DICOM file with or without the mark "DICM". A DICOM file without the mark
+ * begins with an element of group 2 or 8 that has a short value. */
 bool hl_dicom_may_begin(const unsigned char *bytes, size_t length) {
   if (hl_dicom_has_mark(bytes, length)) return true;
   if (length < 16 || (bytes[0] != 2 && bytes[0] != 8) || bytes[1] != 0 || bytes[3] != 0) return false;
@@ -48,8 +48,8 @@ bool hl_dicom_may_begin(const unsigned char *bytes, size_t length) {
   return explicit || (bytes[5] == 0 && bytes[6] == 0 && bytes[7] == 0 && bytes[4] <= 64);
 }
 
-/* The UID of a private transfer syntax of GE. Its elements are implicit and little-endian, but its pixels are
- * big-endian. */
+/* The UID of a private transfer syntax of GE. In this syntax elements are implicit and little-endian, but
+ * pixels are big-endian. */
 #define GE_PRIVATE "1.2.840.113619.5.2"
 
 static void use_syntax(hl_dicom_header *header, hl_dicom_reader *reader) {
@@ -226,7 +226,7 @@ static void clear_header(hl_dicom_header *header) {
 }
 
 /* Finds the frame that the current element describes. The element lies in the functional groups of the file's
- * frames. A frame that is described for the first time is cleared. */
+ * frames. The first time that a frame is described, all its attributes are reset. */
 static hl_status frame_of(const hl_dicom_reader *reader, hl_dicom_header *header, hl_dicom_frame **frame,
                           hl_error *error) {
   hl_context *context = hl_source_context(reader->source);
@@ -358,8 +358,8 @@ static hl_status finish_pixels(const hl_source *source, hl_dicom_header *header,
   p->high = (int)high;
   p->is_signed = header->representation == 1;
   p->planar = header->planar == 1;
-  /* In pictures of MONOCHROME1 the least value is shown white. CT and PET are exceptions, because they store
-   * measured values, which are not to be inverted */
+  /* In pictures of MONOCHROME1 the least value is shown white. Pictures of CT and PET are not inverted,
+   * because their values are measurements */
   bool measured = hl_text_equal(header->modality, "CT") || hl_text_equal(header->modality, "PT");
   p->inverted = hl_text_equal(header->photometric, "MONOCHROME1") && !measured;
   p->is_ybr = hl_text_starts(header->photometric, "YBR_FULL");
@@ -402,7 +402,8 @@ static hl_status take_pixels(const hl_dicom_reader *reader, const hl_dicom_eleme
   return HL_OK;
 }
 
-/* If a frame has no place in the patient's space, takes its place in the space of an ultrasound volume. */
+/* If a frame has no position in the patient's space, uses the frame's position in the space of an ultrasound
+ * volume. */
 static void take_volume_place(hl_dicom_header *header, hl_dicom_frame *frame) {
   if (isnan(frame->position[0]) && !isnan(frame->volume_position[0])) {
     memcpy(frame->position, frame->volume_position, sizeof frame->position);
@@ -427,8 +428,8 @@ static void finish_mosaic(const hl_source *source, hl_dicom_header *header) {
   p->tiles = tiles;
 }
 
-/* Copies the attributes of the whole file to a frame, if the file does not state them for the frame
- * itself. */
+/* Sets each attribute that the file does not state for the frame to the attribute's value for the whole
+ * file. */
 static void complete_frame(const hl_dicom_header *header, hl_dicom_frame *frame) {
   double *own = (double *)frame;
   const double *base = (const double *)&header->base;

@@ -24,7 +24,7 @@ typedef enum hl_dicom_codec {
 /* Attributes that may differ between the frames of a file. */
 typedef struct hl_dicom_frame {
   double position[3];    /* the centre of the first voxel, in the patient's space: LPS, millimetres */
-  double orientation[6]; /* unit steps along a row, then along a column */
+  double orientation[6]; /* unit vector along a row, then unit vector along a column */
   double spacing[2];     /* distance between rows, then distance between columns */
   double slope, intercept;
   double location;                                  /* SliceLocation: coordinate along the normal,
@@ -36,7 +36,7 @@ typedef struct hl_dicom_frame {
   double temporal, echo, b_value, diffusion[3], inversion, flip, trigger, kind, acquisition, time, instance;
   double segment;       /* the number of the segment that the frame shows */
   uint32_t file, index; /* index of the file in the set; index of the frame in the file */
-  uint32_t tile;        /* number of its tile in a mosaic */
+  uint32_t tile;        /* number of the frame's tile in a mosaic */
 } hl_dicom_frame;
 
 /* The format of the pixels. */
@@ -87,11 +87,11 @@ typedef struct hl_dicom_header {
   hl_dicom_pixels pixels;
 } hl_dicom_header;
 
-/* The size of a slice. It is the size of a tile if the picture is a mosaic, else the size of the whole
+/* The size of a slice. A slice of a mosaic has the size of a tile; any other slice has the size of the whole
  * picture. */
 static inline size_t hl_dicom_slice_rows(const hl_dicom_pixels *p) { return p->rows / p->tiles; }
 static inline size_t hl_dicom_slice_columns(const hl_dicom_pixels *p) { return p->columns / p->tiles; }
-/* The number of samples that a pixel has after it is read. A palette gives three. */
+/* The number of samples that a pixel has after it is read. A pixel with a palette has three samples. */
 static inline size_t hl_dicom_read_samples(const hl_dicom_pixels *p) {
   return p->has_palette ? 3 : p->samples;
 }
@@ -100,11 +100,11 @@ static inline size_t hl_dicom_read_samples(const hl_dicom_pixels *p) {
  * this mark (hl_dicom_may_begin()). */
 bool hl_dicom_has_mark(const unsigned char *bytes, size_t length);
 bool hl_dicom_may_begin(const unsigned char *bytes, size_t length);
-/* Returns whether the name ends as names of DICOM files do. */
+/* Returns whether a file's name has an ending that DICOM files have. */
 bool hl_dicom_is_named(const char *path);
-/* Returns whether a file may be the rest of a DICOM file that was cut before the end of its mark: it holds
- * only zeros, or its name ends as names of DICOM files do. length: the length of the file, or at least
- * 132. */
+/* Returns whether a file may be the rest of a DICOM file that was cut before the end of its mark: the file
+ * holds only zeros, or its name has an ending that DICOM files have. length: the length of the file, or at
+ * least 132. */
 bool hl_dicom_is_remnant(const char *path, const unsigned char *bytes, size_t length);
 
 /* Reads the file's meta information, which states the transfer syntax, and prepares the reader for the

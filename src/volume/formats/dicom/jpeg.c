@@ -36,8 +36,8 @@ static hl_status decode(const hl_dicom_packed *packed, void *values, hl_error *e
 
 #include "volume/io/jpeg_fault.h"
 
-/* Runs the decoder. An error of libjpeg jumps out of this call. The caller must destroy the decoder in any
- * case. */
+/* Decodes a frame by libjpeg. An error of libjpeg leaves this function by longjmp. The caller must destroy
+ * the decoder also after an error. */
 static hl_status run(struct jpeg_decompress_struct *info, const hl_dicom_packed *packed,
                      unsigned char *values, hl_error *error) {
   const hl_dicom_pixels *p = packed->pixels;
@@ -46,7 +46,7 @@ static hl_status run(struct jpeg_decompress_struct *info, const hl_dicom_packed 
   hl_status status = hl_dicom_check_packed(packed, "JPEG", info->image_width, info->image_height,
                                            (size_t)info->num_components, info->data_precision, error);
   if (status != HL_OK) return status;
-  /* the JPEG data may have a marker that says whether the picture is RGB; if not, the DICOM file says it */
+  /* without a marker of Adobe or JFIF in the JPEG data, the DICOM file decides whether the picture is RGB */
   bool told = info->saw_Adobe_marker || info->saw_JFIF_marker;
   if (info->num_components == 3 && !told) info->jpeg_color_space = p->is_ybr ? JCS_YCbCr : JCS_RGB;
   info->out_color_space = info->num_components == 3 ? JCS_RGB : JCS_GRAYSCALE;
@@ -76,7 +76,7 @@ static hl_status decode(const hl_dicom_packed *packed, void *values, hl_error *e
 
 #endif
 
-/* Converts samples of 8 bits to 16 bits, in place, from the last to the first. */
+/* Converts samples of 8 bits to 16 bits, in place, from the last sample to the first. */
 static void widen(const hl_dicom_pixels *p, void *values) {
   for (size_t n = p->rows * p->columns * p->samples; n > 0; n--)
     ((uint16_t *)values)[n - 1] = ((const unsigned char *)values)[n - 1];

@@ -18,7 +18,7 @@ hl_status hl_dicom_decode_jpeg_2000(const hl_dicom_packed *packed, void *values,
 #include <openjpeg.h>
 #include <string.h>
 
-/* The bytes of a frame, in the form of a stream for OpenJPEG. */
+/* The bytes of a frame, which OpenJPEG reads as a stream. */
 typedef struct pulled {
   const unsigned char *bytes;
   size_t length, at;

@@ -3,8 +3,8 @@
 
 #include <string.h>
 
-/* Takes the next marker segment, and sets its marker and content. Returns false at the end of the data, or if
- * no segment begins there. */
+/* Reads the next marker segment, and sets *marker and *content to the segment's marker and content. Returns
+ * false at the end of the data, or if no segment begins there. */
 static bool next_segment(hl_jpeg_reader *r, int *marker, const unsigned char **content, size_t *length) {
   while (r->at + 4 <= r->length && r->bytes[r->at] == 0xff && r->bytes[r->at + 1] == 0xff) r->at++;
   if (r->at + 4 > r->length || r->bytes[r->at] != 0xff) return false;
@@ -36,7 +36,7 @@ static void make_codes(hl_jpeg_table *table, const unsigned char *counts) {
   table->known = true;
 }
 
-/* Takes the Huffman tables of a segment. Returns false if one of them is damaged. */
+/* Reads the Huffman tables of a segment. Returns false if one of the tables is damaged. */
 static bool take_tables(hl_jpeg_reader *r, const unsigned char *bytes, size_t length) {
   while (length >= 17) {
     size_t count = 0;
@@ -78,7 +78,7 @@ void hl_jpeg_fill(hl_jpeg_reader *r) {
     unsigned byte = 0;
     if (r->at < r->length && r->bytes[r->at] != 0xff) byte = r->bytes[r->at++];
     else if (r->at + 1 < r->length && r->bytes[r->at + 1] == 0) {
-      byte = 0xff; /* 0xff is followed by a stuffed zero */
+      byte = 0xff; /* in the data of a scan, a zero byte follows each 0xff */
       r->at += 2;
     } else r->missing++;
     r->bits = r->bits << 8 | byte;

@@ -1,7 +1,8 @@
 /* volume/formats/dicom/jpeg_extended.c - decodes lossy grey JPEG of 12 bits (process 4). libjpeg reads only 8
  * bits.
  *
- * Source: ITU-T T.81. Frames and scans: annex B. Sequential coefficients: annex F.2. The transform: A.3.3. */
+ * Source: ITU-T T.81. Frames and scans: annex B. Sequential coefficients: annex F.2. The inverse cosine
+ * transform: A.3.3. */
 #include <math.h>
 #include <string.h>
 
@@ -107,15 +108,15 @@ static bool take_block(decoder *d, int *previous, double block[64]) {
   return true;
 }
 
-/* cos(n pi / 16) / 2 for n from 0 to 7. The first number is also divided by the square root of 2. */
+/* cosines[n] is cos(n pi / 16) / 2 for n from 0 to 7; cosines[0] is also divided by the square root of 2. */
 static const double cosines[8] = {0.35355339059327376220, 0.49039264020161522456, 0.46193976625564337806,
                                   0.41573480615127261854, 0.35355339059327376220, 0.27778511650980111237,
                                   0.19134171618254488586, 0.09754516100806413392};
 
 /* The factor of coefficient u in sample x of the inverse transform: C(u) / 2 cos((2 x + 1) u pi / 16). */
 static double factor(int x, int u) {
-  int turn = (2 * x + 1) * u % 32; /* the angle, of which 32 units are a full turn; it is neither 0 nor 16, as
-                                    * u is at most 7 */
+  int turn = (2 * x + 1) * u % 32; /* the angle, of which 32 units are a full turn; for u from 1 to 7 the
+                                    * angle is neither 0 nor 16 */
   if (u == 0) return cosines[0];
   if (turn > 16) turn = 32 - turn;
   if (turn == 8) return 0;

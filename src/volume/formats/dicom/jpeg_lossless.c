@@ -120,7 +120,7 @@ static void store_row(const decoder *d, const uint16_t *row, size_t y, void *val
   }
 }
 
-/* Decodes rows. Restart markers stand at the ends of rows (T.81, H.1.1). */
+/* Decodes all rows of the picture. Restart markers stand only at the ends of rows (T.81, H.1.1). */
 static hl_status take_rows(decoder *d, uint16_t *rows, void *values, hl_error *error) {
   size_t count = d->columns * d->components, since = 0;
   if (d->reader.restart % d->columns != 0) return refuse(d, "a restart within a row", error);

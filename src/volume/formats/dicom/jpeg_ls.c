@@ -19,8 +19,8 @@ hl_status hl_dicom_decode_jpeg_ls(const hl_dicom_packed *packed, void *values, h
 
 #include "core/memory.h"
 
-/* Rearranges pixels whose components are stored one plane after the other, so that the samples of a pixel
- * lie side by side. */
+/* Rearranges a picture whose components are stored as planes, so that the samples of each pixel lie side by
+ * side. */
 static hl_status interleave(const hl_dicom_packed *packed, size_t size, void *values, hl_error *error) {
   const hl_dicom_pixels *p = packed->pixels;
   size_t pixels = p->rows * p->columns, bytes = pixels * p->samples * size;

@@ -8,7 +8,7 @@
 #include "core/memory.h"
 #include "volume/io/text.h"
 
-/* The greatest CSA header that is read, in bytes. Headers of scanners have some 12 KiB. */
+/* The greatest CSA header that is read, in bytes. The CSA headers that scanners write have about 12 KiB. */
 enum { CSA_BYTES_MOST = 1 << 20, CSA_TAGS_MOST = 1024, CSA_ITEMS_MOST = 1 << 16, NAME_BYTES = 64 };
 
 /* A CSA header that is read byte after byte. */
@@ -17,7 +17,7 @@ typedef struct csa_reader {
   size_t length, at;
 } csa_reader;
 
-/* Takes a number of four bytes; 0 beyond the end. */
+/* Reads a number of four bytes; 0 beyond the end of the CSA header. */
 static uint32_t next_word(csa_reader *csa) {
   if (csa->length - csa->at < 4) {
     csa->at = csa->length;
@@ -31,7 +31,7 @@ static void pass(csa_reader *csa, size_t count) {
   csa->at = count < csa->length - csa->at ? csa->at + count : csa->length;
 }
 
-/* The number that a text holds. */
+/* Converts a text to a number. */
 static double number_of(const unsigned char *bytes, size_t length) {
   char text[64];
   double number;
@@ -43,8 +43,8 @@ static double number_of(const unsigned char *bytes, size_t length) {
 }
 
 /* Reads the numbers of a tag, which has `items` items. An item consists of four words and a text. One of the
- * words is the length of the text, which is padded to whole words. The text is a number. numbers: [most]; set
- * to the numbers of the first items. */
+ * words is the length of the text, which is padded to whole words. The text of an item is a decimal number.
+ * numbers: [most]; set to the numbers of the first items. */
 static void read_items(csa_reader *csa, bool second, uint32_t items, double *numbers, uint32_t most) {
   for (uint32_t n = 0; n < items && csa->at < csa->length; n++) {
     uint32_t words[4];
@@ -56,8 +56,8 @@ static void read_items(csa_reader *csa, bool second, uint32_t items, double *num
   }
 }
 
-/* Searches a CSA header for the number of slices and for their normal. There are two kinds of headers; the
- * second one begins with "SV10". */
+/* Searches a CSA header for the number of slices and for their normal. CSA headers are of two kinds; a header
+ * of the second kind begins with "SV10". */
 static void read_csa(csa_reader *csa, hl_dicom_mosaic *mosaic) {
   bool second = csa->length >= 4 && memcmp(csa->bytes, "SV10", 4) == 0;
   if (second) csa->at = 8;

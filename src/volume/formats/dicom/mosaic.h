@@ -1,17 +1,17 @@
 /* volume/formats/dicom/mosaic.h - describes mosaics. A mosaic is a picture that holds all slices of a volume,
  * as Siemens' scanners write it.
  *
- * A mosaic of n slices has ceil(sqrt(n)) tiles along each side, row by row; the last ones may be empty. The
- * number of slices and their normal are in private elements. Source: the layout that nibabel and dcm2niix
- * read ("CSA headers"). */
+ * A mosaic of n slices has ceil(sqrt(n)) tiles along each side, in the order of rows; the last tiles may be
+ * empty. The number of slices and their normal are stored in private elements. Source: the layout that
+ * nibabel and dcm2niix read ("CSA headers"). */
 #ifndef HL_VOLUME_DICOM_MOSAIC_H
 #define HL_VOLUME_DICOM_MOSAIC_H
 
 #include "volume/formats/dicom/elements.h"
 
 typedef struct hl_dicom_mosaic {
-  unsigned header_block, csa_block; /* numbers of the private blocks in the groups 0019 and 0029; 0 until they
-                                     * are found */
+  unsigned header_block, csa_block; /* numbers of the private blocks in the groups 0019 and 0029; 0 until a
+                                     * block is found */
   double slices;                    /* number of slices; 0 if not stated */
   double normal[3];                 /* the direction from slice to slice; 0 if not stated */
 } hl_dicom_mosaic;

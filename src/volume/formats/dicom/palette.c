@@ -13,7 +13,7 @@ enum {
   BYTES_MOST = 4 * ENTRIES
 };
 
-/* The number of entries that a colour's descriptor states. */
+/* The number of entries that the descriptor of red, green or blue states. */
 static size_t promised(const hl_dicom_palette *palette, int c) {
   double count = palette->descriptor[c][0];
   return count > 0 && count < ENTRIES ? (size_t)count : ENTRIES;
@@ -43,8 +43,8 @@ static void add(table_writer *table, uint32_t value) {
 }
 
 /* Reads a segment of a table at word *at, and moves *at past it. A segment is of kind 0 (a list of values), 1
- * (a linear ramp to a value) or 2 (earlier segments once more). A segment of kind 2 must not refer to one of
- * the same kind. */
+ * (a linear ramp to a value) or 2 (a repetition of earlier segments). A segment of kind 2 must not repeat a
+ * segment of kind 2. */
 static bool read_segment(const unsigned char *bytes, size_t words, bool big, bool nested, size_t *at,
                          table_writer *table) {
   if (*at + 2 > words) return false;

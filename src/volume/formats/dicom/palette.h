@@ -7,10 +7,10 @@
 #include "volume/formats/dicom/elements.h"
 
 typedef struct hl_dicom_palette {
-  double descriptor[3][3]; /* for red, green, blue: number of entries (0 stands for 65536), first pixel value,
-                            * bits of an entry */
+  double descriptor[3][3];   /* for each of red, green, blue: number of entries (0 stands for 65536), first
+                              * pixel value, bits of an entry */
   unsigned char *entries[3]; /* owned; [65536]; codes of 8 bits; null if not stated */
-  size_t counts[3];          /* number of entries that were told */
+  size_t counts[3];          /* number of entries that the file states for red, green, blue */
 } hl_dicom_palette;
 
 /* Stores the part of the palette that an element states. The element stands at the top level of the file, not

@@ -1,8 +1,8 @@
 /* volume/formats/dicom/rle.c - decodes DICOM's run-length coding (PS3.5, annex G).
  *
- * A frame begins with a header of sixteen 32-bit numbers: the number of segments, then the offset of each. A
- * segment holds one byte of every pixel, compressed like PackBits. The first segment holds the highest byte
- * of a sample. */
+ * A frame begins with a header of sixteen 32-bit numbers: the number of segments, then the offset of each
+ * segment. A segment holds one byte of every pixel, compressed like PackBits. The first segment holds the
+ * highest byte of a sample. */
 #include <string.h>
 
 #include "core/error.h"
@@ -20,7 +20,7 @@ static bool unpack(const unsigned char *bytes, size_t length, size_t count, size
     unsigned control = bytes[n++];
     size_t run = control < 128 ? control + 1u : 257u - control;
     if (control == 128) continue;
-    if (run > count - done) run = count - done; /* the surplus is a row's padding */
+    if (run > count - done) run = count - done; /* further bytes of the run are padding of a row */
     if (control < 128) {
       if (length - n < run) return false;
       for (size_t k = 0; k < run; k++) to[(done + k) * step] = bytes[n + k];
@@ -49,7 +49,8 @@ hl_status hl_dicom_decode_rle(const hl_dicom_packed *packed, void *values, hl_er
     if (end > packed->length) end = packed->length;
     if (begin < HEADER_BYTES || begin > end)
       return hl_dicom_fail_packed(packed, "RLE", "a segment begins outside the picture's bytes", error);
-    size_t sample = segment / bytes_each, place = segment % bytes_each; /* the highest byte comes first */
+    size_t sample = segment / bytes_each, place = segment % bytes_each; /* the first segment of a sample holds
+                                                                         * its highest byte */
     if (!native_is_big_endian) place = bytes_each - 1 - place;
     if (!unpack(packed->bytes + begin, end - begin, p->rows * p->columns, p->samples * bytes_each,
                 (unsigned char *)values + sample * bytes_each + place))

@@ -1,7 +1,8 @@
 /* volume/formats/dicom/segmentation.c - makes a volume of a segmentation whose frames are masks or fractions
  * of segments.
  *
- * All masks are read twice: first to find which segments overlap, then into the label map. */
+ * All masks are read twice: the first time to find which segments overlap, the second time to make the label
+ * map. */
 #include "volume/formats/dicom/segmentation.h"
 
 #include <math.h>
@@ -16,7 +17,7 @@
 #include "volume/io/destination.h"
 #include "volume/io/parallel.h"
 
-/* The greatest number of components of a label map. Files that need more are refused. */
+/* The greatest number of components of a label map. A file whose segments need more components is refused. */
 enum { LAYERS_MOST = 64 };
 
 typedef struct segment_reading {
@@ -73,7 +74,7 @@ static hl_status compare_place(segment_reading *r, size_t place, uint64_t *masks
   return HL_OK;
 }
 
-/* Finds the first component that has no segment overlapping the given one. */
+/* Finds the first component none of whose segments overlaps the given segment. */
 static int layer_for(const segment_reading *r, size_t segment) {
   bool taken[LAYERS_MOST] = {false};
   int layer = 0;
@@ -184,7 +185,7 @@ static hl_status choose_fraction(segment_reading *r, hl_load_request *request, h
   return status;
 }
 
-/* Warns if there are segments that belong to other components than the chosen one. */
+/* Warns if the file has segments that do not belong to the chosen component. */
 static void tell_layers(const segment_reading *r, hl_load_request *request) {
   request->component_told[0] = 0;
   if (r->layer_count < 2 || request->component != HL_COMPONENT_DEFAULT) return;
@@ -209,7 +210,7 @@ static hl_status choose_layer(segment_reading *r, hl_load_request *request, hl_e
   payload.components = r->layer_count;
   payload.colors = HL_COLORS_UNREAD;
   bool chosen = request->component != HL_COMPONENT_DEFAULT;
-  if (!chosen) request->component = 0; /* label values have no magnitude, because they only stand for names */
+  if (!chosen) request->component = 0; /* the default is not the magnitude: labels are only names */
   status = hl_component_only(request, r->set->bundle->path, false, &payload, error);
   if (!chosen) request->component = HL_COMPONENT_DEFAULT;
   if (status == HL_OK && payload.component < 0)

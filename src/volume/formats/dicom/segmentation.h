@@ -7,9 +7,8 @@
 #include "volume/formats/format.h"
 
 /* Reads a stack that has segments (stack.h). Masks become a label map whose values are the segments' numbers.
- * The label map has one component if no segments overlap. If segments overlap, it has more components, so
- * that overlapping segments are in different ones. If frames are fractions, each segment is an array, and one
- * of these arrays is read. */
+ * The label map has one component if no segments overlap. Overlapping segments are put into different
+ * components. If frames are fractions, each segment is an array, and the chosen array is read. */
 hl_status hl_dicom_segmentation_read(hl_dicom_set *set, hl_dicom_stack *stack, hl_load_request *request,
                                      hl_volume **volume, hl_error *error);
 

@@ -38,7 +38,7 @@ static hl_status take_kind(hl_dicom_reader *reader, const hl_dicom_element *elem
   return status;
 }
 
-/* The segment that the current item describes. If it is new, it is empty. */
+/* Finds the segment that the current item describes. For a new item, adds an empty segment. */
 static hl_status segment_of_item(const hl_dicom_reader *reader, hl_dicom_segments *segments,
                                  hl_segment **segment, hl_error *error) {
   size_t index = reader->level[0].item;
@@ -63,14 +63,14 @@ static double cube_or_line(double t) {
   return t > delta ? t * t * t : 3 * delta * delta * (t - 4.0 / 29);
 }
 
-static double encode_srgb(double linear) { /* the curve of IEC 61966-2-1 */
+static double encode_srgb(double linear) { /* the transfer curve of sRGB, IEC 61966-2-1 */
   double code = linear <= 0.0031308 ? 12.92 * linear : 1.055 * hl_pow(linear, 1 / 2.4) - 0.055;
   return code <= 0 ? 0 : code >= 1 ? 1 : code;
 }
 
-/* Converts CIELab with the white point D50 to sRGB. Codes of 0 to 65535 stand for L* from 0 to 100, and for
- * a* and b* from -128 to 127 (PS3.3, C.10.7.1.1). The matrix is sRGB's, adapted from D65 to D50 by Bradford's
- * method (ICC, sRGB profile). */
+/* Converts CIELab with the white point D50 to sRGB. Codes from 0 to 65535 stand for L* from 0 to 100, and for
+ * a* and b* from -128 to 127 (PS3.3, C.10.7.1.1). The matrix is the matrix of sRGB, adapted from D65 to D50
+ * by Bradford's method (ICC, sRGB profile). */
 static void to_srgb(const double codes[3], double srgb[3]) {
   static const double white[3] = {0.9642, 1, 0.8249};
   static const double matrix[3][3] = {{3.1338561, -1.6168667, -0.4906146},

@@ -8,7 +8,7 @@
 #include "volume/formats/dicom/elements.h"
 #include "volume/volume.h"
 
-enum { HL_DICOM_SEGMENTS = 0x00620002 /* the sequence whose items are segments */ };
+enum { HL_DICOM_SEGMENTS = 0x00620002 /* tag of the sequence whose items are segments */ };
 
 typedef enum hl_dicom_segment_kind {
   HL_DICOM_NO_SEGMENTS = 0,

@@ -139,15 +139,15 @@ static void move(hl_dicom_frame *frame, vec3 direction, double distance) {
   frame->position[2] += distance * direction.z;
 }
 
-/* The distance between slices that the file states: the slice spacing, else the slice thickness, else 1. It
- * is negative if slices follow each other in the direction opposite to the normal. */
+/* The distance between slices that the file states: the slice spacing, else the slice thickness, else 1. The
+ * distance is negative if slices follow each other in the direction opposite to the normal. */
 static double stated_step(const hl_dicom_header *header) {
   if (isfinite(header->slice_spacing) && header->slice_spacing != 0) return header->slice_spacing;
   return header->thickness > 0 && isfinite(header->thickness) ? header->thickness : 1;
 }
 
-/* Sets the position of a tile of a mosaic. The position in the file is the position of a picture that has the
- * mosaic's size and the same middle as the first slice. */
+/* Sets the position of a tile of a mosaic. The position that the file states belongs to a picture that has
+ * the mosaic's size and the same centre as the first slice. */
 static void place_tile(const hl_dicom_header *header, size_t tile, hl_dicom_frame *frame) {
   const hl_dicom_pixels *p = &header->pixels;
   vec3 row = vec3_of(frame->orientation), column = vec3_of(frame->orientation + 3),
@@ -170,8 +170,8 @@ static void place_frame(const hl_dicom_header *header, size_t index, hl_dicom_fr
   double distance = (double)slice * stated_step(header),
          volume = hl_dicom_vectors_volume(&header->vectors, index);
   if (!isnan(volume)) frame->temporal = volume;
-  /* PS3.3, C.8.8.3.2: offsets may be counted from the first frame's position, or may be coordinates; in both
-   * cases the first offset is subtracted, so that they begin at 0 */
+  /* PS3.3, C.8.8.3.2: offsets may be counted from the first frame's position, or may be coordinates; the
+   * first offset is subtracted from all offsets, so that the first distance is 0 */
   if (index < header->offset_count) distance = header->offsets[index] - header->offsets[0];
   move(frame, vec3_cross(vec3_of(frame->orientation), vec3_of(frame->orientation + 3)), distance);
 }
@@ -184,7 +184,7 @@ static hl_status check_length(const hl_source *source, const hl_dicom_header *he
   uint64_t left = p->offset < size ? size - p->offset : 0;
   uint64_t bits = (uint64_t)p->rows * p->columns * (p->is_halved && !p->encapsulated ? 2 : p->samples) *
                   (uint64_t)p->allocated;
-  if (p->encapsulated) needed = frames * 8; /* each frame has at least one fragment */
+  if (p->encapsulated) needed = frames * 8; /* a frame has a fragment or more, of 8 bytes or more */
   else if (__builtin_mul_overflow(bits, frames, &needed)) needed = UINT64_MAX;
   else needed = needed / 8 + (needed % 8 != 0);
   if (needed <= left) return HL_OK;
@@ -194,7 +194,7 @@ static hl_status check_length(const hl_source *source, const hl_dicom_header *he
                         (unsigned long long)needed, (unsigned long long)left);
 }
 
-/* The number of slices in a frame. A mosaic has several. */
+/* The number of slices in a frame, which is greater than 1 only for a mosaic. */
 static size_t slices_of_frame(const hl_dicom_header *header) {
   return header->pixels.tiles > 1 ? (size_t)header->mosaic.slices : 1;
 }
@@ -269,7 +269,7 @@ static hl_status add_file(hl_dicom_set *set, hl_dicom_header *header, size_t ent
   return HL_OK;
 }
 
-/* Counts a file that cannot be read. */
+/* Counts a DICOM file that cannot be read, and keeps the first error. */
 static void add_damaged(hl_dicom_set *set, size_t *count, const char *why) {
   if (set->damaged + set->remnants == 0) snprintf(set->first_damage, sizeof set->first_damage, "%.299s", why);
   ++*count;

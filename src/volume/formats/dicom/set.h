@@ -43,7 +43,7 @@ typedef struct hl_dicom_set {
   size_t file_count, file_capacity, series_count, series_capacity, frame_count, frame_capacity;
   size_t damaged;         /* DICOM files that could not be read */
   size_t remnants;        /* files that may be rests of DICOM files (hl_dicom_is_remnant()) */
-  char first_damage[300]; /* error of the first file of these two kinds */
+  char first_damage[300]; /* error of the first damaged file or remnant */
 } hl_dicom_set;
 
 /* Reads the headers of all DICOM files in the bundle. strict: whether to fail at a file that cannot be read;

@@ -15,7 +15,7 @@
 #include "core/memory.h"
 #include "text/plain.h"
 
-/* A frame and its place along the normal. */
+/* A frame and its coordinate along the normal. */
 typedef struct placed_frame {
   const hl_dicom_frame *frame;
   double distance;
@@ -28,8 +28,7 @@ typedef struct sorting {
   size_t count;
   vec3 row, column, normal;
   bool has_positions;
-  double tolerance; /* two frames count as lying at the same position if their distance is not greater than
-                     * this */
+  double tolerance; /* two frames lie at the same position if their distance is at most the tolerance */
   double *places;   /* owned; [place_count]: the frames' positions along the normal */
   size_t place_count;
 } sorting;
@@ -67,8 +66,8 @@ static bool same_grid(const sorting *s, const hl_dicom_frame *a, const hl_dicom_
   return true;
 }
 
-/* Keeps the largest set of frames of the same size and orientation. Localizers are left out, unless the
- * series consists of them. */
+/* Keeps the largest set of frames of the same size and orientation. Localizers are left out, unless all
+ * frames of the series are localizers. */
 static hl_status keep_majority(sorting *s, hl_error *error) {
   enum { CLASSES = 64 };
   size_t size[CLASSES] = {0}, classes = 0, best = 0;
@@ -147,8 +146,8 @@ static double pixel_spacing(const hl_dicom_frame *frame, int which) {
   return frame->spacing[which] > 0 && isfinite(frame->spacing[which]) ? frame->spacing[which] : 1;
 }
 
-/* The distance between slices as the file states it. It is used if there is a single slice, or if positions
- * are missing. */
+/* The distance between slices as the file states it. The stated distance is used if the series has a single
+ * slice, or if positions are missing. */
 static double stated_spacing(const sorting *s, bool *known) {
   const hl_dicom_file *file = file_of(s, s->frames[0].frame);
   *known = true;
@@ -174,9 +173,10 @@ static int widest_axis(const sorting *s) {
   return widest;
 }
 
-/* Chooses an orientation for slices that state none. As usual, they are taken to be perpendicular to the axis
- * along which they follow each other. The rows of sagittal slices then run from front to back, the rows of
- * coronal slices from right to left, and the columns of both from head to feet. */
+/* Chooses an orientation for slices that state none. Such slices are assumed to be perpendicular to the
+ * patient's axis along which they follow each other. The rows of sagittal slices run from front to back, the
+ * rows of coronal slices from right to left, and the columns of sagittal and coronal slices from head to
+ * feet. */
 static void assume_axes(sorting *s) {
   static const vec3 rows[3] = {{0, 1, 0}, {1, 0, 0}, {1, 0, 0}},
                     columns[3] = {{0, 0, -1}, {0, 0, -1}, {0, 1, 0}};
@@ -215,7 +215,7 @@ static bool have_locations(const sorting *s) {
   return differ;
 }
 
-/* Returns whether there are several frames, which all have the same position. */
+/* Returns whether all of several frames have the same position. */
 static bool all_at_one_place(const sorting *s) {
   for (size_t n = 1; n < s->count; n++)
     for (int axis = 0; axis < 3; axis++)
@@ -223,8 +223,8 @@ static bool all_at_one_place(const sorting *s) {
   return s->count > 1;
 }
 
-/* Sorts the frames by their positions. If positions are missing or all the same, sorts by the stated
- * locations, or without these by the frames' numbers. */
+/* Sorts the frames by their positions. If positions are missing or all equal, sorts the frames by their
+ * stated locations; if locations are missing too, sorts them by their numbers. */
 static void sort(sorting *s) {
   bool known;
   if (s->has_positions && !(all_at_one_place(s) && have_locations(s))) {
@@ -292,8 +292,9 @@ static int by_volume_alone(const void *a, const void *b) {
   return by_volume(((const placed_frame *)a)->frame, ((const placed_frame *)b)->frame);
 }
 
-/* Lists the frames of each position. Most positions have the same number of frames. Positions with fewer
- * frames are left out. At positions with more frames, the surplus frames are left out. */
+/* Makes the stack's list of the frames at each position. Most positions have the same number of frames.
+ * Positions with fewer frames are left out. At positions with more frames, the surplus frames are left
+ * out. */
 static hl_status gather_places(sorting *s, hl_dicom_stack *stack, hl_error *error) {
   size_t times = usual_count(s), doubled = 0, incomplete = 0;
   if (times == 0) return hl_fail_memory(error, 1 << 14, "a list of slices");
@@ -325,7 +326,7 @@ static hl_status gather_places(sorting *s, hl_dicom_stack *stack, hl_error *erro
   return HL_OK;
 }
 
-/* Lists the frames of each position, one for each segment. */
+/* Makes a segmentation's list of the frames at each position, with one frame for each segment. */
 static hl_status gather_segments(sorting *s, hl_dicom_stack *stack, hl_error *error) {
   const hl_dicom_segments *segments = &file_of(s, s->frames[0].frame)->segments;
   size_t unknown = 0, doubled = 0, count;
@@ -382,11 +383,11 @@ static double median_step(const sorting *s) {
   return median;
 }
 
-/* Returns whether positions are evenly spaced, if some of them may be missing: the distance of each from the
- * first is a whole multiple of one step. step: the step, approximately. *slices: set to the number of slices
- * without gaps. */
+/* Returns whether positions are evenly spaced, apart from missing ones: the distance from the first position
+ * to each other position is a whole multiple of one step. step: the step, approximately. *slices: set to the
+ * number of slices without gaps. */
 static bool is_even(const sorting *s, double step, size_t *slices) {
-  const double TOLERANCE = 0.05; /* in parts of a step */
+  const double TOLERANCE = 0.05; /* as a fraction of a step */
   double span = s->places[s->place_count - 1] - s->places[0], steps = 0;
   for (size_t n = 0; n + 1 < s->place_count; n++)
     steps += fmax(1, floor((s->places[n + 1] - s->places[n]) / step + 0.5));
@@ -420,8 +421,7 @@ static void spread(const sorting *s, size_t count, bool snap, hl_dicom_stack *st
   }
 }
 
-/* Tells the user how the slices were made for which the file has no frame. count: the number of all
- * slices. */
+/* Tells the user how the slices without a frame in the file were made. count: the number of all slices. */
 static void tell_spacing(const sorting *s, const hl_dicom_stack *stack, bool even, size_t count) {
   char text[300], holes[100] = "";
   double step = count > 1 ? (s->places[s->place_count - 1] - s->places[0]) / (double)(count - 1) : 0;
@@ -468,7 +468,7 @@ static hl_status space_evenly(sorting *s, hl_dicom_stack *stack, hl_error *error
 
 static void put(vec3 v, double to[3]) { to[0] = v.x, to[1] = v.y, to[2] = v.z; }
 
-/* The first frame at a position, from which the position is taken. */
+/* The first frame at a position. The position of this frame is used for all frames there. */
 static const hl_dicom_frame *frame_of_place(const hl_dicom_stack *stack, size_t place) {
   const hl_dicom_frame **frames = stack->frames + place * stack->times;
   size_t n = 0;

@@ -8,8 +8,7 @@
 #include "volume/formats/dicom/set.h"
 #include "volume/volume.h"
 
-/* A slice of the grid. It lies at a position that has frames, or is interpolated between two such
- * positions. */
+/* A slice of the grid. A slice lies at a position that has frames, or between two such positions. */
 typedef struct hl_dicom_slice {
   size_t place;  /* index of the position at the slice, or else of the last position before it */
   double weight; /* weight of the frame at the next position; 0 if the slice lies at the position `place` */

@@ -1,5 +1,5 @@
-/* volume/formats/dicom/vectors.c - reads the vectors of nuclear medicine, which tell each frame's slice, time
- * slot and so on. */
+/* volume/formats/dicom/vectors.c - reads the vectors of nuclear medicine, which state for example the slice
+ * and the time slot of each frame. */
 #include "volume/formats/dicom/vectors.h"
 
 #include <math.h>
@@ -8,8 +8,8 @@
 
 enum { SLICES = 6, ROTATIONS = 3, ANGLES = 7, BYTES_MOST = 1 << 21 };
 
-/* The tags of the vectors, in the order in which their numbers tell volumes apart: energy windows, detectors,
- * phases, rotations, R-R intervals, time slots, slices, angular views, time slices. */
+/* The tags of the vectors, the vector that is most significant for the order of volumes first: energy
+ * windows, detectors, phases, rotations, R-R intervals, time slots, slices, angular views, time slices. */
 static const uint32_t tags[HL_DICOM_VECTORS] = {0x00540010, 0x00540020, 0x00540030, 0x00540050, 0x00540060,
                                                 0x00540070, 0x00540080, 0x00540090, 0x00540100};
 
@@ -31,8 +31,8 @@ static hl_status take_vector(hl_dicom_reader *reader, const hl_dicom_element *el
   return status;
 }
 
-/* Reads the Frame Increment Pointer (0028,0009), which names the attribute by which frames differ. If it is
- * the Frame Time (0018,1063) or the Frame Time Vector (0018,1065), the frames are times. */
+/* Reads the Frame Increment Pointer (0028,0009), which names the attribute by which frames differ. If this
+ * attribute is the Frame Time (0018,1063) or the Frame Time Vector (0018,1065), the frames are times. */
 static hl_status take_increment(hl_dicom_reader *reader, const hl_dicom_element *element,
                                 hl_dicom_vectors *vectors, hl_error *error) {
   unsigned char bytes[4];

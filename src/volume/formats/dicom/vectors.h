@@ -1,5 +1,5 @@
-/* volume/formats/dicom/vectors.h - reads the vectors of nuclear medicine, which tell each frame's slice, time
- * slot and so on.
+/* volume/formats/dicom/vectors.h - reads the vectors of nuclear medicine, which state for example the slice
+ * and the time slot of each frame.
  *
  * Source: DICOM PS3.3, C.8.4.8 (NM multi-frame), C.7.6.6 (multi-frame). */
 #ifndef HL_VOLUME_DICOM_VECTORS_H
@@ -10,7 +10,7 @@
 enum { HL_DICOM_VECTORS = 9 };
 
 typedef struct hl_dicom_vector {
-  uint16_t *numbers; /* owned; [count]; null if not told */
+  uint16_t *numbers; /* owned; [count]; null if the file lacks the vector */
   size_t count;      /* number of frames */
 } hl_dicom_vector;
 
@@ -28,8 +28,8 @@ void hl_dicom_vectors_release(hl_context *context, hl_dicom_vectors *vectors);
 /* The slice of a frame, counted from 0. If the file states no slices, the result is the frame's index, or 0
  * if the frames are times. */
 size_t hl_dicom_vectors_slice(const hl_dicom_vectors *vectors, size_t frame);
-/* A number that is the same for all frames of a volume, and greater for each later volume. NAN if no vector
- * tells volumes apart. */
+/* A number that is the same for all frames of a volume, and greater for each later volume. The result is NAN
+ * if the vectors do not distinguish volumes. */
 double hl_dicom_vectors_volume(const hl_dicom_vectors *vectors, size_t frame);
 /* Returns whether the frames are projections from several directions instead of slices. */
 bool hl_dicom_vectors_are_projections(const hl_dicom_vectors *vectors);

@@ -26,10 +26,10 @@ typedef struct reading {
   size_t time;   /* index of the frame that is read among the frames at each position */
   int component; /* the sample to take, or HL_COMPONENT_MAGNITUDE */
   hl_voxel_type type;
-  bool as_floats; /* whether values are computed as floats; otherwise stored values are kept */
+  bool as_floats; /* whether values are computed as floats; otherwise the file's integers are stored */
   bool as_colors; /* whether values are colours (colors.h) */
   bool is_plain;  /* whether the stored values are the files' own numbers, of `type`, in all slices */
-  /* `padding` is the same for all slices. `slope` and `intercept` are set only if as_floats is false. */
+  /* The padding range is the same for all slices. Slope and intercept are set only if as_floats is false. */
   struct {
     double slope, intercept, padding[2];
   } scale;
@@ -215,7 +215,8 @@ static hl_status read_one(void *data, size_t index, int worker, hl_error *error)
   return status;
 }
 
-/* Converts integers to floats in the same memory, from the last to the first. Padding values become NAN. */
+/* Converts integers to floats in the same memory, from the last voxel to the first. Padding values become
+ * NAN. */
 static void widen(const reading *r, size_t count, void *voxels) {
   double bias = hl_voxel_type_bias(r->type);
   float *floats = voxels;
@@ -251,7 +252,8 @@ static hl_status make_threads(reading *r, size_t voxels, hl_error *error) {
 }
 
 /* Looks for padding in the middle slice. If the slice has padding, the volume is read as floats from the
- * start. A later conversion of all integers would need memory for integers and floats at the same time. */
+ * start. Otherwise all integers would be converted to floats later, which needs memory for integers and
+ * floats at the same time. */
 static hl_status find_padding(reading *r, hl_error *error) {
   if (r->as_floats || r->as_colors || isnan(r->scale.padding[0])) return HL_OK;
   size_t middle = r->stack->place_count / 2, bytes = r->slice_voxels * r->voxel_bytes;
@@ -266,7 +268,7 @@ static hl_status find_padding(reading *r, hl_error *error) {
   return HL_OK;
 }
 
-/* The type of the values that are stored. */
+/* The voxel type of the values that the destination stores. */
 static hl_voxel_type kept_type(const reading *r) {
   return r->as_floats && hl_voxel_type_storage(r->type) != HL_STORAGE_F32 ? HL_VOXEL_F32 : r->type;
 }
@@ -290,8 +292,8 @@ static bool any_padded(const reading *r) {
   return padded > 0;
 }
 
-/* Reads all slices. If there is padding among integers, they must become floats. Voxels in memory are then
- * converted by widen_padded() later; voxels that are not in memory are read once more. */
+/* Reads all slices. If integers include padding values, all voxels must become floats. Voxels in memory are
+ * then converted by widen_padded() later; voxels that are not in memory are read a second time. */
 static hl_status read_all(reading *r, hl_error *error) {
   hl_status status = find_padding(r, error);
   if (status == HL_OK) status = read_slices(r, error);

@@ -1,6 +1,7 @@
 /* volume/formats/particles/difference.c - compares a volume of particles with exact values.
  *
- * In: a volume and the exact values at a few places. Out: the greatest difference, which the volume keeps. */
+ * In: a volume and the exact values at a few positions. Out: the greatest difference, which the volume
+ * stores. */
 #include "volume/formats/particles/difference.h"
 
 #include <math.h>
@@ -15,8 +16,8 @@ void hl_particle_truth_release(hl_context *context, hl_particle_truth *truth) {
   *truth = (hl_particle_truth){.values = NULL};
 }
 
-/* The four coefficients along an axis on which a place depends, and their weights: the cubic B-spline. Beyond
- * the grid the outermost coefficient repeats. */
+/* Finds the four coefficients along an axis on which the cubic B-spline at a position depends, and their
+ * weights. Coefficients beyond the grid equal the outermost coefficient. */
 static void find_taps(double place, size_t points, size_t tap[4], double weight[4]) {
   const double before = fmin(floor(place), (double)points - 1);
   hl_bspline_weights(place - before, weight);

@@ -14,8 +14,9 @@ typedef struct hl_particle_truth {
 
 void hl_particle_truth_release(hl_context *context, hl_particle_truth *truth);
 
-/* Notes for hl_volume_get_field_error() the greatest difference between the field and the exact values at
- * the places. The field is a cubic B-spline whose coefficients are the volume's voxels, or its bricks. */
+/* Computes the greatest difference between the field and the exact values at the probes' positions, and
+ * stores the difference in the volume for hl_volume_get_field_error(). The field is a cubic B-spline whose
+ * coefficients are the volume's voxels, or its bricks. */
 void hl_particle_truth_compare(const hl_particle_truth *truth, hl_volume *volume);
 
 #endif

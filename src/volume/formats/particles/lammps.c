@@ -1,4 +1,4 @@
-/* volume/formats/particles/lammps.c - reads dumps of LAMMPS as text, which hold particles at time steps.
+/* volume/formats/particles/lammps.c - reads text dumps of LAMMPS, which hold particles at time steps.
  *
  * Source: the page "dump command" of LAMMPS' manual. A step is a sequence of items: "ITEM: TIMESTEP", "ITEM:
  * NUMBER OF ATOMS", "ITEM: BOX BOUNDS" with the kinds of the borders ("pp": periodic), and "ITEM: ATOMS" with
@@ -13,13 +13,13 @@
 
 typedef struct lammps_dump {
   hl_stream *stream;
-  int number; /* of the line */
+  int number; /* number of the current line */
   char line[HL_LINE_BYTES];
   bool ended;
-  size_t atoms;   /* of the step that is being read */
+  size_t atoms;   /* number of atoms of the step that is being read */
   bool has_atoms; /* whether the step's atoms have been read */
-  size_t steps;   /* begun so far */
-  size_t wanted;  /* the step that is read */
+  size_t steps;   /* number of steps that have begun so far */
+  size_t wanted;  /* the index of the step to read */
   hl_particle_columns columns;
 } lammps_dump;
 
@@ -110,7 +110,7 @@ static hl_status read_item(lammps_dump *dump, hl_error *error) {
     snprintf(names, sizeof names, "%s", dump->line + sizeof atoms - 1);
     return read_atoms(dump, names, error);
   }
-  if (hl_text_starts(dump->line, "ITEM: ")) return next_line(dump, error); /* units, time: one line */
+  if (hl_text_starts(dump->line, "ITEM: ")) return next_line(dump, error); /* skips units, time */
   return dump->line[strspn(dump->line, " \t")] == 0
              ? HL_OK
              : HL_FAIL_LINE(error, HL_ERROR_INPUT, dump->stream, dump->number, "%s",

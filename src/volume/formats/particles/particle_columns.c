@@ -12,7 +12,7 @@
 
 /* ---- names ---- */
 
-/* The names of columns as programs write them: ParaView, OVITO, pandas, LAMMPS, yt and pynbody. */
+/* The names that ParaView, OVITO, pandas, LAMMPS, yt and pynbody give to columns of particles. */
 static const struct {
   const char *names;
   hl_particle_role role;
@@ -151,7 +151,7 @@ static hl_status list_arrays(const hl_particle_columns *columns, hl_load_request
   return status;
 }
 
-/* The column of a quantity, counted among the quantities. */
+/* The column of the quantity with the index `number` among the quantities. */
 static const hl_particle_column *quantity(const hl_particle_columns *columns, size_t number) {
   for (int c = 0; c < columns->column_count; c++)
     if (columns->column[c].role == HL_COLUMN_QUANTITY && number-- == 0) return &columns->column[c];

@@ -1,9 +1,9 @@
 /* volume/formats/particles/particle_columns.h - collects particles that are rows of a text. The readers of
- * tables, dumps of LAMMPS and XYZ files use it.
+ * tables, dumps of LAMMPS and XYZ files use these functions.
  *
  * The name of a column tells whether it is a coordinate, the mass, the smoothing length, or a quantity.
- * Columns whose first entry is no number are left out. The file gets the arrays "log density" and "density",
- * and an array for each quantity, which is the quantity's mean weighted by mass. */
+ * Columns whose first entry is not a number are left out. The arrays that can be loaded are "log density",
+ * "density", and one for each quantity: the quantity's mean weighted by mass. */
 #ifndef HL_VOLUME_PARTICLE_COLUMNS_H
 #define HL_VOLUME_PARTICLE_COLUMNS_H
 
@@ -30,16 +30,18 @@ typedef struct hl_particle_column {
 
 typedef struct hl_particle_columns {
   hl_context *context;
-  size_t count, room;     /* particles */
+  size_t count, room;     /* number of particles; room for particles */
   double (*positions)[3]; /* owned; [room] */
   hl_particle_column column[HL_PARTICLE_COLUMNS_MOST];
   int column_count;
-  double box_low[3], box[3]; /* world: the box of scaled coordinates */
-  double period[3];          /* world; 0 if it is not periodic along the axis */
+  double box_low[3], box[3]; /* in the world: the lowest corner and the size of the box of scaled
+                              * coordinates */
+  double period[3];          /* in the world: period along each axis; 0 if the box is not periodic along the
+                              * axis */
 } hl_particle_columns;
 
 /* Splits a line into words, in place, at commas, semicolons, tabs and spaces. Removes quotes around words.
- * Returns the number of words; further words than HL_PARTICLE_COLUMNS_MOST are ignored. */
+ * Returns the number of words; words after the first HL_PARTICLE_COLUMNS_MOST are ignored. */
 int hl_particle_words(char *line, char *words[HL_PARTICLE_COLUMNS_MOST]);
 
 /* Returns the role of a column with this name, such as a coordinate or the mass. */

@@ -1,13 +1,14 @@
 /* volume/formats/particles/particle_table.c - reads tables of particles as text: .csv, .tsv, .txt.
  *
- * The first line names the columns, x, y and z among them, separated by commas, semicolons, tabs or spaces;
- * it may begin with '#'. Each further line is a particle; lines that begin with '#' are left out. */
+ * The first line names the columns, which must include x, y and z, separated by commas, semicolons, tabs or
+ * spaces. The first line may begin with '#'. Each further line is a particle; lines that begin with '#' are
+ * left out. */
 #include <string.h>
 
 #include "volume/formats/particles/particle_columns.h"
 #include "volume/io/text.h"
 
-/* Adds the columns that a line names. line: the text, which is changed. */
+/* Adds the columns that a line names. line: the text of the line, which the function changes. */
 static void name_columns(char *line, hl_particle_columns *columns) {
   char *words[HL_PARTICLE_COLUMNS_MOST];
   int count = hl_particle_words(line + strspn(line, "# \t"), words);

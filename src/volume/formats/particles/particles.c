@@ -1,5 +1,5 @@
-/* volume/formats/particles/particles.c - makes volumes of particles. It checks the caller's arrays, and makes
- * the volume from the particles' field.
+/* volume/formats/particles/particles.c - makes volumes of particles. The functions check the caller's arrays,
+ * and make the volume from the particles' field.
  *
  * In: a description of particles, from a caller or from the reader of a file. Out: a volume of the particles'
  * density, of its logarithm, or of the mean of a value. particles/particles.h computes the field. */
@@ -110,7 +110,7 @@ static size_t most_points(const hl_context *context, const hl_particles_descript
   return limit > 0 && room < most ? (size_t)room : most;
 }
 
-/* The particles' weights, in the set's order: masses, or masses times values. */
+/* The weights of the particles' kernels, in the order of the set: masses, or masses times values. */
 static float *weights_of(hl_context *context, const hl_particles_description *d, const hl_particle_set *set,
                          bool with_values) {
   float *weights = hl_allocate(context, set->count, sizeof *weights);
@@ -121,7 +121,8 @@ static float *weights_of(hl_context *context, const hl_particles_description *d,
   return weights;
 }
 
-/* Spreads the particles, and adds up their kernels at the truth's places. sums: [truth's places]. */
+/* Adds the particles' kernels to the field, and sums the kernels at the probes' positions. sums:
+ * [truth->probes.count]. */
 static hl_status spread(const making *m, const hl_particle_plan *plan, const hl_particle_truth *truth,
                         bool with_values, hl_particle_field *field, double *sums) {
   float *weights = NULL; /* null if each weight is 1 */
@@ -137,8 +138,8 @@ static hl_status spread(const making *m, const hl_particle_plan *plan, const hl_
   return status;
 }
 
-/* The density below which a voxel counts as empty. A particle alone has the density m W(0) = m / (pi h^3) at
- * its own place. The result is a tenth of the least such density. */
+/* The density below which a voxel counts as empty. An isolated particle has the density m W(0) = m / (pi h^3)
+ * at its own position. The result is a tenth of the least density of an isolated particle. */
 static float empty_density(const hl_particles_description *d, const hl_particle_set *set) {
   double least = INFINITY;
   for (size_t n = 0; n < set->count; n++) {
@@ -155,14 +156,14 @@ typedef struct conversion {
   float *field;
   const float *by; /* the density, for means */
   size_t count;
-  float least;   /* for logarithms */
+  float least;   /* for logarithms: the density below which densities are raised */
   float outside; /* for means */
 } conversion;
 
 enum { NUMBERS_AT_ONCE = 1 << 16 };
 
-/* Replaces densities by their logarithms. They are computed in double and then rounded to floats, so that
- * nearly all of them are the same on all machines. */
+/* Replaces densities by their logarithms. Logarithms are computed in double precision and then rounded to
+ * floats, so that nearly all results are the same on all machines. */
 static void take_logarithms(void *data, size_t index, int worker) {
   const conversion *c = data;
   (void)worker;
@@ -192,8 +193,8 @@ static void convert(const making *m, hl_particle_field *field, const hl_particle
   field->outside = density != NULL ? c.outside : (float)hl_log10((double)c.least);
 }
 
-/* Converts sums of kernels as convert() converts the field. densities: for a mean, the sums of the masses;
- * else null. */
+/* Converts the sums of kernels at the probes' positions in the same way as convert() converts the field.
+ * densities: for a mean, the sums of the masses; else null. */
 static void convert_truth(const making *m, const double *densities, hl_particle_truth *truth) {
   const double least = (double)least_density(m);
   for (size_t q = 0; q < truth->probes.count; q++) {
@@ -203,7 +204,7 @@ static void convert_truth(const making *m, const double *densities, hl_particle_
   }
 }
 
-/* Makes the field of the wanted quantity, and its exact values at a few places. */
+/* Makes the field of the wanted quantity, and its exact values at a few positions. */
 static hl_status make_field(const making *m, const hl_particle_plan *plan, hl_particle_field *field,
                             hl_particle_truth *truth) {
   hl_particle_field density = {.plan = NULL};
@@ -230,8 +231,9 @@ static hl_status make_field(const making *m, const hl_particle_plan *plan, hl_pa
 
 /* ---- the lattice, and whether the field becomes bricks ---- */
 
-/* The field becomes bricks if they take less memory than this fraction of an array of all voxels. The number
- * is chosen, not measured. Bricks are sampled more slowly than voxels, so that they must save much memory. */
+/* The field becomes bricks if the bricks take less memory than this fraction of an array of all voxels. The
+ * fraction is chosen, not measured. Bricks must save much memory, because they are sampled more slowly than
+ * voxels. */
 #define BRICKS_PART 0.6
 /* The greatest number of bytes of bricks and of the fields from which they are made, if there is no memory
  * limit. */

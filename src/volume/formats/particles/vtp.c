@@ -1,8 +1,8 @@
 /* volume/formats/particles/vtp.c - reads the points of VTK's XML PolyData (.vtp) as particles.
  *
- * PolyData are particles if they have neither lines nor surfaces, and an array of masses or of smoothing
- * lengths at their points. All other PolyData are meshes (mesh/vtp.c). All other arrays at the points are
- * quantities. An array of vectors gives the lengths of the vectors. */
+ * PolyData count as particles if they have neither lines nor surfaces, but have an array of masses or of
+ * smoothing lengths at their points. All other PolyData are meshes (mesh/vtp.c). All other arrays at the
+ * points are quantities. The quantity of an array of vectors is the length of the vectors. */
 #include <halflight/particles.h>
 #include <math.h>
 #include <string.h>
@@ -46,9 +46,9 @@ int hl_volume_reads_particles(hl_context *context, const char *path) {
 
 /* ---- arrays ---- */
 
-/* Makes a column of each array of the first piece. An array is never a coordinate, as the points have their
- * own. names: [HL_PARTICLE_COLUMNS_MOST]; set to the arrays' names in the file. The columns' own names may
- * differ, because they are printable. */
+/* Makes a column of each array of the first piece. No array becomes a coordinate, because the points have
+ * coordinates of their own. names: [HL_PARTICLE_COLUMNS_MOST]; set to the arrays' names in the file. The
+ * columns' own names may differ, because they are printable. */
 static void name_columns(const hl_vtk_pieces *pieces, hl_particle_columns *columns, const char **names) {
   for (size_t n = 0; n < pieces->pieces[0].array_count; n++) {
     const hl_vtk_piece_array *array = &pieces->arrays[pieces->pieces[0].first_array + n];
@@ -64,8 +64,8 @@ static void name_columns(const hl_vtk_pieces *pieces, hl_particle_columns *colum
   }
 }
 
-/* Appends tuples to a column. A tuple of one component gives its number; a tuple of several gives its length
- * as a vector. */
+/* Appends tuples to a column. The appended value is the number in a tuple of one component, and the vector's
+ * length for a tuple of several components. */
 static hl_status append(const hl_particle_columns *columns, hl_particle_column *column, const double *numbers,
                         size_t tuples, size_t components, hl_error *error) {
   float *values = hl_reallocate(columns->context, column->values, columns->count + tuples, sizeof *values);
@@ -131,7 +131,7 @@ static hl_status load(hl_stream **stream, hl_load_request *request, hl_volume **
   hl_vtk_pieces pieces = {.context = request->context, .types = types, .type_count = 1};
   hl_particle_columns columns = {.context = request->context};
   pieces.xml.stream = *stream;
-  char *path = hl_copy_text(request->context, (*stream)->path); /* arrays open the stream anew */
+  char *path = hl_copy_text(request->context, (*stream)->path); /* reading an array opens the stream anew */
   hl_status status = path != NULL ? hl_vtk_pieces_read(&pieces, error) : hl_fail_memory(error, 1, "a path");
   if (status == HL_OK && !are_particles(&pieces))
     status = hl_fail(error, HL_ERROR_UNSUPPORTED,

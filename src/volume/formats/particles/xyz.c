@@ -1,10 +1,10 @@
 /* volume/formats/particles/xyz.c - reads XYZ files, which hold atoms of molecules. A file is recognised by
  * its name's ending.
  *
- * A frame is the number of atoms, a comment, and a line for each atom: its element, x, y and z. Extended XYZ
- * names in the comment the columns (Properties=species:S:1:pos:R:3:...) and the box (Lattice="ax ay az bx by
- * bz cx cy cz"). The box is periodic along an axis if it is parallel to the axes and the key pbc, if present,
- * has T for this axis. */
+ * A frame consists of the number of atoms, a comment, and for each atom a line with its element, x, y and z.
+ * The comment of an extended XYZ file states the columns (Properties=species:S:1:pos:R:3:...) and the box
+ * (Lattice="ax ay az bx by bz cx cy cz"). A box parallel to the axes is periodic along each axis; if the
+ * comment has the key pbc, it is periodic only along axes with the value T. */
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -20,7 +20,7 @@ static hl_status claim_name(hl_stream **stream, bool *claimed, hl_error *error) 
 }
 
 /* Copies the value of a key from a comment. The value follows "key=" and ends at a space, or stands in
- * quotes. It is "" if the comment lacks the key. */
+ * quotes. The value is "" if the comment lacks the key. */
 static void value_of(const char *comment, const char *key, char *value, size_t capacity) {
   size_t length = strlen(key);
   value[0] = 0;

@@ -1,9 +1,10 @@
 /* volume/formats/slices/slice_codecs.h - decodes pictures for slice_picture.c, with one decoder for each kind
  * of picture.
  *
- * Each decoder reads the shape. If `samples` is not null, it also reads the pixels, [height][width][samples]
- * of the shape's type in native byte order. Their block is released by the caller, also after a failure. A
- * file that is too short for its shape is refused before anything is allocated. */
+ * Each decoder reads the shape. If `samples` is not null, the decoder also reads the pixels,
+ * [height][width][samples] of the shape's type in native byte order. The caller releases the pixels' memory,
+ * also after a failure. A file that is too short for its shape is refused before memory for pixels is
+ * allocated. */
 #ifndef HL_VOLUME_SLICE_CODECS_H
 #define HL_VOLUME_SLICE_CODECS_H
 
@@ -15,7 +16,7 @@ typedef struct hl_slice_file {
   const char *path; /* for error lines */
   const unsigned char *bytes;
   size_t length;
-  hl_exact *exact; /* notes the slice's numbers; may be null */
+  hl_exact *exact; /* records the slice's numbers as the file has them; may be null */
   size_t first;    /* the number of the slice's first voxel in the volume */
 } hl_slice_file;
 
@@ -37,7 +38,7 @@ hl_status hl_slice_read_tiff(const hl_slice_file *file, hl_slice_shape *shape, i
 
 /* Returns whether a file has the name of a file of bare voxels. */
 bool hl_slice_is_raw(const char *name);
-/* Reads bare voxels. If voxels is null, finds only the shape. */
+/* Reads a slice of bare voxels. If voxels is null, finds only the slice's shape. */
 hl_status hl_slice_read_raw(const hl_slice_file *file, hl_slice_shape *shape, void *voxels, hl_error *error);
 
 /* Refuses a picture whose header promises more pixels than the file can hold. bytes_most: the greatest number

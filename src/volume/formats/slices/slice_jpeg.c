@@ -17,8 +17,8 @@ hl_status hl_slice_read_jpeg(const hl_slice_file *file, hl_slice_shape *shape, u
 #include "core/memory.h"
 #include "volume/io/jpeg_fault.h"
 
-/* Runs the decoder. An error of libjpeg jumps out of this call. The caller must destroy the decoder in any
- * case. */
+/* Decodes a slice by libjpeg. An error of libjpeg leaves this function by longjmp. The caller must destroy
+ * the decoder also after an error. */
 static hl_status run(struct jpeg_decompress_struct *info, const hl_slice_file *file, hl_slice_shape *shape,
                      unsigned char **samples, hl_error *error) {
   enum { PIXELS_OF_BYTE = 8 * 64 }; /* each block of 8 x 8 pixels takes at least one bit */

@@ -34,7 +34,7 @@ static hl_status fail_unknown(const hl_slice_file *file, hl_error *error) {
   return hl_fail(error, HL_ERROR_INPUT, "%s: neither a TIFF, PNG nor JPEG picture", file->path);
 }
 
-/* Reads a PNG or JPEG file. If samples is null, reads only its shape. */
+/* Reads a PNG or JPEG file. If samples is null, reads only the shape of the picture. */
 static hl_status read(const hl_slice_file *file, hl_slice_shape *shape, unsigned char **samples,
                       hl_error *error) {
   hl_status status;
@@ -61,8 +61,8 @@ static double sample_at(const hl_slice_shape *shape, const unsigned char *sample
 }
 
 /* Stores one component of a picture, the magnitude of its components, or its colours, as `component` says.
- * voxels: stored values of the shape's type, which is unsigned, if `component` is an index; floats for a
- * magnitude; colours for colours. */
+ * voxels: memory for the result. If `component` is an index, the result is stored values of the shape's
+ * unsigned type; otherwise it is floats (magnitude) or colours. */
 static void take_component(const hl_slice_shape *shape, const unsigned char *samples, int component,
                            void *voxels) {
   size_t count = shape->width * shape->height, step = shape->samples,

@@ -8,7 +8,7 @@
 /* Returns whether a file's name is the name of a picture that can be a slice. */
 bool hl_slice_is_named(const char *name);
 
-/* Reads a picture's header. Refuses a picture for which the file is too short. */
+/* Reads a picture's header. Refuses a file that is too short for the picture's size. */
 hl_status hl_slice_measure(const hl_slice_file *file, hl_slice_shape *shape, hl_error *error);
 
 /* Decodes a picture into width x height stored voxels, or into colours (colors.h). component: an index or an

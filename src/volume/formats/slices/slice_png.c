@@ -1,5 +1,5 @@
 /* volume/formats/slices/slice_png.c - decodes PNG slices by libpng: grey and colours of 8 and 16 bits.
- * Samples of fewer bits become 8 bits with the same values. Palettes become colours. */
+ * Samples of less than 8 bits are widened to 8 bits, and keep their values. Palettes become colours. */
 #include <png.h>
 #include <setjmp.h>
 #include <stdio.h>
@@ -13,7 +13,7 @@
 typedef struct png_slice {
   const hl_slice_file *file;
   hl_slice_shape *shape;
-  unsigned char **samples; /* the place of the samples; null if only the shape is wanted */
+  unsigned char **samples; /* memory for the samples; null if only the shape is wanted */
   size_t at;
   png_structp png;
   png_infop info;
@@ -49,8 +49,8 @@ static void on_read(png_structp png, png_bytep to, size_t length) {
   s->at += length;
 }
 
-/* Ends decoding by a call of png_error(), which libpng itself calls on failures. So all failures are handled
- * in one place. */
+/* Ends decoding by a call of png_error(), which libpng itself calls on failures. Failures of libpng and of
+ * this file are thus handled in the same way. */
 static void stop(png_slice *s, hl_status status) {
   s->status = status;
   png_error(s->png, "stopped");

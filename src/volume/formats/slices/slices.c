@@ -1,9 +1,9 @@
 /* volume/formats/slices/slices.c - reads folders and zip archives of numbered files. Each file is a slice: a
  * picture or bare voxels. The numbers in the names give the order.
  *
- * The names of a series differ only in their last number, as in "scan_007.tif". Of several series, the
- * longest is taken. If the files are TIFF files that are volumes of their own (several pages, OME-TIFF), they
- * are time steps instead of slices. */
+ * The names of a series differ only in their last number, as in "scan_007.tif". If a folder has several
+ * series, the longest series is read. If the files are TIFF files that are volumes of their own (several
+ * pages, OME-TIFF), they are time steps instead of slices. */
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -22,12 +22,12 @@
 #include "volume/io/text.h"
 
 enum {
-  PARALLEL_BYTES = 1 << 20, /* smaller volumes are read by one thread, which takes less time than starting
-                             * others */
+  PARALLEL_BYTES = 1 << 20, /* smaller volumes are read by one thread, because starting more threads would
+                             * take longer */
   FILE_BYTES_MOST = 1 << 30 /* greatest length of a picture's file */
 };
 
-/* A picture's name, and the place of its last number. */
+/* A picture's name, and the position of the last number in the name. */
 typedef struct numbered_name {
   const hl_bundle_entry *entry;
   size_t number_at, number_end;
@@ -48,13 +48,13 @@ typedef struct slices_reading {
 
 static bool is_digit(char c) { return c >= '0' && c <= '9'; }
 
-/* Finds the last number in a file's own name. Returns false if there is none, or if the file cannot be a
- * slice. */
+/* Finds the last number in a file's own name. Returns false if the name has no number, or if the file cannot
+ * be a slice. */
 static bool cut_name(const hl_bundle_entry *entry, numbered_name *name) {
   const char *slash = strrchr(entry->name, '/'), *base = slash == NULL ? entry->name : slash + 1;
   const char *dot = strrchr(base, '.'), *end = dot == NULL ? base + strlen(base) : dot;
-  hl_raw_slice raw; /* the size and the type of bare voxels, where the name tells them; their numbers are
-                     * not the slice's number */
+  hl_raw_slice raw; /* the size and the type of bare voxels, if the name states them; the numbers in this part
+                     * of the name are not the slice's number */
   hl_payload whole;
   if (hl_slice_is_raw(base) && hl_raw_name(base, &whole) && whole.grid.dimensions[2] != 1) return false;
   if (hl_slice_is_raw(base) && hl_raw_slice_name(base, strlen(base), &raw)) {
@@ -97,7 +97,7 @@ static hl_status list_names(slices_reading *r, size_t *count, hl_error *error) {
   return HL_OK;
 }
 
-/* Chooses the longest series. */
+/* Chooses the series with the most files. */
 static void choose_series(slices_reading *r, size_t count) {
   size_t series = 0;
   for (size_t begin = 0, end; begin < count; begin = end, series++) {
@@ -195,8 +195,8 @@ static hl_status measure(slices_reading *r, hl_slice_stack *stack, hl_error *err
 
 /* ---- the volume ---- */
 
-/* Finds whether the pictures are grey although they are stored in colours: whether the three colours of the
- * middle slice are equal. */
+/* Finds whether the pictures are grey although they are stored in colours: whether red, green and blue are
+ * equal in each pixel of the middle slice. */
 static hl_status find_grey(slices_reading *r, bool *is_grey, hl_error *error) {
   hl_context *context = r->request->context;
   size_t bytes = r->shape.width * r->shape.height * hl_storage_bytes(hl_voxel_type_storage(r->shape.type));
@@ -283,8 +283,8 @@ static hl_status load_file(slices_reading *r, size_t slice, hl_volume **volume, 
   return status;
 }
 
-/* Loads one of the TIFF files that are volumes of their own, as time steps. A file of an OME-TIFF names all
- * other files. */
+/* Loads one of the TIFF files that are volumes of their own, as time steps. Each file of an OME-TIFF data set
+ * names all other files of the set. */
 static hl_status load_stack(slices_reading *r, hl_slice_stack stack, hl_volume **volume, hl_error *error) {
   hl_load_request *request = r->request;
   if (stack == HL_SLICE_OF_OME) return load_file(r, 0, volume, error);

@@ -1,11 +1,11 @@
-/* volume/formats/tiff/tiff.c - reads TIFF and BigTIFF: stacks of pages, OME-TIFF (also of several files), and
- * ImageJ's hyperstacks. */
+/* volume/formats/tiff/tiff.c - reads TIFF and BigTIFF files: stacks of pages, OME-TIFF (also of several
+ * files), and ImageJ's hyperstacks. */
 #include <string.h>
 
 #include "volume/formats/tiff/tiff.h"
 
-/* Returns whether the content is TIFF. DICOM files may begin as TIFF files do, so that one file is both
- * (PS3.10, 7.1); such files are left to the DICOM reader. */
+/* Returns whether the content is TIFF. A DICOM file may begin like a TIFF file, so that the file is valid as
+ * DICOM and as TIFF (PS3.10, 7.1); the DICOM reader reads such files. */
 static bool has_content(const unsigned char *bytes, size_t length) {
   if (length >= 132 && memcmp(bytes + 128, "DICM", 4) == 0) return false;
   return length >= 4 && (memcmp(bytes, "II*\0", 4) == 0 || memcmp(bytes, "MM\0*", 4) == 0 ||

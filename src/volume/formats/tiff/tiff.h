@@ -1,5 +1,5 @@
-/* volume/formats/tiff/tiff.h - reads the pages of a TIFF file. tiff_load.c implements it, or tiff_absent.c in
- * builds without libtiff. */
+/* volume/formats/tiff/tiff.h - reads the pages of a TIFF file. The functions are in tiff_load.c, or in builds
+ * without libtiff in tiff_absent.c. */
 #ifndef HL_VOLUME_TIFF_H
 #define HL_VOLUME_TIFF_H
 
@@ -7,7 +7,7 @@
 #include "volume/io/bundle.h"
 
 /* Loads a TIFF file. archive: the archive that contains the stream's file and the other files of its volume;
- * null if they are in a folder. */
+ * null if the files are in a folder. */
 hl_status hl_tiff_load(hl_stream **stream, const hl_bundle *archive, hl_load_request *request,
                        hl_volume **volume, hl_error *error);
 

@@ -112,8 +112,8 @@ hl_status tiff_file_open(hl_context *context, const char *path, const void *byte
       options, limit > 0 && limit < LARGEST_ALLOCATION ? (tmsize_t)limit : LARGEST_ALLOCATION);
   TIFFOpenOptionsSetErrorHandlerExtR(options, on_error, file);
   TIFFOpenOptionsSetWarningHandlerExtR(options, on_warning, file);
-  /* flags of libtiff: m: the file is not mapped into memory; c: strips are not divided; O: the positions of
-   * strips are read only when they are needed */
+  /* flags of TIFFClientOpenExt(): "r" opens the file for reading; "m" does not map the file into memory; "c"
+   * does not divide strips; "O" reads the positions of strips only when they are needed */
   file->tiff = TIFFClientOpenExt(path, "rmcO", file, read_bytes, write_nothing, seek, close_nothing, size_of,
                                  NULL, NULL, options);
   TIFFOpenOptionsFree(options);
@@ -132,9 +132,9 @@ hl_status tiff_file_fail(const tiff_file *file, const char *what, hl_error *erro
                  file->message);
 }
 
-/* Finds how many bytes a directory takes. This follows from its number of entries. A directory with more
- * entries than any program writes is refused, because libtiff's time grows with the square of their
- * number. */
+/* Finds the number of bytes of a directory, which follows from its number of entries. A directory with more
+ * entries than any program writes is refused, because libtiff's time grows with the square of the number of
+ * entries. */
 static hl_status measure_directory(tiff_file *file, uint64_t offset, uint64_t *bytes, hl_error *error) {
   enum { ENTRIES_MOST = 512 };
   unsigned char head[8] = {0};
@@ -174,7 +174,8 @@ hl_status tiff_file_go(tiff_file *file, uint64_t offset, int level, hl_error *er
 
 /* ---- pages ---- */
 
-/* The voxel type to which samples of this format and number of bits are unpacked; 0 if there is none. */
+/* The voxel type to which samples of this format and number of bits are unpacked; 0 if samples of this kind
+ * cannot be read. */
 static hl_voxel_type type_of(unsigned format, unsigned bits) {
   bool is_signed = format == SAMPLEFORMAT_INT;
   if (format == SAMPLEFORMAT_IEEEFP)
@@ -356,7 +357,7 @@ typedef struct page_reading {
                                   * page */
   unsigned char *chunk;          /* owned; [chunk_bytes] */
   unsigned char *samples;        /* owned; a row of samples of the voxel type */
-  unsigned char *picked;         /* owned; a row of the wanted component */
+  unsigned char *picked;         /* owned; a row of values of the wanted component */
   unsigned char *voxels;
   const tiff_target *target;
 } page_reading;
@@ -423,8 +424,8 @@ static void take_row(page_reading *r, const unsigned char *row, unsigned plane, 
   }
 }
 
-/* Decodes a tile that has several slices. It must be uncompressed or deflated. libtiff cannot do this, as it
- * would treat the tile as one slice. */
+/* Decodes a tile that has several slices. The tile must be uncompressed or deflated. libtiff cannot decode
+ * such a tile, because it treats each tile as one slice. */
 static hl_status decode_deep_tile(page_reading *r, uint32_t index, uint64_t stored, hl_error *error) {
   tiff_file *file = r->file;
   hl_context *context = file->context;
@@ -505,12 +506,12 @@ static hl_status read_chunks(page_reading *r, hl_error *error) {
 }
 
 /* A tile may be larger than its page, but it is refused if it is more than TILE_IN_PAGES times as wide and
- * larger than a megabyte. A small file could otherwise have hundreds of tiny pages whose tiles take
- * seconds. */
+ * larger than a megabyte. Without this limit a small file could have hundreds of tiny pages, whose tiles
+ * would take seconds to decode. */
 enum { TILE_IN_PAGES = 1024, SMALL_TILE_BYTES = 1 << 20 };
 
-/* Finds the sizes of the page's chunks. If a chunk reaches beyond the page, only its rows within the page
- * count. Fails if libtiff computes another length for a chunk's rows. */
+/* Finds the sizes of the page's chunks. If a chunk reaches beyond the page, only the chunk's rows within the
+ * page are counted. Fails if libtiff computes another length for a chunk's rows. */
 static hl_status measure_chunks(page_reading *r, hl_error *error) {
   const tiff_shape *shape = r->shape;
   TIFF *tiff = r->file->tiff;
@@ -531,7 +532,7 @@ static hl_status measure_chunks(page_reading *r, hl_error *error) {
     return hl_fail(error, HL_ERROR_INPUT, "%s: a page in chunks of %u x %u pixels", r->file->path,
                    r->chunk_width, r->chunk_height);
   uint64_t height = r->chunk_height < shape->height ? r->chunk_height : shape->height;
-  /* The height of all slices of a tile together. */
+  /* The rows of a tile with several slices are the rows of all its slices. */
   if (r->chunk_depth > 1) height = (uint64_t)r->chunk_height * r->chunk_depth;
   uint64_t samples = (uint64_t)r->chunk_width * (shape->planar ? 1 : shape->components), bits, bytes;
   uint64_t told = r->tiled ? TIFFTileRowSize64(tiff) : TIFFScanlineSize64(tiff);
@@ -548,7 +549,7 @@ static hl_status measure_chunks(page_reading *r, hl_error *error) {
   return HL_OK;
 }
 
-/* Reads the pixels of a page without libtiff, if its rows follow each other in the file. */
+/* Reads the pixels of a page whose rows follow each other in the file, without libtiff. */
 static hl_status read_plain(page_reading *r, hl_error *error) {
   const tiff_shape *shape = r->shape;
   size_t size = hl_voxel_type_bytes(shape->type), samples = (size_t)shape->width * shape->components;

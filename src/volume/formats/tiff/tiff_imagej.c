@@ -3,9 +3,10 @@
  *
  * Source: ImageJ's ij/io/TiffEncoder.java and TiffDecoder.java. Tag 50839 holds a header and pieces of data.
  * The header has the mark "IJIJ" and, for each kind of data, its four letters and the number of its pieces.
- * Tag 50838 has the length of the header and of each piece. The kind "rang" has one piece, which consists of
- * doubles: a least and a greatest value for each channel. The kind "luts" has a piece for each channel, with
- * its 256 reds, greens and blues. Numbers and letters are in the byte order of the file. */
+ * Tag 50838 has the length of the header and of each piece. Data of the kind "rang" are one piece of doubles:
+ * a least and a greatest value for each channel. Data of the kind "luts" are a piece for each channel, which
+ * has 256 values of red, then of green, then of blue. Numbers and letters are in the byte order of the
+ * file. */
 #include "volume/formats/tiff/tiff_imagej.h"
 
 #include <math.h>

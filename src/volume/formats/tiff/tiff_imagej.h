@@ -8,9 +8,9 @@
 
 enum { TIFF_IMAGEJ_CHANNELS_MOST = 64 };
 
-/* Reads the colours and windows of the channels, in order, from the current page. Names are left out.
- * channels: [TIFF_IMAGEJ_CHANNELS_MOST]. Returns the number of channels; 0 if the page lacks the tag, or if
- * the tag is damaged. */
+/* Reads the colours and windows of the channels, in order, from the current page. The tag's names of channels
+ * are not read. channels: [TIFF_IMAGEJ_CHANNELS_MOST]. Returns the number of channels; 0 if the page lacks
+ * the tag, or if the tag is damaged. */
 size_t tiff_imagej_channels(const tiff_file *file, hl_channel *channels);
 
 #endif

@@ -1,7 +1,7 @@
 /* volume/formats/tiff/tiff_load.c - makes a volume of the pages of a TIFF file.
  *
  * libtiff decodes the pages (tiff_file.h), and tiff_plan.h finds their order. Slices are decoded in parallel.
- * Each thread has a tiff_file of its own. */
+ * Each thread opens a tiff_file of its own. */
 #include "volume/formats/tiff/tiff.h"
 
 #include <math.h>
@@ -18,16 +18,16 @@
 #include "volume/io/parallel.h"
 
 enum {
-  PARALLEL_BYTES = 1 << 20, /* smaller volumes are read by one thread, which takes less time than starting
-                             * others */
+  PARALLEL_BYTES = 1 << 20, /* smaller volumes are read by one thread, because starting more threads would
+                             * take longer */
 };
 
 /* A file, and the offsets of its directories. */
 typedef struct stack_file {
   char *path;                  /* owned */
   const unsigned char *memory; /* [memory_size]; the file's content; null if the file is read */
-  unsigned char *unpacked;     /* owned; the same as `memory` if the content was read here from a pipe or an
-                                * archive; else null */
+  unsigned char *unpacked;     /* owned; equal to `memory` if the content was read into memory from a pipe or
+                                * an archive; else null */
   size_t memory_size;
   uint64_t *offsets; /* owned; [count] */
   size_t count;
@@ -36,22 +36,22 @@ typedef struct stack_file {
 typedef struct stack_reading {
   hl_context *context;
   hl_load_request *request;
-  const hl_bundle *archive; /* the archive that contains the files; null if they are in a folder */
+  const hl_bundle *archive; /* the archive that contains the files; null if the files are in a folder */
   tiff_plan plan;
   stack_file *files; /* owned; [plan.file_count] */
   int level;
   uint64_t plain, plain_bytes; /* if all slices are uncompressed and follow each other: position of the first
                                 * slice's pixels, and bytes of a slice. Both are 0 if libtiff is to decode
                                 * each slice from a page */
-  tiff_shape shape;            /* shape of each slice, at the level */
+  tiff_shape shape;            /* shape of each slice at the chosen level */
   uint32_t width, height;      /* size at level 0 */
   int component;
   hl_destination to;
   struct {
     hl_pool *pool;
     tiff_file *open;  /* owned; [threads]; the file that each thread has open */
-    uint32_t *opened; /* owned; [threads]; the index of the file that each thread has open; UINT32_MAX if
-                       * there is none */
+    uint32_t *opened; /* owned; [threads]; the index of the file that each thread has open; UINT32_MAX if the
+                       * thread has no open file */
   } threads;
 } stack_reading;
 
@@ -65,8 +65,8 @@ static void read_resolution(tiff_file *file, double resolution[2]) {
   resolution[1] = isfinite((double)y) && y > 0 ? (double)y : 0;
 }
 
-/* Drops pages whose shape differs from the first page's shape, and pages that are reduced pictures of
- * others. */
+/* Removes from the list of pages those whose shape differs from the first page's shape, and those that are
+ * reduced copies of other pages. */
 static hl_status drop_other_pages(tiff_file *file, const tiff_shape *first, stack_file *stack,
                                   hl_error *error) {
   size_t kept = 0, others = 0;
@@ -91,7 +91,7 @@ static hl_status drop_other_pages(tiff_file *file, const tiff_shape *first, stac
   return status;
 }
 
-/* The number of resolutions of the current page, its reduced pictures included. */
+/* The number of resolutions of the current page: the page itself and its reduced pictures. */
 static size_t count_levels(tiff_file *file) {
   uint16_t count = 0;
   uint64_t *offsets = NULL;
@@ -128,9 +128,10 @@ static hl_status check_size(const stack_reading *r, tiff_file *file, hl_error *e
       (unsigned long long)file->size);
 }
 
-/* Finds whether the pixels of all slices follow the pixels of the first page, although the file has a page
- * for only one of them. ImageJ writes files above 4 GB in this way, and tifffile can. The slices of a deep
- * page lie in the same way, unless they are tiled. *pages: set to the number of all slices. */
+/* Finds out whether the pixels of all slices follow the first page's pixels, although the file has a
+ * directory for the first page only. ImageJ writes files of more than 4 GB in this way; tifffile can do so,
+ * too. The slices of a page with several slices also follow each other, unless the page is tiled. *pages: set
+ * to the number of all slices. */
 static hl_status find_plain(stack_reading *r, tiff_file *file, const tiff_shape *shape,
                             const char *description, const stack_file *stack, size_t *pages,
                             hl_error *error) {
@@ -160,7 +161,8 @@ static hl_status find_plain(stack_reading *r, tiff_file *file, const tiff_shape 
   return HL_OK;
 }
 
-/* Takes the colours and windows of channels from ImageJ's tag, if the tag has them for all channels. */
+/* Copies the colours and windows of channels from ImageJ's tag, if the tag has colours and windows for all
+ * channels. */
 static hl_status take_imagej(stack_reading *r, const hl_channel *channels, size_t count, hl_error *error) {
   if (count == 0 || count != r->request->selection.channels) return HL_OK;
   hl_status status = hl_channels_make(r->request, error);
@@ -209,7 +211,7 @@ static hl_status read_first(stack_reading *r, tiff_file *file, stack_file *stack
 
 /* ---- the other files ---- */
 
-/* Unpacks a file of the archive, other than the first, into memory. */
+/* Unpacks a file of the archive into memory. The first file is already in memory. */
 static hl_status unpack(stack_reading *r, stack_file *stack, hl_error *error) {
   const char *name = stack->path + strlen(r->archive->path) + 1;
   hl_source *source = NULL;
@@ -239,7 +241,7 @@ static hl_status find_pages(stack_reading *r, size_t index, hl_error *error) {
   return status;
 }
 
-/* Checks that each slice's page exists in its file. */
+/* Checks that the page of each slice exists in the slice's file. */
 static hl_status check_slices(const stack_reading *r, hl_error *error) {
   for (size_t z = 0; z < r->plan.slice_count; z++) {
     const tiff_slice *slice = &r->plan.slices[z];
@@ -331,8 +333,8 @@ static hl_status read_slices(stack_reading *r, hl_error *error) {
 
 /* ---- the volume ---- */
 
-/* Describes the grid. An axis for which no spacing is stated gets the spacing of the first axis that has
- * one. */
+/* Describes the volume's grid. An axis without a stated spacing gets the spacing of the first axis that has a
+ * stated spacing. */
 static void describe(const stack_reading *r, hl_payload *payload) {
   hl_volume_description *grid = &payload->grid;
   double known = 1;

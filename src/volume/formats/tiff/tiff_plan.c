@@ -1,9 +1,10 @@
 /* volume/formats/tiff/tiff_plan.c - finds the order of a TIFF file's pages.
  *
- * OME-XML follows the schema of 2016-06 of the Open Microscopy Environment. The element Pixels has the sizes
- * and the order of dimensions. The elements TiffData say which page of which file holds a plane. In files of
- * ImageJ, the description of the first page has lines "name=value", as ij.io.FileSaver writes them. The
- * planes of such files are ordered by channel, slice and frame. The channel changes fastest. */
+ * OME-XML follows the schema of 2016-06 of the Open Microscopy Environment. The XML element Pixels states the
+ * sizes and the order of the dimensions. The XML elements TiffData say which page of which file holds a
+ * plane. In files of ImageJ, the description of the first page has lines "name=value", as ij.io.FileSaver
+ * writes them. The planes of ImageJ's files are ordered by channel (which changes fastest), slice and
+ * frame. */
 #include "volume/formats/tiff/tiff_plan.h"
 
 #include <halflight/scene.h>
@@ -34,7 +35,7 @@ static hl_status make_slices(tiff_plan *plan, size_t count, const char *path, hl
 
 /* Adds a file to the plan. name: null for the first file. */
 static hl_status add_file(tiff_plan *plan, const char *name, uint32_t *index, hl_error *error) {
-  /* the search begins at the end, as most planes are in the file that was added last */
+  /* the search begins at the last file, because this file holds most of the planes still to be placed */
   for (size_t n = plan->file_count; name != NULL && n-- > 1;)
     if (strcmp(plan->files[n], name) == 0) {
       *index = (uint32_t)n;
@@ -43,7 +44,7 @@ static hl_status add_file(tiff_plan *plan, const char *name, uint32_t *index, hl
   if (plan->file_count >= FILES_MOST)
     return hl_fail(error, HL_ERROR_UNSUPPORTED, "a volume of more than %d files: save it as one",
                    (int)FILES_MOST);
-  /* The list grows when its length is a power of two, as it is full then. */
+  /* The list is full when its length is a power of two; then its capacity is doubled. */
   if ((plan->file_count & (plan->file_count - 1)) == 0) {
     size_t wanted = plan->file_count == 0 ? 1 : 2 * plan->file_count;
     char **larger = hl_reallocate(plan->context, plan->files, wanted, sizeof *larger);
@@ -68,14 +69,14 @@ typedef struct ome_reader {
   char order[3];            /* the letters Z, C and T in the order of the file's axes; the first axis changes
                              * fastest */
   bool in_pixels, done, is_planned;
-  /* The current TiffData. */
+  /* The TiffData element that is being read. */
   struct {
     bool is_open, whole; /* is_open: whether the planes of the element have not been placed yet; whole:
                           * whether the element holds all further planes up to the last */
     size_t first[3], count, page;
   } element;
   size_t placed; /* number of planes placed by all elements */
-  size_t told;   /* number of Channel elements so far */
+  size_t told;   /* number of Channel elements read so far */
   char file[NAME_BYTES];
 } ome_reader;
 
@@ -91,22 +92,22 @@ static bool read_number(const hl_xml_tag *tag, const char *name, size_t other, s
   return text == NULL || (hl_text_sizes(text, number, 1) == 1 && *number <= SIZE_MOST);
 }
 
-/* The length of a voxel along an axis; 0 if the file does not state it. *unit: set to the length of its unit
- * in micrometres, or to 0 if it is no unit of length, such as "pixel". */
+/* The length of a voxel along an axis; 0 if the file does not state it. *unit: set to the length of the
+ * stated unit in micrometres, or to 0 if the unit is no unit of length (for example "pixel"). */
 static double read_length(const hl_xml_tag *tag, char axis, double *unit) {
   char name[] = "PhysicalSizeX", unit_name[] = "PhysicalSizeXUnit";
   name[sizeof name - 2] = axis;
   unit_name[12] = axis;
   const char *text = hl_xml_attribute(tag, name), *told = hl_xml_attribute(tag, unit_name);
   double value;
-  *unit = told != NULL ? hl_micrometres(told) : 1; /* the schema's default */
+  *unit = told != NULL ? hl_micrometres(told) : 1; /* in the schema, micrometres are the default */
   if (text == NULL || !hl_text_number(text, strlen(text), &value) || !(value > 0) || !isfinite(value))
     return 0;
   return value;
 }
 
-/* Reads the lengths of voxels. They become micrometres if every stated length has a known unit; otherwise the
- * numbers are kept as they are. */
+/* Reads the lengths of voxels. The lengths are converted to micrometres if every stated length has a known
+ * unit; otherwise the numbers are not converted. */
 static void read_lengths(ome_reader *ome, const hl_xml_tag *tag) {
   double unit[3], *spacing = ome->plan->spacing;
   bool known = true;
@@ -134,8 +135,7 @@ static hl_status read_pixels(ome_reader *ome, const hl_xml_tag *tag, hl_error *e
   if (order != NULL && strlen(order) == 5 && strchr(order + 2, 'Z') != NULL &&
       strchr(order + 2, 'C') != NULL && strchr(order + 2, 'T') != NULL)
     memcpy(ome->order, order + 2, 3);
-  /* the samples of a pixel are colours, and count as channels in the file: a page holds one plane for each
-   * sample */
+  /* the file counts the samples of a pixel, which are colours, as channels; here they count as one channel */
   if (ome->components > 1 && ome->size[1] % ome->components == 0) ome->size[1] /= ome->components;
   read_lengths(ome, tag);
   ome->in_pixels = true;
@@ -201,14 +201,14 @@ static hl_status begin_planes(ome_reader *ome, const hl_xml_tag *tag, hl_error *
   return tag->is_end ? place_planes(ome, error) : HL_OK;
 }
 
-/* Reads the name of a further file, which must lie beside the first one. Names with a path are refused, as
- * they could lead anywhere. */
+/* Reads the name of a further file, which must lie beside the first one. Names with a path are refused,
+ * because they could name any file of the machine. */
 static hl_status read_file(ome_reader *ome, const hl_xml_tag *tag, hl_error *error) {
   const char *name = hl_xml_attribute(tag, "FileName"), *slash = strrchr(ome->path, '/');
   if (name == NULL) return HL_OK;
   if (strchr(name, '/') != NULL || strlen(name) >= sizeof ome->file || name[0] == 0)
     return fail_ome(ome, "names a file that is not beside it", error);
-  /* if the name is the name of the first file itself, `file` stays empty */
+  /* the member `file` stays empty for the first file's own name */
   if (strcmp(name, slash != NULL ? slash + 1 : ome->path) != 0) strcpy(ome->file, name);
   return HL_OK;
 }
@@ -239,12 +239,12 @@ static hl_status read_tag(ome_reader *ome, const hl_xml_tag *tag, hl_error *erro
   if (tag->is_start && has_name(tag, "TiffData")) return begin_planes(ome, tag, error);
   if (tag->is_start && ome->element.is_open && has_name(tag, "UUID")) return read_file(ome, tag, error);
   if (tag->is_end && ome->element.is_open && has_name(tag, "TiffData")) return place_planes(ome, error);
-  if (tag->is_end && has_name(tag, "Pixels")) ome->done = true; /* only the first image counts */
+  if (tag->is_end && has_name(tag, "Pixels")) ome->done = true; /* only the first image of the file is read */
   return HL_OK;
 }
 
-/* Completes the plan at the end of the XML. If no TiffData says where the planes are, page n is taken to hold
- * plane n. */
+/* Completes the plan at the end of the XML. If no TiffData element says which pages hold the planes, page n
+ * is assumed to hold plane n. */
 static hl_status finish_ome(ome_reader *ome, hl_error *error) {
   if (!ome->in_pixels) return fail_ome(ome, "has no Pixels: is it a companion of another file?", error);
   hl_status status = begin_slices(ome, error);
@@ -289,7 +289,7 @@ static hl_status plan_ome(hl_load_request *request, const char *path, const char
 
 /* ---- ImageJ, and pages alone ---- */
 
-/* The number in the description's line "name=NUMBER"; `other` if there is no such line. */
+/* The number in the description's line "name=NUMBER"; `other` if the description has no such line. */
 static double find_number(const char *description, const char *name, double other) {
   size_t length = strlen(name);
   for (const char *line = description; line != NULL; line = strchr(line, '\n')) {
@@ -328,9 +328,10 @@ static bool is_imagej(const char *description) {
   return description != NULL && strncmp(description, "ImageJ=", 7) == 0;
 }
 
-/* Takes the lengths of voxels from ImageJ's description and the page's resolution. The resolution gives x and
- * y, the description the distance of slices and the units. The unit of y or z is stated only if it differs
- * from the unit of x. Lengths become micrometres if all units are known. */
+/* Takes the lengths of voxels from ImageJ's description and the page's resolution. The resolution states the
+ * lengths along x and y; the description states the distance between slices and the units. The unit of y or z
+ * is stated only if it differs from the unit of x. The lengths are converted to micrometres if all units are
+ * known. */
 static void take_imagej_lengths(hl_load_request *request, const char *description, const double resolution[2],
                                 tiff_plan *plan) {
   static const char *const names[] = {"unit", "yunit", "zunit"};
@@ -360,15 +361,15 @@ typedef struct series_sizes {
 
 enum { SHAPE_MOST = 12 };
 
-/* Gives letters to axes that have none. Counted from the end, before y and x, the axes are z, time and
+/* Assigns letters to axes without letters. Counted from the end, the axes before y and x are z, time and
  * channel. */
 static void name_axes(size_t count, char letters[SHAPE_MOST]) {
   static const char usual[] = "CTZ";
   for (size_t n = 0; n < count; n++) letters[n] = count - n <= 3 ? usual[3 - (count - n)] : 'Q';
 }
 
-/* Finds which of a shape's axes before y and x are times, channels and slices. Returns false if one of these
- * comes more than once. Axes of other letters are slices; neighbouring ones of them are merged. */
+/* Finds which of a shape's axes before y and x are times, channels and slices. Returns false if two axes are
+ * times, channels or slices. Axes of other letters are slices, and neighbouring axes of slices are merged. */
 static bool sort_axes(const size_t *shape, const char *letters, size_t count, series_sizes *sizes) {
   size_t step = 1;
   const series_axis *before = NULL;
@@ -388,8 +389,8 @@ static bool sort_axes(const size_t *shape, const char *letters, size_t count, se
   return true;
 }
 
-/* Reads the description that tifffile writes. Returns false if it describes no series, or one that cannot be
- * read. samples: number of samples of a pixel. */
+/* Reads the description that tifffile writes. Returns false if the text describes no series, or a series that
+ * cannot be read. samples: number of samples of a pixel. */
 static bool read_series(const char *description, size_t samples, series_sizes *sizes) {
   size_t shape[SHAPE_MOST], count = 0;
   char letters[SHAPE_MOST];
@@ -417,7 +418,7 @@ size_t tiff_plan_pages(const char *description, size_t components) {
   return sizes.times.count * sizes.channels.count * sizes.slices.count;
 }
 
-/* Plans the pages in order. */
+/* Plans the volume of a file whose pages stand in the order of the given axes. */
 static hl_status plan_sizes(hl_load_request *request, const char *path, const series_sizes *sizes,
                             tiff_plan *plan, hl_error *error) {
   hl_status status = hl_steps_choose(request, path, sizes->times.count, sizes->channels.count, error);
@@ -431,9 +432,9 @@ static hl_status plan_sizes(hl_load_request *request, const char *path, const se
   return status;
 }
 
-/* Returns whether channels of a single slice are slices. tifffile.imwrite(..., imagej=True) takes the first
- * of three axes as channels, whatever it is. It is taken as slices if there are more channels than a picture
- * can show, and the caller wants none of them by its number or name. */
+/* Returns whether channels of a single slice are slices. tifffile.imwrite(..., imagej=True) writes the first
+ * of three axes as channels, even if it is not an axis of channels. The channels count as slices if a picture
+ * cannot show so great a number of channels, and the caller names no channel. */
 static bool are_slices(const hl_load_request *request, size_t channels, size_t slices) {
   return slices == 1 && channels > HL_CHANNELS_MOST && request->channel < 0 && request->channel_name == NULL;
 }
@@ -468,7 +469,7 @@ static hl_status plan_pages(hl_load_request *request, const char *path, const ch
   bool told = read_series(description, components, &sizes) &&
               hl_multiply(sizes.times.count, sizes.channels.count, &wanted) &&
               hl_multiply(wanted, sizes.slices.count, &wanted) && wanted <= pages;
-  const size_t slices = depth > 1 ? depth : pages; /* a page of several slices is a volume */
+  const size_t slices = depth > 1 ? depth : pages; /* if a page has several slices, each page is a volume */
   if (!told) sizes = (series_sizes){{pages / slices, slices}, {1, 0}, {slices, 1}};
   if (told && wanted < pages)
     hl_log(plan->context, HL_LOG_WARNING,

@@ -1,11 +1,11 @@
-/* volume/formats/tiff/tiff_plan.h - finds which pages of which files make up the volume. It follows OME-XML
- * or ImageJ's description, or takes one page after the other. */
+/* volume/formats/tiff/tiff_plan.h - finds which pages of which files make up the volume. The order follows
+ * OME-XML or a description by ImageJ or tifffile; without a description it is the order of pages. */
 #ifndef HL_VOLUME_TIFF_PLAN_H
 #define HL_VOLUME_TIFF_PLAN_H
 
 #include "volume/formats/format.h"
 
-/* A slice's page. */
+/* The page that holds a slice. */
 typedef struct tiff_slice {
   uint32_t file; /* index into the plan's files */
   uint32_t page; /* index of the directory in its file */
@@ -17,18 +17,18 @@ typedef struct tiff_plan {
   tiff_slice *slices; /* owned; [slice_count]; the pages of the slices along z, at the chosen time step and
                        * channel */
   size_t slice_count;
-  char **files; /* owned; [file_count]; names of the files, which lie beside the first one; files[0] is null,
-                 * and stands for the first file */
+  char **files; /* owned; [file_count]; names of the files, which lie in the folder of the first file;
+                 * files[0] is null, and stands for the first file */
   size_t file_count;
-  double spacing[3]; /* 0 if not told */
+  double spacing[3]; /* lengths of a voxel; 0 if not stated */
   bool is_told;      /* whether a description (OME-XML, or ImageJ's) states the order of pages; otherwise
                       * slices are in the order of pages */
 } tiff_plan;
 
-/* Makes the plan. description: the text in the first page; null if there is none. pages: number of slices in
- * all pages of the first file. components: samples of a pixel. depth: slices of a page. resolution: pixels
- * per unit along x and y in the first page; 0 if the file does not state it. Release the plan also after a
- * failure. */
+/* Makes the plan. description: the text of the first page's ImageDescription; null if the page has no text.
+ * pages: number of slices in all pages of the first file. components: samples of a pixel. depth: slices of a
+ * page. resolution: pixels per unit along x and y in the first page; 0 if the file does not state it. Release
+ * the plan also after a failure. */
 hl_status tiff_plan_make(hl_load_request *request, const char *path, const char *description, size_t pages,
                          size_t components, size_t depth, const double resolution[2], tiff_plan *plan,
                          hl_error *error);

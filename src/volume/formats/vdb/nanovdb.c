@@ -1,9 +1,10 @@
-/* volume/formats/vdb/nanovdb.c - reads the sparse grids of NanoVDB files: smoke, fire and level sets. */
+/* volume/formats/vdb/nanovdb.c - reads sparse grids, such as smoke, fire and level sets, from NanoVDB
+ * files. */
 #include "volume/formats/vdb/nanovdb.h"
 
 #include <string.h>
 
-/* A file of any kind up to version 32.5 begins with "NanoVDB0", and a newer file with "NanoVDB2". */
+/* Files of all kinds up to version 32.5 begin with "NanoVDB0"; newer files begin with "NanoVDB2". */
 static bool has_content(const unsigned char *bytes, size_t length) {
   return length >= 8 && memcmp(bytes, "NanoVDB", 7) == 0 && (bytes[7] == '0' || bytes[7] == '2');
 }

@@ -1,5 +1,5 @@
-/* volume/formats/vdb/nanovdb.h - reads NanoVDB's grids. nanovdb_load.c implements it, or nanovdb_absent.c in
- * a build without PNanoVDB.h. */
+/* volume/formats/vdb/nanovdb.h - reads NanoVDB's grids. The functions are in nanovdb_load.c, or in
+ * nanovdb_absent.c in a build without PNanoVDB.h. */
 #ifndef HL_VOLUME_NANOVDB_H
 #define HL_VOLUME_NANOVDB_H
 

@@ -1,9 +1,9 @@
 /* volume/formats/vdb/nanovdb_bricks.c - makes bricks from a NanoVDB grid of floats.
  *
- * In: a grid's tree. Out: bricks of level 0, of 32^3 cells. A brick whose coefficients, with its margins, are
- * all the same number becomes a constant. This changes no bit of the field. Each brick is read twice, the
- * first time only to find which bricks are constants. Beyond the box of active voxels, the field keeps its
- * values at the box's faces, as in a dense volume. */
+ * In: a grid's tree. Out: bricks of level 0, of 32^3 cells. A brick whose coefficients, margins included, are
+ * all equal is stored as a constant, which changes no bit of the field. Each brick is read twice, the first
+ * time only to find which bricks are constants. Beyond the box of active voxels, the field has the values at
+ * the box's faces, as in a dense volume. */
 #include "volume/formats/vdb/nanovdb_bricks.h"
 
 #include <math.h>
@@ -29,8 +29,8 @@ typedef struct brick_reader {
   float *scratch; /* owned; [threads][2][COEFFICIENTS] */
 } brick_reader;
 
-/* Reads the coefficients of a brick. Its part in the box of active voxels is read into `box`, which is
- * scratch memory. A coefficient beyond the box's faces equals the nearest coefficient at the faces. */
+/* Reads the coefficients of a brick. The brick's part in the box of active voxels is read into `box`, which
+ * is scratch memory. A coefficient beyond the box's faces equals the nearest coefficient at the faces. */
 static hl_status read_brick(const brick_reader *r, size_t number, float *box, float *brick, hl_error *error) {
   const hl_bricks *bricks = r->bricks;
   int64_t first[3];
@@ -61,7 +61,7 @@ static bool is_constant(const float *brick) {
   return memcmp(brick, brick + 1, (COEFFICIENTS - 1) * sizeof *brick) == 0;
 }
 
-/* Finds whether a brick is a constant. */
+/* Reads a brick, and stores whether the brick is a constant. */
 static hl_status look_at_brick(void *data, size_t number, int worker, hl_error *error) {
   const brick_reader *r = data;
   float *box = r->scratch + (size_t)worker * 2 * COEFFICIENTS, *brick = box + COEFFICIENTS;
@@ -79,7 +79,8 @@ static hl_status keep_brick(void *data, size_t number, int worker, hl_error *err
   return slot < 0 ? HL_OK : read_brick(r, number, box, r->bricks->pool + (size_t)slot * COEFFICIENTS, error);
 }
 
-/* Gives slots of the pool to the bricks that are not constant. Returns false if a dense volume is better. */
+/* Assigns slots of the pool to the bricks that are not constant. Returns false if the bricks would take too
+ * large a fraction of a dense volume's memory. */
 static bool number_slots(hl_bricks *bricks, const size_t size[3], size_t entries) {
   for (size_t n = 0; n < entries; n++)
     if (bricks->directory[n].slot >= 0) bricks->directory[n].slot = (int32_t)bricks->slots++;

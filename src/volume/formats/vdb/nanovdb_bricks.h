@@ -7,9 +7,9 @@
 #include "volume/formats/vdb/nanovdb_grid.h"
 
 /* Makes bricks whose coefficients are the grid's voxels, if they take less than 0.6 of the bytes of the box
- * of all active voxels. grid: must have one number in each voxel, which is stored as a 32-bit float.
- * description: as made by nanovdb_grid_describe(). *bricks: owned by the caller (hl_bricks_release). It has
- * no directory if a dense volume is better, or after a failure. */
+ * of all active voxels. grid: a grid whose voxels are single 32-bit floats. description: as made by
+ * nanovdb_grid_describe(). *bricks: owned by the caller (hl_bricks_release). *bricks has no directory after a
+ * failure, or if the bricks would take too many bytes. */
 hl_status nanovdb_bricks_read(const nanovdb_grid *grid, const hl_volume_description *description,
                               hl_bricks *bricks, hl_error *error);
 

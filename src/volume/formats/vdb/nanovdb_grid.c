@@ -1,7 +1,7 @@
-/* volume/formats/vdb/nanovdb_grid.c - walks through a NanoVDB tree on all threads. Each part of the work is
- * one lower node, which has 128^3 voxels.
+/* volume/formats/vdb/nanovdb_grid.c - walks through a NanoVDB tree on all threads. The unit of work of a
+ * thread is a lower node of the tree, which has 128^3 voxels.
  *
- * In index space x runs along the volume's i, y along j, z along k; in a leaf z runs fastest. */
+ * In index space x runs along the volume's i, y along j, z along k; in a leaf, z is the fastest axis. */
 #define PNANOVDB_C
 #define PNANOVDB_BUF_BOUNDS_CHECK
 #include <nanovdb/PNanoVDB.h>
@@ -19,8 +19,8 @@ enum {
   LEAF = 8,
   LOWER = 128,
   LEAF_VOXELS = LEAF * LEAF * LEAF,
-  TILES_MOST = 4096, /* greatest number of tiles of a root, which are examined one by one; a tile has 4096^3
-                      * voxels */
+  TILES_MOST = 4096, /* greatest number of tiles of a root, because the tiles are examined one by one; a tile
+                      * has 4096^3 voxels */
   FPN_LOG_BITS_MOST = 4,
   PARALLEL_VOXELS = 1 << 20
 };
@@ -34,7 +34,7 @@ typedef struct walk {
                             * along each axis */
   size_t count[3];
   hl_voxel_type type;  /* type of the staged values, from which the volume's stored values are made */
-  size_t bytes;        /* bytes of such a value */
+  size_t bytes;        /* bytes of a staged value */
   size_t stored_bytes; /* bytes of a voxel of the volume */
   unsigned char *voxels;
   hl_exact *exact;
@@ -77,7 +77,7 @@ static void begin(const nanovdb_grid *grid, walk *w) {
   w->root = pnanovdb_tree_get_root(w->memory, pnanovdb_grid_get_tree(w->memory, handle));
 }
 
-/* Finds which lower nodes the box meets. */
+/* Finds the range of lower nodes that intersect the box. */
 static void find_lower_nodes(walk *w) {
   for (int a = 0; a < 3; a++) {
     int64_t low = w->low[a], high = w->low[a] + w->size[a] - 1;
@@ -86,7 +86,7 @@ static void find_lower_nodes(walk *w) {
   }
 }
 
-/* Takes the box of active voxels, and finds which lower nodes meet it. */
+/* Makes the box of active voxels the box to read, and finds the lower nodes that intersect the box. */
 static void take_box(walk *w) {
   memcpy(w->low, w->grid->low, sizeof w->low);
   memcpy(w->size, w->grid->box_size, sizeof w->size);
@@ -96,7 +96,7 @@ static void take_box(walk *w) {
 /* The box of the regions of 128^3 voxels in which the tree has nodes or active tiles, and the number of lower
  * nodes. */
 typedef struct tree_extent {
-  int64_t low[3], high[3]; /* the first voxel, and the last one */
+  int64_t low[3], high[3]; /* the first voxel and the last voxel of the box */
   uint64_t lower_nodes;
 } tree_extent;
 
@@ -107,7 +107,8 @@ static void add_cube(const int64_t begin[3], int64_t side, tree_extent *extent) 
   }
 }
 
-/* Adds the regions of an upper node. A word of its masks has 32 regions along z. */
+/* Adds the regions of an upper node to the extent. A 32-bit word of the node's masks stands for 32 regions
+ * along z. */
 static void add_upper(const walk *w, pnanovdb_upper_handle_t upper, const int64_t begin[3],
                       tree_extent *extent) {
   enum { WORDS = PNANOVDB_UPPER_TABLE_COUNT / 32 };
@@ -155,9 +156,9 @@ static hl_status find_extent(const walk *w, tree_extent *extent, hl_error *error
   return HL_OK;
 }
 
-/* Finds the box of active voxels. The box that the file states is cut to the tree's extent, so that a damaged
- * one asks for no more voxels than the tree has regions for. Fails if the box is empty, or if a side needs
- * more than 32 bits. */
+/* Finds the box of active voxels. The box that the file states is clipped to the tree's extent, so that a
+ * damaged box cannot be larger than the extent. Fails if the box is empty, or if a side needs more than 32
+ * bits. */
 static hl_status find_box(const walk *w, nanovdb_grid *grid, hl_error *error) {
   const pnanovdb_coord_t low = pnanovdb_root_get_bbox_min(w->memory, w->root),
                          high = pnanovdb_root_get_bbox_max(w->memory, w->root);
@@ -235,7 +236,7 @@ hl_status nanovdb_grid_describe(nanovdb_grid *grid, hl_volume_description *descr
 
 /* ---- values ---- */
 
-/* Stages one value of the grid: its wanted component, or its magnitude, as a value of the staged type. */
+/* Converts the wanted component of a value of the grid, or the value's magnitude, to the staged type. */
 static void take_value(const walk *w, const unsigned char *from, unsigned char *to) {
   const nanovdb_grid *grid = w->grid;
   if (grid->component != HL_COMPONENT_MAGNITUDE) {
@@ -257,7 +258,8 @@ static void take_value(const walk *w, const unsigned char *from, unsigned char *
   memcpy(to, &magnitude, sizeof magnitude);
 }
 
-/* Finds the bytes of `count` values at an address; null if they are not all within the grid's memory. */
+/* Finds the bytes of `count` values at an address; null if any of the values lies outside of the grid's
+ * memory. */
 static const unsigned char *values_at(const walk *w, pnanovdb_address_t address, size_t count,
                                       size_t *stride) {
   *stride = kinds[w->grid->kind].components * hl_voxel_type_bytes(kinds[w->grid->kind].type);
@@ -292,9 +294,9 @@ static bool stage_quantised(const walk *w, pnanovdb_leaf_handle_t leaf, unsigned
   return true;
 }
 
-/* Stages the values of a leaf whose values are bits. In a mask, a value is whether the voxel is active. In a
- * grid of booleans, the values follow the leaf's mask of active voxels. This is the layout of NanoVDB.h; the
- * offset in PNanoVDB.h is another. */
+/* Stages the values of a leaf whose values are bits. In a mask grid, the value of a voxel is 1 if the voxel
+ * is active. In a grid of booleans, the values follow the leaf's mask of active voxels, as in NanoVDB.h; the
+ * offset in PNanoVDB.h differs. */
 static void stage_bits(const walk *w, pnanovdb_leaf_handle_t leaf, unsigned char *stage) {
   enum { MASK_BYTES = 64 };
   bool active = w->grid->kind == PNANOVDB_GRID_TYPE_MASK;
@@ -304,8 +306,8 @@ static void stage_bits(const walk *w, pnanovdb_leaf_handle_t leaf, unsigned char
     stage[n] = pnanovdb_read_uint32(w->memory, pnanovdb_address_offset(bits, 4 * (n >> 5))) >> (n & 31) & 1;
 }
 
-/* Stages the 512 values of a leaf, in the leaf's order. Returns false if the leaf is not within the grid's
- * memory. */
+/* Stages the 512 values of a leaf, in the leaf's order. Returns false if a part of the leaf lies outside of
+ * the grid's memory. */
 static bool stage_leaf(const walk *w, pnanovdb_leaf_handle_t leaf, unsigned char *stage) {
   uint32_t kind = w->grid->kind;
   if (leaf.address.byte_offset > w->grid->size) return false;
@@ -357,7 +359,7 @@ static unsigned char *voxel_at(const walk *w, int64_t i, int64_t j, int64_t k) {
   return w->voxels + (size_t)((k * w->size[1] + j) * w->size[0] + i) * w->stored_bytes;
 }
 
-/* The number of a voxel in the volume. */
+/* The number of voxel (i, j, k) in the order of the volume's voxels. */
 static size_t number_of(const walk *w, int64_t i, int64_t j, int64_t k) {
   return (size_t)((k * w->size[1] + j) * w->size[0] + i);
 }
@@ -417,7 +419,8 @@ static bool put_lower(const walk *w, pnanovdb_lower_handle_t lower, const int64_
   return sound;
 }
 
-/* Stores the 128^3 voxels from `begin` on. They all lie in the same tile of the root, or all in none. */
+/* Stores the 128^3 voxels from `begin` on. These voxels all lie in the same tile of the root, or in no
+ * tile. */
 static bool put_region(const walk *w, const int64_t begin[3]) {
   uint32_t kind = w->grid->kind;
   const pnanovdb_coord_t place = {(int32_t)begin[0], (int32_t)begin[1], (int32_t)begin[2]};

@@ -25,17 +25,17 @@ typedef struct nanovdb_grid {
 void nanovdb_kind(uint32_t kind, hl_voxel_type *type, size_t *components);
 
 /* Checks the grid's memory, finds the box of active voxels, and sets the description's dimensions, origin and
- * axes to those of the box. */
+ * axes to the dimensions, origin and axes of the box. */
 hl_status nanovdb_grid_describe(nanovdb_grid *grid, hl_volume_description *description, hl_error *error);
 
 /* Reads all voxels [k][j][i] of the box of active voxels, in stored form. description: the box's description,
- * with the volume's type. exact: notes the voxels' numbers. */
+ * with the volume's type. exact: records the voxels' numbers as the file has them. */
 hl_status nanovdb_grid_read(const nanovdb_grid *grid, const hl_volume_description *description, void *voxels,
                             hl_exact *exact, hl_error *error);
 
 /* Reads the voxels [k][j][i] of a part of the box of active voxels as 32-bit floats; the grid's values must
- * have this type. first, size: the part's first voxel and its size, where the box's first voxel is
- * (0,0,0). */
+ * have this type. first, size: the index of the part's first voxel, counted from the box's first voxel
+ * (0,0,0), and the part's size in voxels. */
 hl_status nanovdb_grid_read_box(const nanovdb_grid *grid, const size_t first[3], const size_t size[3],
                                 float *voxels, hl_error *error);
 

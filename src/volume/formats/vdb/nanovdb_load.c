@@ -2,7 +2,7 @@
  * volume.
  *
  * Source: nanovdb/util/IO.h of OpenVDB 10. A segment consists of a header of 16 bytes (mark, version, number
- * of grids, codec), 176 bytes of facts and a name for each grid, and then the grids. All numbers are
+ * of grids, codec), 176 bytes of metadata and a name for each grid, and then the grids. All numbers are
  * little-endian. */
 #include <stdio.h>
 #include <string.h>
@@ -20,7 +20,7 @@
 enum {
   HEADER_BYTES = 16,
   FACTS_BYTES = 176,
-  /* offsets of fields in the facts */
+  /* offsets of fields in the metadata of a grid */
   AT_GRID_BYTES = 0,
   AT_FILE_BYTES = 8,
   AT_VOXELS = 24,
@@ -35,7 +35,7 @@ enum {
 
 typedef enum nanovdb_codec { CODEC_NONE = 0, CODEC_ZIP = 1, CODEC_BLOSC = 2 } nanovdb_codec;
 
-/* A grid in the file. */
+/* The position, the sizes and the name of a grid in the file. */
 typedef struct grid_entry {
   uint64_t at, file_bytes, grid_bytes, voxels;
   uint32_t kind, class, codec;
@@ -93,8 +93,8 @@ static hl_status read_facts(grid_list *list, hl_load_request *request, uint64_t 
   return status == HL_OK ? hl_arrays_add(request, name, components, type, false, error) : status;
 }
 
-/* Reads the facts and names of a segment's grids. The grids themselves follow one after the other, after the
- * facts of all grids. */
+/* Reads the metadata and the names of a segment's grids. The grids themselves stand after the metadata of all
+ * grids, one after the other. */
 static hl_status read_segment(grid_list *list, hl_load_request *request, uint64_t *at, hl_error *error) {
   unsigned char header[HEADER_BYTES];
   hl_status status = read_exactly(list, *at, header, sizeof header, error);
@@ -165,8 +165,8 @@ static hl_status fail_packed(const grid_list *list, hl_error *error) {
                  list->path);
 }
 
-/* Unpacks a grid, piece by piece, into *bytes. This memory is allocated only after the first piece has
- * promised the right size. */
+/* Unpacks a grid, piece by piece, into *bytes. The memory for *bytes is allocated only after the first piece
+ * has stated the right size. */
 static hl_status unpack(const grid_list *list, const grid_entry *entry, unsigned char **bytes,
                         hl_error *error) {
   hl_context *context = hl_source_context(list->source);
@@ -209,8 +209,8 @@ static hl_status read_grid(const grid_list *list, const grid_entry *entry, unsig
 
 /* ---- the volume ---- */
 
-/* Allocates the volume's voxels. A dense volume may take far more memory than its sparse grid; the error
- * states the number of bytes. */
+/* Allocates the volume's voxels. A dense volume may take far more memory than its sparse grid; the error for
+ * a lack of memory states the number of bytes. */
 static hl_status allocate(const grid_list *list, const grid_entry *entry, const hl_volume_description *grid,
                           void **voxels, hl_error *error) {
   hl_context *context = hl_source_context(list->source);

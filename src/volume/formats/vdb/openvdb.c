@@ -1,4 +1,4 @@
-/* volume/formats/vdb/openvdb.c - reads OpenVDB's own files. The context's `convert` callback lets another
+/* volume/formats/vdb/openvdb.c - reads OpenVDB files (.vdb). The context's `convert` callback lets another
  * program convert the files to NanoVDB. */
 #include <stdio.h>
 #include <string.h>
@@ -16,7 +16,7 @@ static hl_status fail_unconverted(const char *path, hl_error *error) {
                  path);
 }
 
-/* The context has no callback. This is so in programs that use the library without one. */
+/* Fails because the program that uses the library has set no `convert` callback. */
 static hl_status fail_without_callback(const char *path, hl_error *error) {
   return hl_fail(
       error, HL_ERROR_UNSUPPORTED,
@@ -29,8 +29,8 @@ static hl_status fail_without_callback(const char *path, hl_error *error) {
 static hl_status load(hl_stream **stream, hl_load_request *request, hl_volume **volume, hl_error *error) {
   const hl_context_options *options = &request->context->options;
   const char *path = (*stream)->path;
-  /* a path to the open file through its descriptor. If the context is confined, the other program would find
-   * another file, or none, at `path` */
+  /* a path to the open file through its descriptor. If the context is confined, `path` itself may lead the
+   * other program to a different file or to no file */
   char opened[40];
   const void *bytes = NULL;
   size_t byte_count = 0;

@@ -1,5 +1,5 @@
-/* volume/formats/vtk/cell_mesh.c - collects a mesh of cells, as cell_mesh.h describes. Source of the types of
- * cells and the order of their points: VTK's file formats, "Linear cell types", and VTK's list of cell
+/* volume/formats/vtk/cell_mesh.c - collects a mesh of cells, as cell_mesh.h describes. Source of the cell
+ * types and of the order of their points: VTK's file formats, "Linear cell types", and VTK's list of cell
  * types. */
 #include "volume/formats/vtk/cell_mesh.h"
 
@@ -17,7 +17,8 @@ enum { TYPES = 82 };
 /* A kind of cell. corner: the indices of the cell's points that become corners of a hexahedron or a
  * tetrahedron. */
 typedef struct cell_kind {
-  signed char points;                  /* least number of points of such a cell; 0 if the type is not read */
+  signed char points;                  /* least number of points of a cell of this type; 0 if the type is not
+                                        * read */
   bool is_curved, is_flat;             /* is_flat: whether the cell is a vertex, a line or a face */
   signed char corner[HL_CELL_CORNERS]; /* -1 for the corners that a tetrahedron does not have */
 } cell_kind;
@@ -164,7 +165,7 @@ static double component_of(const double *values, size_t components, int componen
   return sqrt(sum);
 }
 
-/* Sets the value of each of the piece's points to the mean of the cells around the point. */
+/* Sets the value of each of the piece's points to the mean value of the cells around the point. */
 static hl_status spread(hl_cell_mesh *mesh, const double *values, size_t count, size_t components,
                         int component, hl_error *error) {
   size_t points = mesh->point_count - mesh->first_point;
@@ -200,7 +201,7 @@ hl_status hl_cell_mesh_set_values(hl_cell_mesh *mesh, const double *values, size
 
 /* ---- all steps together ---- */
 
-/* The fraction of matter rises from 0 to 1 over this distance across a wall; voxels. */
+/* The distance in voxels, across a wall, over which the fraction of matter rises from 0 to 1. */
 static const double WALL_WIDTH = 1;
 
 static void tell(const hl_cell_mesh *mesh) {
@@ -230,7 +231,8 @@ static void tell_difference(const hl_cell_mesh *mesh, double bound) {
            mesh->subject, mesh->cell_count, bound);
 }
 
-/* Keeps the field that is continued beyond the walls, and the walls, with the volume. grid: the volume's. */
+/* Stores in the volume that its field is continued beyond the walls, and stores the walls. grid: the volume's
+ * grid. */
 static hl_status keep_wall(const hl_cell_mesh *mesh, hl_cells_wall *wall, const hl_volume_description *grid,
                            hl_volume *volume, hl_error *error) {
   hl_volume_description wide = *grid;

@@ -1,5 +1,5 @@
-/* volume/formats/vtk/cell_mesh.h - collects a mesh of cells in VTK's terms, piece by piece, and makes a
- * volume of it. */
+/* volume/formats/vtk/cell_mesh.h - collects a mesh of VTK's cells, piece by piece, and makes a volume of the
+ * mesh. */
 #ifndef HL_VOLUME_CELL_MESH_H
 #define HL_VOLUME_CELL_MESH_H
 
@@ -13,8 +13,8 @@ typedef struct hl_cell_mesh {
   double *points;      /* owned; [point_count][3] */
   float *values;       /* owned; [point_count]; NaN until they are set */
   hl_cell *cells;      /* owned; [cell_count]; the cells that enclose a volume */
-  size_t *sources;     /* owned; [cell_count]; for each cell, the index of the cell in its piece from which it
-                        * was made */
+  size_t *sources;     /* owned; [cell_count]; for each cell, the index in the piece of the file's cell from
+                        * which it was made */
   size_t point_count, cell_count, cell_room;
   size_t first_point, first_cell;    /* indices of the first point and the first cell of the current piece */
   size_t left_out, flat, simplified; /* left_out: number of cells of kinds that are not read; flat: number of
@@ -23,7 +23,8 @@ typedef struct hl_cell_mesh {
 } hl_cell_mesh;
 
 /* Chooses the array and the component to read, for a grid of cells whose arrays are listed in the request.
- * active: index of the array that the file calls active; -1 if there is none. path: starts error lines. */
+ * active: index of the array that the file marks as active; -1 if the file marks none. path: starts error
+ * lines. */
 hl_status hl_cell_mesh_choose(hl_load_request *request, const char *path, int active, hl_error *error);
 
 /* Begins a piece with `count` points, whose coordinates are copied. points: [count][3]. */
@@ -31,7 +32,7 @@ hl_status hl_cell_mesh_begin_piece(hl_cell_mesh *mesh, const double *points, siz
 
 /* Adds the piece's cells. types: [count]; VTK's numbers of the cells' types. corners: [corner_count]; indices
  * of the piece's points, from 0, cell after cell. ends: [count]; for each cell, the index in `corners` after
- * its last one. */
+ * the cell's last corner. */
 hl_status hl_cell_mesh_add_cells(hl_cell_mesh *mesh, const double *types, const double *ends, size_t count,
                                  const double *corners, size_t corner_count, hl_error *error);
 
@@ -39,8 +40,8 @@ hl_status hl_cell_mesh_add_cells(hl_cell_mesh *mesh, const double *types, const 
 hl_status hl_cell_mesh_add_grid(hl_cell_mesh *mesh, const size_t size[3], hl_error *error);
 
 /* Sets the piece's values. values: [count][components]; component: an index, or HL_COMPONENT_MAGNITUDE.
- * of_cells: whether values belong to the piece's cells instead of its points; then a point gets the mean of
- * the cells around it. */
+ * of_cells: whether values belong to the piece's cells instead of its points; then the value of a point is
+ * the mean value of the cells around the point. */
 hl_status hl_cell_mesh_set_values(hl_cell_mesh *mesh, const double *values, size_t count, size_t components,
                                   int component, bool of_cells, hl_error *error);
 

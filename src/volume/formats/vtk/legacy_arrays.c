@@ -47,7 +47,8 @@ hl_status hl_legacy_vtk_type(const hl_legacy_vtk *file, const char *name, hl_vox
       {"unsigned_short", HL_VOXEL_U16},
       {"short", HL_VOXEL_I16},
       {"unsigned_int", HL_VOXEL_U32},
-      {"int|vtkIdType", HL_VOXEL_I32}, /* VTK writes indices as int, whatever their size in memory is */
+      {"int|vtkIdType", HL_VOXEL_I32}, /* VTK writes indices (vtkIdType) as int, independently of their size
+                                        * in memory */
       {"unsigned_long|vtktypeuint64", HL_VOXEL_U64},
       {"long|vtktypeint64", HL_VOXEL_I64},
       {"float", HL_VOXEL_F32},
@@ -79,7 +80,7 @@ static hl_status skip_values(hl_legacy_vtk *file, size_t count, size_t value_byt
   return HL_OK;
 }
 
-/* The most values that an array may have. */
+/* The greatest number of values of an array. */
 static const size_t VALUES_MOST = SIZE_MAX / 8;
 
 /* Checks the type and the size of an array, and passes it to the file's `meet` function. */
@@ -122,8 +123,8 @@ static hl_status read_scalars(hl_legacy_vtk *file, const char *arguments, hl_err
              : status;
 }
 
-/* Reads a line "VECTORS name type", or the same with another keyword that has a fixed number of
- * components. */
+/* Reads the line "VECTORS name type", or the line of another keyword with a fixed number of components, such
+ * as NORMALS. */
 static hl_status read_vectors(hl_legacy_vtk *file, const char *kind, size_t components, const char *arguments,
                               hl_error *error) {
   char name[WORD_BYTES], type[WORD_BYTES];
@@ -181,7 +182,7 @@ static hl_status read_color_scalars(hl_legacy_vtk *file, const char *arguments, 
               "unsigned_char", error);
 }
 
-/* Skips the metadata that newer files add after an array. They end with an empty line. */
+/* Skips the metadata that newer files add after an array. The metadata end with an empty line. */
 static hl_status skip_metadata(hl_legacy_vtk *file, hl_error *error) {
   char line[HL_LINE_BYTES];
   bool ended;
@@ -191,10 +192,10 @@ static hl_status skip_metadata(hl_legacy_vtk *file, hl_error *error) {
   return status;
 }
 
-/* Skips a text in a binary file. It begins with its length, in one, two, four or eight bytes; the first two
- * bits state this number of bytes. Then its characters follow (vtkDataWriter). */
+/* Skips a text in a binary file. The text begins with its length, in one, two, four or eight bytes; the first
+ * two bits state the number of these bytes. The characters follow (vtkDataWriter). */
 static hl_status skip_binary_string(hl_legacy_vtk *file, hl_error *error) {
-  static const size_t more[4] = {7, 3, 1, 0}; /* number of bytes of the length after the first */
+  static const size_t more[4] = {7, 3, 1, 0}; /* number of bytes of the length after its first byte */
   unsigned char first, rest[7];
   hl_status status = hl_stream_read_all(file->stream, &first, 1, error);
   if (status == HL_OK) status = hl_stream_read_all(file->stream, rest, more[first >> 6], error);
@@ -217,8 +218,8 @@ static hl_status skip_other(hl_legacy_vtk *file, const char *type, size_t values
   return status;
 }
 
-/* Reads "FIELD name n" and the n arrays that follow. Each of them is a line "name components tuples type" and
- * its values. */
+/* Reads "FIELD name n" and the n arrays that follow. Each array consists of a line "name components tuples
+ * type" and of values. */
 static hl_status read_fields(hl_legacy_vtk *file, const char *arguments, hl_error *error) {
   char word[WORD_BYTES], line[HL_LINE_BYTES];
   const char *cursor = arguments;
@@ -230,7 +231,7 @@ static hl_status read_fields(hl_legacy_vtk *file, const char *arguments, hl_erro
     hl_status status = hl_legacy_vtk_line(file, line, &ended, error);
     if (status != HL_OK || ended) return status;
     cursor = line;
-    /* An empty line is only the end of the line with the values before. */
+    /* An empty line is the end of the last line of the values before. */
     if (!hl_text_word(&cursor, word, sizeof word)) continue;
     if (hl_text_equal(word, "METADATA")) {
       status = skip_metadata(file, error);

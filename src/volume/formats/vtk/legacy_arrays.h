@@ -16,7 +16,8 @@ typedef struct hl_legacy_array {
   bool of_points;   /* whether the array belongs to POINT_DATA */
   bool of_neither;  /* whether the array stands before POINT_DATA and CELL_DATA, so that it belongs to the
                      * file itself */
-  bool is_fraction; /* whether a text has fractions from 0 to 1, which stand for 0 to 255 */
+  bool is_fraction; /* whether the values in a text file are fractions from 0 to 1, which stand for 0 to
+                     * 255 */
 } hl_legacy_array;
 
 typedef struct hl_legacy_vtk hl_legacy_vtk;
@@ -30,12 +31,13 @@ struct hl_legacy_vtk {
   bool in_point_data, has_section; /* has_section: whether a line POINT_DATA or CELL_DATA has been read */
   size_t tuples;                   /* number of tuples of each array in the current section, POINT_DATA or
                                     * CELL_DATA */
-  bool found;                      /* set by `meet` to end reading. The stream is then at the values of the
-                                    * array */
-  /* Called for each array, when its values come next. The function reads the values, skips them by
-   * hl_legacy_vtk_skip(), or sets file->found. */
+  bool found;                      /* set by `meet` to end reading; the stream then stands at the values of
+                                    * the array */
+  /* The reader calls meet() for each array, when the stream stands at the array's values. The function reads
+   * the values, skips them by hl_legacy_vtk_skip(), or sets file->found. */
   hl_status (*meet)(hl_legacy_vtk *file, const hl_legacy_array *array, hl_error *error);
-  /* Called for all other keywords, which describe a data set's geometry. */
+  /* The reader calls keyword() for all keywords that do not begin arrays, such as keywords of a data set's
+   * geometry. */
   hl_status (*keyword)(hl_legacy_vtk *file, const char *keyword, const char *arguments, hl_error *error);
 };
 
@@ -44,7 +46,7 @@ bool hl_legacy_vtk_has_content(const unsigned char *bytes, size_t length);
 /* Reads the file up to its end, or until file->found. */
 hl_status hl_legacy_vtk_read(hl_legacy_vtk *file, hl_error *error);
 
-/* Reads the next line. *ended: whether there are no more lines. */
+/* Reads the next line. *ended: set to whether the file has no further line. */
 hl_status hl_legacy_vtk_line(hl_legacy_vtk *file, char line[HL_LINE_BYTES], bool *ended, hl_error *error);
 
 /* Fails with `message "text"` and the line's number. */

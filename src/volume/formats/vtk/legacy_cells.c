@@ -2,8 +2,8 @@
  *
  * A first pass reads the geometry and lists the arrays under POINT_DATA and CELL_DATA. A second pass goes to
  * the values of the chosen array. Before version 5.1 of the format, the cells are one list of counts and
- * points. Later they are two lists, OFFSETS and CONNECTIVITY. Source: VTK's file formats, "Legacy File
- * Formats", and vtkDataWriter. */
+ * points. Since version 5.1 the cells are two lists, OFFSETS and CONNECTIVITY. Source: VTK's file formats,
+ * "Legacy File Formats", and vtkDataWriter. */
 #include "volume/formats/vtk/legacy_cells.h"
 
 #include <string.h>
@@ -15,14 +15,14 @@
 #include "volume/io/numbers.h"
 #include "volume/io/text.h"
 
-/* Numbers of the file. */
+/* A list of numbers that was read from the file. */
 typedef struct number_list {
   double *numbers; /* owned; [count] */
   size_t count;
 } number_list;
 
 typedef struct cells_file {
-  hl_legacy_vtk file; /* this member must be the first one: callbacks get its address, and use it as the
+  hl_legacy_vtk file; /* must be the first member, because callbacks convert the address of this member to the
                        * address of the whole struct */
   hl_load_request *request;
   bool is_curvilinear;
@@ -35,7 +35,8 @@ typedef struct cells_file {
                                  * them */
   bool lists;                   /* whether this is the first pass, in which arrays are listed */
   size_t arrays;                /* number of arrays met so far in this pass that can hold the volume */
-  hl_legacy_array chosen;       /* the chosen array, in the second pass; its texts are not valid */
+  hl_legacy_array chosen;       /* the chosen array, in the second pass; the texts `kind` and `name` in it are
+                                 * not valid */
 } cells_file;
 
 bool hl_legacy_is_of_cells(const char *kind) {
@@ -44,7 +45,7 @@ bool hl_legacy_is_of_cells(const char *kind) {
 
 /* ---- geometry ---- */
 
-/* Reads a list of numbers. If an earlier pass has read the list already, it is replaced. */
+/* Reads a list of numbers. A list that an earlier pass has read is replaced. */
 static hl_status read_list(cells_file *cells, const char *type_name, size_t count, number_list *list,
                            hl_error *error) {
   hl_number_code code = {.text = cells->file.text, .big_endian = true};
@@ -117,8 +118,8 @@ static hl_status read_keyword(hl_legacy_vtk *file, const char *keyword, const ch
 
 /* ---- arrays ---- */
 
-/* The `meet` function, called for each array. Arrays that belong to the file itself, and colours, cannot hold
- * the volume. */
+/* The `meet` function, called for each array. Arrays before POINT_DATA and CELL_DATA, and arrays of colours,
+ * cannot become the volume. */
 static hl_status meet_array(hl_legacy_vtk *file, const hl_legacy_array *array, hl_error *error) {
   cells_file *cells = (cells_file *)file;
   const bool usable = !array->of_neither && !array->is_fraction;

@@ -4,8 +4,8 @@
  * A file begins with three lines: the mark, the title, and ASCII or BINARY. Lines with keywords follow. A
  * first pass lists the arrays under POINT_DATA and CELL_DATA (SCALARS, COLOR_SCALARS, VECTORS, NORMALS,
  * TENSORS, TEXTURE_COORDINATES and the arrays of a FIELD), up to the first unknown keyword; a second pass
- * stops at the values of the chosen array. A pipe cannot be read twice. It is read only once, up to the array
- * with the wanted name or, without a name, up to the first array of one component. */
+ * stops at the values of the chosen array. A pipe cannot be read twice. A pipe is read once, up to the array
+ * with the wanted name or, if the caller names no array, up to the first array of one component. */
 #include <string.h>
 
 #include "core/memory.h"
@@ -19,13 +19,13 @@
 #include "volume/io/text.h"
 
 typedef struct vtk_header {
-  hl_legacy_vtk file; /* this member must be the first one: callbacks get its address, and use it as the
+  hl_legacy_vtk file; /* must be the first member, because callbacks convert the address of this member to the
                        * address of the whole struct */
   hl_payload payload;
   bool has_dimensions, is_rectilinear, is_of_cells;
   double *coordinates[3]; /* owned; the coordinates of a rectilinear grid; null for other grids */
   size_t counts[3];
-  size_t tuples; /* number of tuples of the volume's array, set when it is found */
+  size_t tuples; /* number of tuples of the volume's array, set when the array is found */
   hl_load_request *request;
   bool of_cells; /* whether the volume's array has values for cells instead of points */
   bool lists;    /* whether this is the first pass, in which arrays are listed */
@@ -42,13 +42,13 @@ static bool is_wanted(const vtk_header *header, const hl_legacy_array *array, si
   return request->array != NULL ? strcmp(request->array, array->name) == 0 : array->components == 1;
 }
 
-/* The `meet` function, called for each array. It stops reading at the volume's array. */
+/* The `meet` function, called for each array. The function stops reading at the volume's array. */
 static hl_status meet_array(hl_legacy_vtk *file, const hl_legacy_array *array, hl_error *error) {
   vtk_header *header = (vtk_header *)file;
   size_t index = header->arrays;
   hl_status status = HL_OK;
   const size_t *n = header->payload.grid.dimensions;
-  /* an array of the file itself can hold the volume if it has a value for each point */
+  /* an array before POINT_DATA and CELL_DATA can become the volume if the array has a value for each point */
   bool usable = !array->of_neither || (header->has_dimensions && array->tuples > 1 &&
                                        (double)array->tuples == (double)n[0] * (double)n[1] * (double)n[2]);
   bool of_cells = !array->of_points && !array->of_neither;
@@ -64,7 +64,7 @@ static hl_status meet_array(hl_legacy_vtk *file, const hl_legacy_array *array, h
   header->payload.grid.type = array->type;
   header->payload.components = array->components;
   header->payload.block = 1;
-  /* VTK's mappers take bytes as colours. */
+  /* VTK shows arrays of unsigned bytes as colours. */
   if (array->type == HL_VOXEL_U8) header->payload.colors = HL_COLORS_MEANT;
   header->tuples = array->tuples;
   header->of_cells = of_cells;
@@ -149,7 +149,7 @@ static void release(vtk_header *header) {
   }
 }
 
-/* Returns whether an error can be ignored, because a suitable array was listed before it. */
+/* Returns whether an error can be ignored, because a suitable array was listed before the error occurred. */
 static bool is_enough(const hl_load_request *request, hl_status status) {
   if (status != HL_ERROR_INPUT && status != HL_ERROR_UNSUPPORTED) return false;
   for (size_t n = 0; n < request->array_count; n++)
@@ -159,7 +159,8 @@ static bool is_enough(const hl_load_request *request, hl_status status) {
   return false;
 }
 
-/* Finds the chosen array, and goes to its values. Errors in the file after these values are ignored. */
+/* Finds the chosen array, and moves the stream to its values. Errors in the file after these values are
+ * ignored. */
 static hl_status find_volume(hl_stream **stream, hl_load_request *request, vtk_header *header,
                              hl_error *error) {
   *header = begin(*stream, request, true);
@@ -183,8 +184,9 @@ static hl_status find_volume(hl_stream **stream, hl_load_request *request, vtk_h
   return hl_legacy_vtk_read(&header->file, error);
 }
 
-/* Changes the grid of points to the grid of the cells between them. Along each axis with several points there
- * is one cell fewer than points, and the first cell lies half a step further. */
+/* Changes the grid of points to the grid of the cells between them. Along each axis with several points, the
+ * number of cells is one less than the number of points, and the first cell's centre lies half a step after
+ * the first point. */
 static void move_to_cells(hl_volume_description *grid) {
   for (int axis = 0; axis < 3; axis++) {
     if (grid->dimensions[axis] < 2) continue;

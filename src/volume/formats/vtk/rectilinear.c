@@ -12,13 +12,13 @@
 static const double EVEN = 1e-3;
 enum { TIMES_MOST = 4 };
 
-/* An axis of the new grid, and the places of its voxels among the voxels of the old grid. */
+/* An axis of the new grid, and the positions of its voxels among the voxels of the old grid. */
 typedef struct axis_map {
   size_t count;       /* number of voxels of the new grid */
-  double first, step; /* in the world */
+  double first, step; /* coordinate of the first voxel, and step between voxels, in the world */
   bool even;
-  size_t *below;  /* owned; [count]; for each new voxel, the old voxel at the same place, or else the last one
-                   * before it */
+  size_t *below;  /* owned; [count]; for each new voxel, the old voxel at the same position, or else the last
+                   * old voxel before this position */
   double *weight; /* owned; [count]; the weight of the old voxel after `below` */
 } axis_map;
 
@@ -36,8 +36,8 @@ static bool is_even(const double *c, size_t count) {
   return true;
 }
 
-/* Finds the old voxels around each new one. of_cells: whether c holds the edges of the old cells, [voxels +
- * 1]; otherwise it holds the old points, [voxels]. */
+/* Finds the old voxels around each new voxel, and their weights. of_cells: whether c holds the edges of the
+ * old cells, [voxels + 1]; otherwise it holds the old points, [voxels]. */
 static void fill_map(const double *c, size_t voxels, bool of_cells, axis_map *map) {
   double way = map->step > 0 ? 1 : -1;
   for (size_t n = 0, at = 0; n < map->count; n++) {
@@ -76,8 +76,8 @@ static double number_at(const hl_volume *v, size_t i, size_t j, size_t k) {
   return hl_row_number(hl_volume_numbers(v, j, k, NULL), i) * v->value_scale + v->value_offset;
 }
 
-/* The weighted mean of the old voxels around a new one. Along even axes, and for cells, only one voxel has a
- * weight. */
+/* The weighted mean of the old voxels around a new voxel. Along an even axis, and for cells, a single old
+ * voxel has the whole weight. */
 static double sample(const hl_volume *v, const axis_map map[3], size_t i, size_t j, size_t k) {
   double sum = 0;
   const size_t at[3] = {i, j, k};

@@ -1,8 +1,8 @@
 /* volume/formats/vtk/vthb.c - reads VTK's overlapping AMR (.vthb), which is an XML file that lists levels and
  * boxes of cells. The values of each box are in a .vti file of its own.
  *
- * The XML file names the .vti files relative to its own folder. A box is given by six numbers: along each of
- * x, y and z, the numbers of its first and its last cell in the level. The spacing of a level is the size of
+ * The XML file names the .vti files relative to its own folder. A box is given by six numbers: for each of x,
+ * y and z, the indices in the level of the box's first and last cell. The spacing of a level is the size of
  * the level's cells. The boxes of the first level are the domain. */
 #include <math.h>
 #include <string.h>
@@ -63,7 +63,7 @@ static hl_status read_box_tag(amr_list *list, const hl_xml_tag *tag, hl_error *e
   double numbers[6];
   amr_box made = {.level = list->level};
   if (list->level < 0) return refuse(list, "a DataSet outside of a Block", file, error);
-  if (file == NULL) return HL_OK; /* a box that another process wrote */
+  if (file == NULL) return HL_OK; /* a box without a file was written by another process */
   if (box == NULL || hl_text_numbers(box, numbers, 6) != 6)
     return refuse(list, "a DataSet's amr_box", box, error);
   for (int axis = 0; axis < 3; axis++) {
@@ -143,7 +143,7 @@ static hl_status find_shape(const amr_list *list, hl_amr_shape *shape, hl_error 
 
 /* ---- boxes ---- */
 
-/* Adds a box, whose voxels are in `piece`, to the adaptive grid. */
+/* Adds the voxels of `piece`, which are a box's cells, to the adaptive grid. */
 static hl_status add_voxels(amr_list *list, hl_amr *amr, const amr_box *box, const hl_volume *piece,
                             hl_error *error) {
   const size_t *n = box->count;

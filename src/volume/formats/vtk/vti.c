@@ -2,9 +2,10 @@
  * several files (.pvti): ascii, base64 and appended arrays, plain or in compressed blocks.
  *
  * A first pass over the tags lists the arrays of the first piece. The volume is the array that the caller
- * named. Without a name it is the array of the active scalars, else the first array of one component at
- * points, else the first one at cells. A second pass goes to the values, piece by piece. World: Origin +
- * Direction * (Spacing * index), where the first point has the extent's first index. */
+ * named. If the caller names no array, the volume is the array of the active scalars, else the first array of
+ * one component at points, else the first array of one component at cells. A second pass reads the values,
+ * piece by piece. World: Origin + Direction * (Spacing * index), where the first point has the extent's first
+ * index. */
 #include <math.h>
 #include <string.h>
 
@@ -53,9 +54,9 @@ typedef struct vti_header {
   size_t piece_count, piece_room, entry_count, entry_room;
   section section;
   char active[HL_VTK_NAME_BYTES];  /* name of the section's active scalars */
-  int active_points, active_cells; /* indices of the active scalars at points and at cells; -1 if there are
-                                    * none */
-  hl_load_request *request;        /* lists the same arrays */
+  int active_points, active_cells; /* indices of the arrays of active scalars at points and at cells; -1 if
+                                    * the file marks none */
+  hl_load_request *request;        /* the request to load the volume; lists the arrays of the first piece */
 } vti_header;
 
 static hl_status read_numbers(const vti_header *header, const hl_xml_tag *tag, const char *name,
@@ -65,8 +66,8 @@ static hl_status read_numbers(const vti_header *header, const hl_xml_tag *tag, c
   return hl_vtk_xml_refuse(&header->xml, HL_ERROR_INPUT, name, value, error);
 }
 
-/* Reads an extent. If it is absent, `extent` is not changed. An extent may be empty, which means that a last
- * index is less than the first. */
+/* Reads an extent from an attribute. If the attribute is absent, `extent` is not changed. An extent is empty
+ * if a last index is less than the first index. */
 static hl_status read_extent(vti_header *header, const hl_xml_tag *tag, const char *name, double extent[6],
                              bool may_be_empty, hl_error *error) {
   const char *value = hl_xml_attribute(tag, name);
@@ -200,14 +201,14 @@ static void make_grid(const vti_header *header, const double extent[6], bool cel
   }
   for (int axis = 0; axis < 3; axis++) {
     bool between = cells && extent[2 * axis + 1] > extent[2 * axis];
-    double first = extent[2 * axis] + (between ? 0.5 : 0); /* cells are centred between points */
+    double first = extent[2 * axis] + (between ? 0.5 : 0); /* a cell's centre lies between points */
     for (int row = 0; row < 3; row++) grid->origin[row] += first * grid->axis[axis][row];
   }
 }
 
-/* The index of the array that is read by default. It is the active scalars at points, if there are any. If
- * not, it is the active scalars at cells, unless there is an array of one component at points. In all other
- * cases the result is -1. */
+/* The index of the array that is read by default. The result is the active scalars at points. If the file
+ * marks none, the result is the active scalars at cells, unless the file has an array of one component at
+ * points. In all other cases the result is -1. */
 static int active_array(const vti_header *header) {
   if (header->active_points >= 0) return header->active_points;
   for (size_t n = 0; n < header->request->array_count; n++)
@@ -232,7 +233,7 @@ static bool is_empty(const vti_piece *piece) {
   return e[1] < e[0] || e[3] < e[2] || e[5] < e[4];
 }
 
-/* Finds the chosen array in a piece; null if the piece lacks it. */
+/* Finds the chosen array in a piece; null if the piece lacks this array. */
 static const vti_entry *entry_of(const vti_header *header, size_t piece) {
   const hl_array_entry *chosen = &header->request->arrays[header->request->chosen];
   for (size_t n = 0; n < header->entry_count; n++) {
@@ -259,7 +260,7 @@ static hl_status describe(const vti_header *header, const vti_piece *piece, cons
   bool alone = header->piece_count == 1;
   if (!alone) payload->colors = HL_COLORS_UNREAD;
   else if (payload->grid.type == HL_VOXEL_U8)
-    payload->colors = HL_COLORS_MEANT; /* VTK's mappers take bytes as colours */
+    payload->colors = HL_COLORS_MEANT; /* VTK shows unsigned bytes as colours */
   status = hl_volume_check_grid(&payload->grid, header->xml.stream->path, error);
   return status == HL_OK
              ? hl_component_choose(header->request, header->xml.stream->path, false, payload, error)
@@ -291,7 +292,7 @@ static void place_of(const vti_header *header, const vti_piece *piece, size_t fi
   }
 }
 
-/* Reads all pieces of this file, and copies each to its place in the whole volume. */
+/* Reads all pieces of this file, and copies each piece into the whole volume. */
 static hl_status read_pieces(hl_stream **stream, vti_header *header, hl_volume **volume, hl_error *error) {
   const vti_piece whole = {.extent = {header->grid.extent[0], header->grid.extent[1], header->grid.extent[2],
                                       header->grid.extent[3], header->grid.extent[4],
@@ -313,7 +314,7 @@ static hl_status read_pieces(hl_stream **stream, vti_header *header, hl_volume *
      * promise any size */
     if (status == HL_OK && pieces.to.context == NULL)
       status = hl_pieces_begin(header->request->context, &grid, (*stream)->path, &pieces, error);
-    if (status == HL_OK) pieces.to.path = (*stream)->path; /* the path of the stream that is open now */
+    if (status == HL_OK) pieces.to.path = (*stream)->path; /* the path of the stream that is currently open */
     if (status == HL_OK) status = hl_pieces_put(&pieces, piece, first, error);
     hl_volume_release(piece);
   }
@@ -324,7 +325,7 @@ static hl_status read_pieces(hl_stream **stream, vti_header *header, hl_volume *
   return status;
 }
 
-/* Reads the coordinates of a rectilinear grid, and changes the volume's place accordingly. */
+/* Reads the coordinates of a rectilinear grid, and places the volume's voxels at these coordinates. */
 static hl_status place_rectilinear(hl_stream **stream, vti_header *header, hl_volume **volume,
                                    hl_error *error) {
   hl_context *context = header->request->context;
@@ -363,7 +364,8 @@ static hl_status place_rectilinear(hl_stream **stream, vti_header *header, hl_vo
 static hl_status load_image(hl_stream **stream, hl_load_request *request, bool nested, hl_volume **volume,
                             hl_error *error);
 
-/* Reads one of several files as a volume. part: the request for this file; the caller owns its lists. */
+/* Reads one of several files as a volume. part: the request to load this file; the caller owns the request's
+ * lists. */
 static hl_status read_part(const vti_header *header, size_t index, hl_load_request *part, hl_volume **volume,
                            hl_error *error) {
   hl_stream *stream = NULL;
@@ -375,8 +377,8 @@ static hl_status read_part(const vti_header *header, size_t index, hl_load_reque
   return status;
 }
 
-/* The grid of the whole volume, if it consists of several files. It has the type of the first file's volume.
- * of_cells: whether the first file's values belong to cells. */
+/* The grid of a volume that consists of several files. The grid's voxel type is the type of the first file's
+ * volume. of_cells: whether the first file's values belong to cells. */
 static hl_volume_description grid_of_parts(const vti_header *header, const hl_volume *part, bool of_cells) {
   hl_volume_description grid;
   hl_volume_description_defaults(&grid);
@@ -437,8 +439,9 @@ static hl_status read_parts(const vti_header *header, hl_volume **volume, hl_err
 
 /* ---- all steps together ---- */
 
-/* Completes the list of pieces. A file without any Piece gets one, which has the whole extent. If there is
- * one piece, the whole extent becomes that of the piece, unless further pieces may have been cut off. */
+/* Completes the list of pieces. A file without any Piece gets a piece with the whole extent. If the file has
+ * one piece, the whole extent is set to the extent of this piece, unless further pieces may have been cut
+ * off. */
 static hl_status finish_pieces(vti_header *header, hl_error *error) {
   if (header->piece_count == 0 && header->grid.has_extent) {
     hl_status status = grow(header, (void **)&header->pieces, 0, &header->piece_room, sizeof *header->pieces,

@@ -16,7 +16,7 @@ static const char *const section_names[HL_VTK_NO_SECTION] = {"Points", "Cells", 
 
 /* ---- tags ---- */
 
-/* Reads the extent of a curvilinear piece, "x0 x1 y0 y1 z0 z1", which counts points. */
+/* Reads the extent of a curvilinear piece, "x0 x1 y0 y1 z0 z1", in indices of points. */
 static hl_status read_extent(const hl_vtk_pieces *file, const hl_xml_tag *tag, hl_vtk_piece *piece,
                              hl_error *error) {
   const char *value = hl_xml_attribute(tag, "Extent");

@@ -143,7 +143,7 @@ hl_status hl_vtk_xml_array_tag(const hl_vtk_xml *xml, const hl_xml_tag *tag, hl_
   return HL_OK;
 }
 
-/* Finds the appended data, which begin after the first '_'. */
+/* Finds the position of the appended data, which begin after the first '_'. */
 hl_status hl_vtk_xml_appended_tag(hl_vtk_xml *xml, const hl_xml_tag *tag, hl_error *error) {
   const char *encoding = hl_xml_attribute(tag, "encoding");
   xml->appended_is_base64 = encoding == NULL || strcmp(encoding, "base64") == 0;

@@ -2,7 +2,7 @@
  * curvilinear grids (.vts).
  *
  * A first pass over the tags lists the pieces and their arrays. A second pass reads the points, the cells and
- * the chosen array piece by piece. Arrays are chosen as in image data (vti.c). */
+ * the chosen array piece by piece. The array is chosen by the same rules as in image data (vti.c). */
 #include <halflight/grids.h>
 #include <math.h>
 #include <string.h>
@@ -22,7 +22,8 @@ enum { TYPES = sizeof types / sizeof *types };
 typedef struct grid_file {
   hl_load_request *request;
   hl_vtk_pieces pieces;
-  int chosen_active; /* index of the active scalars in the request's list of arrays; -1 if there are none */
+  int chosen_active; /* index of the active scalars in the request's list of arrays; -1 if the file marks
+                      * none */
 } grid_file;
 
 /* Lists in the request the arrays of the first piece that hold values of points or cells. */
@@ -140,7 +141,7 @@ static hl_status load(hl_stream **stream, hl_load_request *request, hl_volume **
                     .pieces = {.context = request->context, .types = types, .type_count = TYPES},
                     .chosen_active = -1};
   hl_cell_mesh mesh = {.context = request->context};
-  char *path = hl_copy_text(request->context, (*stream)->path); /* arrays open the stream anew */
+  char *path = hl_copy_text(request->context, (*stream)->path); /* reading an array opens the stream anew */
   file.pieces.xml.stream = *stream;
   hl_status status = path != NULL ? read_pieces_of(&file, error) : hl_fail_memory(error, 1, "a path");
   mesh.subject = path;

@@ -16,17 +16,17 @@ typedef enum hl_zarr_compressor {
   HL_ZARR_DEFLATE, /* zlib or gzip */
   HL_ZARR_ZSTD,
   HL_ZARR_BLOSC,
-  HL_ZARR_LZ4, /* a block of LZ4; before it stands the size of the unpacked block, in four bytes */
+  HL_ZARR_LZ4, /* four bytes with the size of the unpacked block, and then a block of LZ4 */
   HL_ZARR_BZIP2,
   HL_ZARR_XZ
 } hl_zarr_compressor;
 
-/* The kinds of filters. Filters change the values or the bytes of a chunk before it is packed. */
+/* The kinds of filters. Filters change the values or the bytes of a chunk before the chunk is packed. */
 typedef enum hl_zarr_filter_kind {
-  HL_ZARR_SHUFFLE, /* the bytes were reordered: first the first bytes of all elements, then their second
-                    * bytes, and so on */
-  HL_ZARR_DELTA,   /* the differences of neighbouring values were stored */
-  HL_ZARR_OFFSET   /* FixedScaleOffset: (value - offset) * scale was stored, rounded */
+  HL_ZARR_SHUFFLE, /* the chunk holds the first bytes of all elements, then the second bytes of all elements,
+                    * and so on */
+  HL_ZARR_DELTA,   /* the chunk holds the differences of neighbouring values */
+  HL_ZARR_OFFSET   /* FixedScaleOffset: the chunk holds the rounded (value - offset) * scale */
 } hl_zarr_filter_kind;
 
 typedef struct hl_zarr_filter {
@@ -39,7 +39,7 @@ typedef struct hl_zarr_filter {
 
 enum { HL_ZARR_FILTERS_MOST = 4 };
 
-/* The coding by which the voxels of a chunk become bytes. */
+/* The way in which the voxels of a chunk are coded as bytes. */
 typedef struct hl_zarr_codecs {
   int order[HL_ZARR_AXES_MOST]; /* the array's axes in the order of a chunk's voxels, the slowest axis
                                  * first */
@@ -55,15 +55,17 @@ typedef struct hl_zarr_array {
   char folder[HL_ZARR_PATH_BYTES]; /* folder of the array in the bundle; "" or ending with '/' */
   int version;                     /* 2 or 3 */
   int rank;
-  uint64_t shape[HL_ZARR_AXES_MOST], chunk[HL_ZARR_AXES_MOST]; /* [rank]; in voxels */
-  char axis_name[HL_ZARR_AXES_MOST][HL_ZARR_NAME_BYTES];       /* "" if absent */
+  uint64_t shape[HL_ZARR_AXES_MOST], chunk[HL_ZARR_AXES_MOST]; /* [rank]; size of the array and of a chunk in
+                                                                * voxels */
+  char axis_name[HL_ZARR_AXES_MOST][HL_ZARR_NAME_BYTES];       /* [rank]; names of the axes; "" if absent */
   hl_voxel_type type;
   size_t chunk_bytes;    /* bytes of a chunk's voxels */
   unsigned char fill[8]; /* the value of voxels in missing chunks, native byte order */
   hl_zarr_codecs codecs;
   char separator;        /* separator of the numbers in the names of chunks: '.' or '/' */
   bool separator_untold; /* in version 2: whether the metadata do not state the separator. In this case, a
-                          * chunk whose name with '.' is missing is searched under its name with '/' */
+                          * chunk that is not found under its name with '.' is searched under its name with
+                          * '/' */
   bool has_prefix;       /* whether names of chunks begin with "c" */
   struct {
     bool are_used;                    /* whether files are shards, which hold several chunks */

@@ -41,8 +41,7 @@ hl_status hl_zarr_type_3(const hl_zarr_reading *r, const char *name) {
 /* ---- fill values ---- */
 
 static void store_integer(hl_voxel_type type, int64_t value, unsigned char fill[8]) {
-  /* the low bytes of the number in two's complement are the stored number, whether the type is signed or
-   * not */
+  /* for signed and unsigned types, the stored number is the low bytes of the number in two's complement */
   uint8_t byte = (uint8_t)value;
   uint16_t word = (uint16_t)value;
   uint32_t wide = (uint32_t)value;
@@ -54,13 +53,13 @@ static void store_integer(hl_voxel_type type, int64_t value, unsigned char fill[
   }
 }
 
-/* Converts a double to binary16. Further bits of the fraction are cut off; fill values of such an array have
- * none. */
+/* Converts a double to binary16. Bits of the fraction beyond binary16 are cut off; fill values of arrays of
+ * binary16 have no such bits. */
 static uint16_t half_of(double value) {
   int exponent;
   uint16_t sign = signbit(value) ? 0x8000 : 0;
   if (isnan(value)) return 0x7e00;
-  double mantissa = frexp(fabs(value), &exponent); /* in [1/2, 1) */
+  double mantissa = frexp(fabs(value), &exponent); /* the mantissa is in [1/2, 1) */
   if (value == 0) return sign;
   if (isinf(value) || exponent > 16) return sign | 0x7c00;
   if (exponent < -13) return sign | (uint16_t)ldexp(fabs(value), 24);
@@ -75,8 +74,8 @@ static void store_real(hl_voxel_type type, double value, unsigned char fill[8]) 
   else memcpy(fill, &value, sizeof value);
 }
 
-/* Stores a number that is written as a text: a decimal number, "NaN", "Infinity", "-Infinity", or its bits,
- * such as "0x7fc00000". */
+/* Stores a fill value that is written as a text: a decimal number, "NaN", "Infinity", "-Infinity", or the
+ * bits of the number, such as "0x7fc00000". */
 static bool store_text(hl_voxel_type type, const char *text, unsigned char fill[8]) {
   double value;
   if (hl_text_number(text, strlen(text), &value)) {
@@ -158,8 +157,8 @@ static hl_status fail_filter(const hl_zarr_reading *r, const char *name) {
       hl_text_printable(shown, name != NULL ? name : "?"));
 }
 
-/* Finds the type that a filter states for `key`, or `other` if it states none. The type must be little-endian
- * or of single bytes. */
+/* Finds the type that a filter states for `key`, or `other` if the filter states no type. The type must be
+ * little-endian or have a single byte. */
 static bool filter_type(const json_t *filter, const char *key, hl_voxel_type other, hl_voxel_type *type) {
   hl_zarr_array array = {.rank = 0};
   hl_error unused = {0};
@@ -207,8 +206,7 @@ hl_status hl_zarr_filters_2(const hl_zarr_reading *r, const json_t *list) {
   return HL_OK;
 }
 
-/* Takes the codec of a transposition. "order" is a permutation: stored axis n is axis order[n] of the
- * array. */
+/* Reads the codec "transpose". Its "order" is a permutation: stored axis n is axis order[n] of the array. */
 static hl_status take_transpose(const hl_zarr_reading *r, const json_t *configuration,
                                 hl_zarr_codecs *codecs) {
   const json_t *order = json_object_get(configuration, "order");

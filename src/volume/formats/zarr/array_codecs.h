@@ -1,5 +1,5 @@
 /* volume/formats/zarr/array_codecs.h - finds types, fill values and codecs of an array by their names. Each
- * function sets its part of the array. */
+ * function sets a part of the array's description. */
 #ifndef HL_VOLUME_ZARR_ARRAY_CODECS_H
 #define HL_VOLUME_ZARR_ARRAY_CODECS_H
 
@@ -15,16 +15,16 @@ typedef struct hl_zarr_reading {
 #define hl_zarr_reading_fail(r, code, ...) \
   hl_zarr_fail((r)->bundle, (r)->array->folder, (r)->error, code, __VA_ARGS__)
 
-/* Takes a type of version 2, such as "<u2", which also states the byte order. */
+/* Reads a type of Zarr version 2, such as "<u2", which also states the byte order. */
 hl_status hl_zarr_type_2(const hl_zarr_reading *r, const char *name);
-/* Takes a type of version 3, such as "uint16". */
+/* Reads a type of Zarr version 3, such as "uint16". */
 hl_status hl_zarr_type_3(const hl_zarr_reading *r, const char *name);
-/* Takes the filters of version 2, in the order in which they were applied. They are undone in the opposite
- * order. */
+/* Reads the filters of Zarr version 2, in the order in which they were applied. Chunks are decoded in the
+ * opposite order. */
 hl_status hl_zarr_filters_2(const hl_zarr_reading *r, const json_t *list);
 hl_status hl_zarr_compressor_2(const hl_zarr_reading *r, const json_t *compressor);
 hl_status hl_zarr_codecs_3(const hl_zarr_reading *r, const json_t *list, hl_zarr_codecs *codecs);
-/* Takes the fill value. If it is null, the fill value is 0. */
+/* Reads the fill value. The JSON value null stands for the fill value 0. */
 hl_status hl_zarr_fill_value(const hl_zarr_reading *r, const json_t *value);
 
 #endif

@@ -83,7 +83,7 @@ static hl_status read_version_2(const hl_zarr_reading *r, const json_t *node) {
 
 /* ---- version 3 ---- */
 
-/* The member `key` of an extension's "configuration". */
+/* Returns the member `key` of the "configuration" of an extension, such as a codec. */
 static json_t *configured(const json_t *extension, const char *key) {
   return json_object_get(json_object_get(extension, "configuration"), key);
 }
@@ -99,7 +99,7 @@ static hl_status read_chunk_names(const hl_zarr_reading *r, const json_t *encodi
   return read_separator(r, configured(encoding, "separator"), plain ? '/' : '.');
 }
 
-/* Reads the codec of a sharded array. Each chunk of the array's chunk grid is then a shard, which is a file
+/* Reads the codec of a sharded array. In a sharded array, each chunk of the chunk grid is a shard: a file
  * with several inner chunks. */
 static hl_status read_shards(const hl_zarr_reading *r, const json_t *codec) {
   hl_zarr_array *array = r->array;

@@ -1,7 +1,7 @@
 /* volume/formats/zarr/chunk.c - converts a chunk's bytes in a file to its voxels: checksums, codecs, filters.
  *
  * The size of an unpacked chunk is known from the metadata, and data that unpack to another size are refused.
- * If packed data state their unpacked size, it is checked before any memory is allocated. */
+ * If packed data state their unpacked size, the size is checked before memory is allocated. */
 #include "volume/formats/zarr/chunk.h"
 
 #include <math.h>
@@ -27,7 +27,7 @@ void hl_zarr_unpacker_release(hl_zarr_unpacker *unpacker) {
 /* ---- check sums ---- */
 
 uint32_t hl_zarr_crc32c(const unsigned char *bytes, size_t length) {
-  enum { REFLECTED = 0x82f63b78 }; /* the polynomial 0x1EDC6F41, lowest bit first */
+  enum { REFLECTED = 0x82f63b78 }; /* the polynomial 0x1EDC6F41 with its bits in reverse order */
   uint32_t table[256], sum = 0xffffffff;
   for (uint32_t n = 0; n < 256; n++) {
     table[n] = n;
@@ -96,7 +96,7 @@ static hl_status unpack_zstd(hl_zarr_unpacker *u, packed_bytes packed, hl_error 
 }
 #endif
 
-/* Unpacks LZ4, bzip2 or xz. A block of LZ4 has its unpacked size, in four bytes, before it. */
+/* Unpacks LZ4, bzip2 or xz. In front of a block of LZ4 stands the block's unpacked size, in four bytes. */
 static hl_status unpack_other(hl_zarr_unpacker *u, packed_bytes packed, hl_error *error) {
   hl_zarr_compressor kind = u->array->codecs.compressor;
   bool lz4 = kind == HL_ZARR_LZ4, sound = !lz4 || packed.length >= 4;
@@ -148,7 +148,7 @@ static double number_of(hl_voxel_type type, const unsigned char *bytes) {
   } while (0)
 
 /* Stores a number as bytes of a type, the least significant byte first. Whole numbers wrap around at the ends
- * of the type's range, as the sums of differences do. */
+ * of the type's range, like the sums of differences. */
 static void put_number(hl_voxel_type type, double value, unsigned char *bytes) {
   bool whole = type != HL_VOXEL_F32 && type != HL_VOXEL_F64;
   if (whole && !(fabs(value) < 0x1p62)) value = 0;
@@ -218,7 +218,7 @@ static size_t filtered_bytes(const hl_zarr_array *array) {
   return bytes;
 }
 
-/* Undoes the filters, beginning with the one that was applied last. *voxels is set to the unpacker's own
+/* Undoes the filters, beginning with the filter that was applied last. *voxels is set to the unpacker's own
  * memory. */
 static hl_status undo_filters(hl_zarr_unpacker *u, const unsigned char **voxels, hl_error *error) {
   const hl_zarr_array *array = u->array;
@@ -258,7 +258,7 @@ static hl_status read_packed(hl_zarr_unpacker *u, hl_source *source, uint64_t of
              : status;
 }
 
-/* The bytes of a chunk before packing. */
+/* The number of bytes of a chunk before the chunk was packed, with its inner checksums. */
 static size_t unpacked_bytes(const hl_zarr_array *array) {
   return filtered_bytes(array) + 4 * (size_t)array->codecs.inner_checks;
 }

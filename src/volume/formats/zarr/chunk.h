@@ -1,4 +1,4 @@
-/* volume/formats/zarr/chunk.h - unpacks chunks. */
+/* volume/formats/zarr/chunk.h - reads and unpacks chunks of a Zarr array. */
 #ifndef HL_VOLUME_ZARR_CHUNK_H
 #define HL_VOLUME_ZARR_CHUNK_H
 
@@ -12,9 +12,9 @@ typedef struct hl_zarr_unpacker {
   const hl_zarr_array *array;
   unsigned char *packed; /* owned; [capacity] */
   size_t capacity;
-  size_t unpacked;         /* number of bytes that a chunk unpacks to */
+  size_t unpacked;         /* number of bytes of an unpacked chunk */
   unsigned char *filtered; /* owned; room for two states of a chunk, before and after a filter is undone; null
-                            * if there are no filters */
+                            * if the array has no filters */
   unsigned char *voxels;   /* owned; [array->chunk_bytes], followed by a checksum */
   void *zstd;              /* owned; zstd's own memory */
 } hl_zarr_unpacker;
@@ -29,7 +29,7 @@ void hl_zarr_unpacker_release(hl_zarr_unpacker *unpacker);
 hl_status hl_zarr_chunk_read(hl_zarr_unpacker *unpacker, hl_source *source, uint64_t offset, uint64_t length,
                              const unsigned char **voxels, hl_error *error);
 
-/* The CRC32C of RFC 3720, section 12.1. */
+/* The CRC32C checksum of RFC 3720, section 12.1. */
 uint32_t hl_zarr_crc32c(const unsigned char *bytes, size_t length);
 /* Returns whether the last four bytes are the CRC32C of all bytes before them, least significant byte
  * first. */

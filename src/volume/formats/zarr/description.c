@@ -45,7 +45,7 @@ hl_status hl_zarr_name_labels(const json_t *ome, hl_volume *volume, hl_error *er
   return HL_OK;
 }
 
-/* A colour in hexadecimal digits, as "00FF00". */
+/* Reads a colour of six hexadecimal digits, such as "00FF00". */
 static bool read_color(const char *text, double srgb[3]) {
   if (text == NULL || strlen(text) != 6 || strspn(text, "0123456789abcdefABCDEF") != 6) return false;
   for (int c = 0; c < 3; c++) {

@@ -33,7 +33,7 @@ static hl_zarr_axis axis_of_name(const char *name) {
   return HL_ZARR_OTHER;
 }
 
-/* Gives kinds to axes without known names. Counted from the last one, the axes are x, y, z, channel and
+/* Assigns kinds to axes without known names. Counted from the last axis, the kinds are x, y, z, channel and
  * time. */
 static void take_places(int rank, hl_zarr_axis *axis) {
   static const hl_zarr_axis from_end[] = {HL_ZARR_X, HL_ZARR_Y, HL_ZARR_Z, HL_ZARR_CHANNEL, HL_ZARR_TIME};
@@ -48,8 +48,8 @@ static bool names_are_known(int rank, const hl_zarr_axis *axis) {
   return seen[HL_ZARR_X] == 1 && seen[HL_ZARR_Y] == 1;
 }
 
-/* Reads the axes. unit: set to the factors by which lengths become micrometres, if all axes of space have
- * known units; otherwise all set to 1. Returns whether they all have known units. */
+/* Reads the axes. unit: set to the factors that convert lengths to micrometres, if all axes of space have
+ * known units; otherwise set to 1. Returns whether all axes of space have known units. */
 static bool read_axes(const json_t *axes, int rank, hl_zarr_axis *axis, double unit[3]) {
   bool told = json_array_size(axes) == (size_t)rank, all = true;
   for (int n = 0; n < rank && told; n++) {
@@ -71,7 +71,8 @@ static bool read_axes(const json_t *axes, int rank, hl_zarr_axis *axis, double u
 
 /* ---- transformations ---- */
 
-/* Applies a list of scales and translations to a level, one after the other: x -> scale x + translation. */
+/* Applies a list of scales and translations to a level's coordinates, one after the other: x -> scale x +
+ * translation. */
 static hl_status apply(const hl_bundle *bundle, const char *folder, const json_t *transformations, int rank,
                        hl_zarr_level *level, hl_error *error) {
   for (size_t t = 0; t < json_array_size(transformations); t++) {

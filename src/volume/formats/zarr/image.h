@@ -29,20 +29,20 @@ typedef struct hl_zarr_level {
 
 typedef struct hl_zarr_image {
   hl_context *context;
-  hl_zarr_axis axis[HL_ZARR_AXES_MOST]; /* axes of every level's array */
-  hl_zarr_level *levels;                /* owned; [level_count]; the finest first */
+  hl_zarr_axis axis[HL_ZARR_AXES_MOST]; /* the kinds of axes, the same for the arrays of all levels */
+  hl_zarr_level *levels;                /* owned; [level_count]; the levels, the finest level first */
   int level_count;
   bool has_unit; /* whether lengths are micrometres */
   char name[HL_PRINTABLE_BYTES];
 } hl_zarr_image;
 
-/* Reads the metadata of an image. ome: the attributes of the group in `folder`, with "multiscales". Release
- * *image also after a failure. */
+/* Reads the metadata of an image. ome: the attributes of the group in `folder`, which include "multiscales".
+ * Release *image also after a failure. */
 hl_status hl_zarr_image_read(const hl_bundle *bundle, const char *folder, const json_t *ome,
                              hl_zarr_image *image, hl_error *error);
 
-/* Describes an array that has no metadata of OME-Zarr. The names of its axes tell their kinds. Without known
- * names, the last three axes are z, y, x. */
+/* Describes an array that has no metadata of OME-Zarr. The kind of each axis follows from its name. If the
+ * names are not known, the last three axes are z, y, x. */
 hl_status hl_zarr_image_of_array(const hl_bundle *bundle, const hl_zarr_array *array, hl_zarr_image *image,
                                  hl_error *error);
 void hl_zarr_image_release(hl_zarr_image *image);

@@ -100,7 +100,7 @@ hl_status hl_zarr_metadata_read(const hl_bundle *bundle, const char *folder, con
   hl_status status = read_text(bundle, folder, name, &text, &length, error);
   if (status == HL_OK && text != NULL) {
     *object = hl_plain_json_load(text, length, 0, &fault);
-    if (*object == NULL && fault.line < 1) /* jansson had no memory for its first buffer */
+    if (*object == NULL && fault.line < 1) /* jansson could not allocate its first buffer */
       status = hl_fail_memory(error, length, folder);
     else if (*object == NULL)
       status = hl_zarr_fail(bundle, folder, error, HL_ERROR_INPUT, "%s, line %d: %s", name, fault.line,

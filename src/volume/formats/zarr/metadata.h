@@ -9,25 +9,25 @@
 enum { HL_ZARR_PATH_BYTES = 512, HL_ZARR_METADATA_BYTES_MOST = 4 << 20 };
 
 /* Fetches the metadata files of the groups or arrays in `count` folders, in one request, if the bundle is a
- * store on a server. Does nothing for other bundles. */
+ * store on a server. The function does nothing if the bundle is a folder or an archive. */
 hl_status hl_zarr_metadata_bring(const hl_bundle *bundle, const char (*folders)[HL_ZARR_PATH_BYTES],
                                  size_t count, hl_error *error);
 
-/* Reads the JSON object in the file folder + name. *object is null if there is no such file, else owned by
- * the caller (json_decref). */
+/* Reads the JSON object in the file folder + name. *object is null if the file does not exist; otherwise the
+ * caller owns *object (json_decref). */
 hl_status hl_zarr_metadata_read(const hl_bundle *bundle, const char *folder, const char *name,
                                 json_t **object, hl_error *error);
 
 /* Reads the attributes of the group or array in `folder`, from `zarr.json` or `.zattrs`. *attributes is null
- * if there are none. */
+ * if the group or array has no attributes. */
 hl_status hl_zarr_attributes_read(const hl_bundle *bundle, const char *folder, json_t **attributes,
                                   hl_error *error);
 
-/* The attributes that belong to OME-Zarr, borrowed. In version 0.5 they are the member "ome", and in version
- * 0.4 all attributes. */
+/* The attributes that belong to OME-Zarr, borrowed. In OME-Zarr 0.5 these attributes are the member "ome"; in
+ * version 0.4 all attributes are returned. */
 const json_t *hl_zarr_ome(const json_t *attributes);
 
-/* Fails with "PATH/FOLDER...: WHAT". */
+/* Fails with an error that begins with the path of the bundle and the folder: "PATH/FOLDER...: WHAT". */
 __attribute__((format(printf, 5, 6))) hl_status hl_zarr_fail(const hl_bundle *bundle, const char *folder,
                                                              hl_error *error, hl_status code,
                                                              const char *format, ...);

@@ -1,7 +1,7 @@
 /* volume/formats/zarr/series.c - lists the images of a collection.
  *
  * Sources: the layout `bioformats2raw.layout` 3, plates ("plate") and wells ("well") of OME-NGFF 0.4 and 0.5.
- * The first field of each well of a plate is listed. */
+ * For a plate, the first field of each well is listed. */
 #include "volume/formats/zarr/series.h"
 
 #include <math.h>
@@ -15,7 +15,7 @@
 
 enum { SERIES_MOST = 256 };
 
-/* Adds the image in base/path to the list. *found: false if there is none. */
+/* Adds the image in base/path to the list. *found: set to false if no image has this path. */
 static hl_status add_image(const hl_bundle *bundle, const char *base, const char *path,
                            hl_load_request *request, bool *found, hl_error *error) {
   char folder[HL_ZARR_PATH_BYTES];
@@ -53,8 +53,8 @@ static hl_status list_numbered(const hl_bundle *bundle, const char *base, hl_loa
   return status;
 }
 
-/* Lists the images of an array of objects, such as the fields of a well. list: the array; each object's
- * "path", followed by `tail`, is the path of an image. */
+/* Lists the images of an array of objects, such as the fields of a well. list: the JSON array of objects. An
+ * object's "path", followed by `tail`, is the path of an image. */
 static hl_status list_paths(const hl_bundle *bundle, const char *base, const json_t *list, const char *tail,
                             hl_load_request *request, hl_error *error) {
   hl_status status = HL_OK;

@@ -4,7 +4,8 @@
 
 #include <stdlib.h>
 
-/* The bytes that arrive in the time of one more request: at 50 Mbit/s in 10 ms. */
+/* The number of bytes that arrive in the time of a further request, if a request takes 10 ms and the
+ * connection has 50 Mbit/s. */
 enum { BYTES_OF_A_REQUEST = 1 << 16 };
 
 size_t hl_zarr_index_bytes(const hl_zarr_array *array) {
@@ -45,7 +46,7 @@ static uint64_t gap_before(const hl_fetch_range *range) {
   return range[0].begin - range[-1].begin - range[-1].count;
 }
 
-/* Joins ranges that overlap or touch. ranges: in rising order. */
+/* Joins ranges that overlap or touch. ranges: sorted by their begins. */
 static size_t join_touching(hl_fetch_range *ranges, size_t count) {
   size_t joined = 0;
   for (size_t n = 0; n < count; n++) {
@@ -57,7 +58,8 @@ static size_t join_touching(hl_fetch_range *ranges, size_t count) {
   return joined;
 }
 
-/* Joins ranges with at most `gap` bytes between them, but not at the first `kept` gaps of exactly that size.
+/* Joins ranges with at most `gap` bytes between them. The first `kept` gaps of exactly `gap` bytes are not
+ * joined.
  */
 static size_t join(hl_fetch_range *ranges, size_t count, uint64_t gap, size_t kept) {
   size_t joined = 1;
@@ -85,7 +87,7 @@ size_t hl_zarr_spans_join(hl_fetch_range *ranges, size_t count) {
   count = join_touching(ranges, count);
   if (count_wider(ranges, count, BYTES_OF_A_REQUEST) <= GAPS_MOST)
     return join(ranges, count, BYTES_OF_A_REQUEST, 0);
-  /* the least width that fewer than GAPS_MOST + 1 gaps exceed, by bisection */
+  /* a bisection finds the least width that at most GAPS_MOST gaps exceed */
   uint64_t low = BYTES_OF_A_REQUEST, high = UINT64_MAX;
   while (high - low > 1) {
     uint64_t middle = low + (high - low) / 2;

@@ -1,15 +1,15 @@
-/* volume/formats/zarr/shard.h - reads the index of a shard, which states the places of its chunks, and finds
- * the parts of the file that hold the wanted chunks.
+/* volume/formats/zarr/shard.h - reads the index of a shard, which states the positions of the shard's chunks,
+ * and finds the parts of the file that hold the wanted chunks.
  *
- * Source: the Zarr codec `sharding_indexed`. The index has 16 bytes for each chunk, its place and its length
- * in the file, both of 64 bits, least significant byte first; both are 2^64 - 1 for a chunk that is
- * missing. */
+ * Source: the Zarr codec `sharding_indexed`. The index has 16 bytes for each chunk: its position in the file
+ * and its length, two numbers of 64 bits, least significant byte first. For a missing chunk, position and
+ * length are 2^64 - 1. */
 #ifndef HL_VOLUME_ZARR_SHARD_H
 #define HL_VOLUME_ZARR_SHARD_H
 
 #include "volume/formats/zarr/array.h"
 
-/* The number of bytes of a shard's index, with its check sum. */
+/* The number of bytes of a shard's index, including the checksum. */
 size_t hl_zarr_index_bytes(const hl_zarr_array *array);
 
 /* The range of bytes of a shard's file in which the index lies. */
@@ -23,9 +23,9 @@ bool hl_zarr_index_find(const hl_zarr_array *array, const unsigned char *index, 
 
 enum { HL_ZARR_SPANS_MOST = 512 };
 
-/* Joins the ranges of chunks, in any order, to at most HL_ZARR_SPANS_MOST ranges that hold all of them, in
- * rising order. Ranges stay apart only if more bytes lie between them than arrive in the time of one more
- * request. Returns the number of ranges that are left. */
+/* Joins the ranges of chunks, in any order, to at most HL_ZARR_SPANS_MOST ranges that contain all given
+ * ranges, in rising order. Two ranges are not joined if more bytes lie between them than arrive in the time
+ * of a further request. Returns the number of joined ranges. */
 size_t hl_zarr_spans_join(hl_fetch_range *ranges, size_t count);
 
 #endif

@@ -1,7 +1,7 @@
-/* volume/formats/zarr/voxels.c - reads chunks on all threads and puts their voxels in their places.
+/* volume/formats/zarr/voxels.c - reads chunks on all threads, and stores their voxels in the volume.
  *
- * Each part of the work is one chunk. The chunk's file may be a shard, which holds several chunks. The parts
- * of a shard have consecutive numbers. A missing chunk holds the fill value. */
+ * The work is divided into parts. Each part is one chunk, whose file may be a shard with several chunks. The
+ * parts of a shard have consecutive numbers. A missing chunk holds the fill value. */
 #define _GNU_SOURCE
 #include "volume/formats/zarr/voxels.h"
 
@@ -18,24 +18,24 @@
 #include "volume/io/parallel.h"
 
 enum {
-  PARALLEL_VOXELS = 1 << 20, /* smaller volumes are read by one thread, which takes less time than starting
-                              * others */
+  PARALLEL_VOXELS = 1 << 20, /* smaller volumes are read by one thread, because starting more threads would
+                              * take longer */
   PARTS_MOST = 1 << 26,
   KEY_BYTES = HL_ZARR_PATH_BYTES + HL_ZARR_AXES_MOST * 21 + 8
 };
 
 static const bool native_is_big_endian = __BYTE_ORDER__ == __ORDER_BIG_ENDIAN__;
 
-/* The memory and the open file of one thread. The file is the one that the thread has read last, and may be a
- * shard. */
+/* The memory and the open file of one thread. The open file, which may be a shard, is the file that the
+ * thread has read last. */
 typedef struct worker {
   hl_zarr_unpacker unpacker;
-  char key[KEY_BYTES];  /* name of the open file; "" if there is none */
+  char key[KEY_BYTES];  /* name of the open file; "" if no file is open */
   hl_source *source;    /* owned; null if the file does not exist */
   unsigned char *index; /* owned; the shard's index: [16 * chunks_in_shard], followed by a checksum */
   void *row; /* owned; memory for a row of a chunk in stored form, or for a whole chunk if pages are sparse;
               * null if all voxels are in one array in memory from the beginning */
-  float *coarse; /* owned; memory for hl_beyond_row(); null if everything is seen */
+  float *coarse; /* owned; memory for hl_beyond_row(); null if all voxels are seen */
 } worker;
 
 typedef struct reading {
@@ -46,9 +46,9 @@ typedef struct reading {
   size_t stored_bytes;              /* bytes of a voxel */
   uint64_t size[3];                 /* size of the volume */
   uint64_t files[3], inner[3];      /* along i, j, k: number of files, and number of chunks in each file */
-  uint64_t parts;                   /* number of all parts */
+  uint64_t parts;                   /* number of parts in all files */
   uint64_t first;                   /* number of the first part in the files that are being read */
-  size_t stride[HL_ZARR_AXES_MOST]; /* number of bytes from a voxel of a chunk to the next one, along each of
+  size_t stride[HL_ZARR_AXES_MOST]; /* number of bytes between neighbouring voxels of a chunk, along each of
                                      * the array's axes */
   unsigned char fill[4];            /* the fill value in stored form */
   bool is_filled;                   /* whether voxels that are not stored have the fill value */
@@ -60,7 +60,7 @@ typedef struct reading {
   atomic_size_t beyond;             /* number of chunks out of sight, which are not read */
 } reading;
 
-/* The place of a part: the chunk in the array, and the voxels in the volume. */
+/* The position of a part of the work: the chunk in the array, and the voxels in the volume. */
 typedef struct part {
   uint64_t file[HL_ZARR_AXES_MOST];  /* coordinates of the part's file */
   uint64_t inner[HL_ZARR_AXES_MOST]; /* index of the chunk within its file */
@@ -88,7 +88,7 @@ static hl_status count_parts(reading *r, hl_error *error) {
   return HL_OK;
 }
 
-/* Finds the place of a part. Returns false if the part lies beyond the array's end. */
+/* Finds the chunk and the voxels of a part. Returns false if the part lies beyond the array's end. */
 static bool place_part(const reading *r, uint64_t number, part *p) {
   const hl_zarr_array *array = r->array;
   uint64_t inner[3], file[3];
@@ -145,7 +145,7 @@ static void fill_row(const reading *r, void *row, size_t first, size_t count) {
 }
 
 /* Stores `count` voxels of a chunk, which lie `step` bytes apart, from voxel number `first` of the volume on.
- * They are copied through a small buffer, unless they are adjacent. */
+ * Voxels that are not adjacent are copied through a small buffer. */
 static void store_row(const reading *r, const unsigned char *from, size_t step, size_t first, size_t count,
                       unsigned char *row) {
   enum { STAGED = 512 };
@@ -166,9 +166,9 @@ static void store_row(const reading *r, const unsigned char *from, size_t step, 
   }
 }
 
-/* Stores the voxels of a part, row by row. chunk: the voxels of the part's chunk; null if all voxels get the
- * fill value, or, out of sight, values of the coarser volume. box: whether the rows are gathered in the
- * worker's memory as one box, in place of the volume. */
+/* Stores the voxels of a part, row by row. chunk: the voxels of the part's chunk; null if the voxels get the
+ * fill value, or, for a part out of sight, values of the coarser volume. box: whether the rows are stored as
+ * one box in the worker's memory instead of the volume. */
 static void put_rows(const reading *r, const worker *w, const part *p, const unsigned char *chunk, bool box) {
   const bool apart = hl_destination_is_apart(r->to);
   unsigned char *row = w->row;
@@ -197,8 +197,8 @@ static bool is_all_fill(const reading *r, const part *p, const unsigned char *bo
          memcmp(box, box + r->stored_bytes, bytes - r->stored_bytes) == 0;
 }
 
-/* Stores the voxels of a part whose chunk exists, or is out of sight. Other voxels have the fill value
- * already. */
+/* Stores the voxels of a part whose chunk exists or is out of sight, in a volume whose other voxels have the
+ * fill value already. */
 static hl_status put_filled(reading *r, const worker *w, const part *p, const unsigned char *chunk,
                             hl_error *error) {
   const size_t begin[3] = {p->begin[0], p->begin[1], p->begin[2]},
@@ -245,7 +245,7 @@ static hl_status read_index(const reading *r, worker *w, hl_error *error) {
              : status;
 }
 
-/* Opens the file of a part, unless it is open already. */
+/* Opens the file of a part, unless the file is open already. */
 static hl_status open_file(const reading *r, worker *w, const part *p, hl_error *error) {
   char key[KEY_BYTES];
   name_file(r->array, p, r->array->separator, key);
@@ -278,7 +278,7 @@ static hl_status find_chunk(const reading *r, const worker *w, const part *p, ui
              : hl_zarr_fail(r->bundle, w->key, error, HL_ERROR_INPUT, "a chunk lies outside of its shard");
 }
 
-/* Returns whether any of a part's voxels is kept here. */
+/* Returns whether this process keeps any voxel of a part. */
 static bool keeps_part(const reading *r, const part *p) {
   uint64_t slice = r->size[0] * r->size[1];
   return hl_destination_wants(r->to, p->begin[2] * slice, p->count[2] * slice);
@@ -295,7 +295,8 @@ static hl_status read_part(void *data, size_t number, int index, hl_error *error
   const unsigned char *chunk = NULL;
   if (!place_part(r, r->first + number, &p)) return HL_OK;
   if (!wants_part(r, &p)) {
-    /* the chunk counts as found: only who reads it knows whether it exists */
+    /* a chunk that this process does not read counts as found, because only reading shows whether the chunk
+     * exists */
     atomic_fetch_add_explicit(&r->found, 1, memory_order_relaxed);
     if (p.is_seen || !keeps_part(r, &p)) return HL_OK;
     atomic_fetch_add_explicit(&r->beyond, 1, memory_order_relaxed);
@@ -324,21 +325,21 @@ static bool reads_parts_of_shards(const reading *r) {
                                        r->choice->beyond.coarse != NULL);
 }
 
-/* The number of files that are read at a time. Each file, and each part of a shard, is an open descriptor, of
- * which processes often may have 1024. */
+/* The number of files that are read at a time. Each file, and each part of a shard, takes a file descriptor,
+ * and the usual limit is 1024 descriptors for a process. */
 static uint64_t files_at_a_time(const reading *r) {
   uint64_t parts = parts_of_file(r), files = parts < HL_ZARR_SPANS_MOST ? HL_ZARR_SPANS_MOST / parts : 1;
   return reads_parts_of_shards(r) && files < FILES_AT_A_TIME ? files : FILES_AT_A_TIME;
 }
 
-/* The greatest length of a file that is fetched. A file of this array cannot be longer. */
+/* The greatest length of a file of the array, in bytes. Longer files are not fetched. */
 static uint64_t longest_file(const hl_zarr_array *array) {
   uint64_t chunk = hl_zarr_chunk_most(array) + 16, length;
   return __builtin_mul_overflow(chunk, array->shards.chunks, &length) ? UINT64_MAX : length + 64;
 }
 
 /* Returns whether any chunk of a file is read by this process. number: the number of the file's first part.
- * place: set to the place of one of the file's parts. */
+ * place: set to a part of the file. */
 static bool wants_file(const reading *r, uint64_t number, part *place) {
   for (uint64_t n = 0; n < parts_of_file(r); n++)
     if (place_part(r, number + n, place) && wants_part(r, place)) return true;
@@ -346,8 +347,8 @@ static bool wants_file(const reading *r, uint64_t number, part *place) {
 }
 
 /* Fetches the files of the `count` parts from r->first on, or the indices of shards. separator: the separator
- * in the files' names. again: whether to fetch only the files that the server does not have under the array's
- * own separator. */
+ * in the files' names. again: whether to fetch only the files that the server lacks under their names with
+ * the array's separator. */
 static hl_status bring_files(const reading *r, uint64_t count, char separator, bool again, hl_error *error) {
   const char *names[FILES_AT_A_TIME];
   hl_fetch_range ranges[FILES_AT_A_TIME];
@@ -375,11 +376,11 @@ static hl_status bring_files(const reading *r, uint64_t count, char separator, b
   return status;
 }
 
-/* A list of the parts of shards that will be fetched. */
+/* A list of the parts of shards that are to be fetched. */
 typedef struct span_list {
   char (*keys)[KEY_BYTES]; /* owned; [FILES_AT_A_TIME]; names of the shards */
   size_t shards, count;
-  const char *names[HL_ZARR_SPANS_MOST];     /* [count]; in `keys` */
+  const char *names[HL_ZARR_SPANS_MOST];     /* [count]; borrowed from `keys` */
   hl_fetch_range ranges[HL_ZARR_SPANS_MOST]; /* [count] */
 } span_list;
 
@@ -442,7 +443,7 @@ static hl_status bring_chunks(const reading *r, uint64_t count, int workers, hl_
                          : hl_fail_memory(error, FILES_AT_A_TIME * sizeof *list->keys, "names");
   for (uint64_t n = 0; n < count && status == HL_OK; n += parts_of_file(r))
     status = list_spans(r, r->first + n, list, error);
-  close_files(r, workers); /* the sources know the indices alone */
+  close_files(r, workers); /* the open sources hold only the shards' indices */
   if (status == HL_OK)
     status = hl_bundle_bring_parts(r->bundle, list->names, list->ranges, list->count, longest_file(r->array),
                                    error);
@@ -451,7 +452,7 @@ static hl_status bring_chunks(const reading *r, uint64_t count, int workers, hl_
   return status;
 }
 
-/* Fetches some files at a time from the server, and reads their parts. */
+/* Fetches a number of files at a time from the server, and reads the parts of these files. */
 static hl_status read_from_server(reading *r, hl_pool *pool, hl_error *error) {
   const hl_zarr_array *array = r->array;
   bool by_parts = reads_parts_of_shards(r);
@@ -529,8 +530,9 @@ static hl_status read_parts(reading *r, hl_pool *pool, hl_error *error) {
   return status;
 }
 
-/* Tells the user the number of chunks that a server lacks. A store may lack chunks on purpose, but a fault of
- * the server looks the same. A user can list the files of a folder, but not the files of a server. */
+/* Tells the user the number of chunks that a server lacks. A store may lack chunks on purpose, but chunks are
+ * missing also after a fault of the server. For a folder no message is needed, because the user can list its
+ * files. */
 static void tell_absent(const reading *r, hl_absence *absence) {
   if (!hl_bundle_is_on_server(r->bundle)) return;
   const size_t absent = atomic_load(&r->absent), all = absent + atomic_load(&r->found);

@@ -1,4 +1,4 @@
-/* volume/formats/zarr/zarr.c - reads Zarr arrays and OME-Zarr images, in folders and zip archives, and on
+/* volume/formats/zarr/zarr.c - reads Zarr arrays and OME-Zarr images in folders, in zip archives and on
  * servers.
  *
  * The steps are in zarr/: metadata.c reads JSON files, array_read.c an array's metadata, image.c OME-Zarr's
@@ -25,8 +25,8 @@ static bool is_marker(const char *name) {
          strcmp(name, ".zattrs") == 0;
 }
 
-/* Finds the root of the hierarchy in an archive. The root may be a folder of the archive. It is the folder
- * that holds the marker file with the fewest folders in its path. */
+/* Finds the root of the hierarchy in an archive. The root may be a folder of the archive. The root is the
+ * folder of the marker file with the fewest folders in its path. */
 static bool find_root_of_archive(const hl_bundle *bundle, char folder[HL_ZARR_PATH_BYTES]) {
   int least = HL_BUNDLE_DEPTH_MOST;
   for (size_t n = 0; n < bundle->count; n++) {
@@ -99,8 +99,8 @@ static void describe(const hl_zarr_image *image, int number, hl_payload *payload
   if (choice->axis[HL_ZARR_Z] < 0) payload->grid.axis[HL_ZARR_Z][HL_ZARR_Z] = known;
 }
 
-/* The size of the array along its axis of a kind, such as time. *axis: set to the index of this axis; -1 if
- * there is none. */
+/* The size of the array along the axis of a kind, such as time; 1 without such an axis. *axis: set to the
+ * index of the axis; -1 if the array has no such axis. */
 static size_t count_along(const hl_zarr_image *image, const hl_zarr_array *array, hl_zarr_axis kind,
                           int *axis) {
   *axis = -1;
@@ -126,7 +126,8 @@ static hl_status choose_steps(const hl_zarr_image *image, const hl_zarr_array *a
   return status;
 }
 
-/* Reads the voxels of an image. ome: the metadata that describe its channels; null if there are none. */
+/* Reads the voxels of an image. ome: the metadata that describe its channels; null if the file has no such
+ * metadata. */
 static hl_status load_image(const hl_bundle *bundle, const hl_zarr_image *image, const json_t *ome,
                             hl_load_request *request, hl_volume **volume, hl_error *error) {
   hl_payload payload;
@@ -163,8 +164,8 @@ static hl_status load_array(const hl_bundle *bundle, const hl_zarr_array *array,
   return status;
 }
 
-/* Adds the array `name` of a group to the request's list, if it exists and can hold a volume. An array that
- * is damaged, or of an unknown kind, is listed without a type. */
+/* Adds the array `name` of a group to the request's list, if it exists and can hold a volume. A damaged
+ * array, and an array of an unknown type, is listed without a type. */
 static hl_status list_array(const hl_bundle *bundle, const char *folder, const char *name,
                             hl_load_request *request, hl_error *error) {
   char path[HL_ZARR_PATH_BYTES];
@@ -200,8 +201,8 @@ static hl_status list_folder(const hl_bundle *bundle, char **names, size_t *coun
   return status;
 }
 
-/* Lists the names of the arrays in a folder of an archive. They are sorted. The caller owns the list and the
- * names. */
+/* Lists the names of the arrays in a folder of an archive. The names are sorted. The caller owns the list and
+ * the names. */
 static hl_status list_archive(const hl_bundle *bundle, const char *root, char **names, size_t *count,
                               hl_error *error) {
   size_t length = strlen(root);
@@ -277,7 +278,8 @@ static hl_status load_described(const hl_bundle *bundle, const char *folder, con
   return status;
 }
 
-/* Loads a group or an array. depth: the number of collections that contain it, such as a plate and a well. */
+/* Loads a group or an array. depth: the number of collections, such as a plate and a well, that contain the
+ * group or array. */
 static hl_status load_node(const hl_bundle *bundle, char folder[HL_ZARR_PATH_BYTES], int depth,
                            hl_load_request *request, hl_volume **volume, hl_error *error) {
   json_t *attributes;
