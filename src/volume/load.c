@@ -1,5 +1,6 @@
 /* volume/load.c - hl_volume_load: finds the format of a volume's file, and reads the file. The format is
- * found by the file's name if the name proves it, else by the content, else by the name. */
+ * found by the file's name if the name proves the format, else by the file's content, else by a name that
+ * suggests the format. */
 #include <math.h>
 #include <stdio.h>
 #include <string.h>
@@ -20,8 +21,8 @@ static bool begins(const unsigned char *bytes, size_t length, const char *mark, 
   return length >= mark_length && memcmp(bytes, mark, mark_length) == 0;
 }
 
-/* Finds the format that claims a file by its first bytes. length: the number of bytes given; formats look at
- * no more than HL_FORMAT_SNIFFED_BYTES. */
+/* Finds the format that claims a file by its first bytes. length: the number of bytes, of which at most
+ * HL_FORMAT_SNIFFED_BYTES are used. */
 static const hl_format *by_content(const unsigned char *bytes, size_t length) {
   if (length > HL_FORMAT_SNIFFED_BYTES) length = HL_FORMAT_SNIFFED_BYTES;
   for (int n = 0; hl_formats[n] != NULL; n++)
@@ -163,8 +164,8 @@ static hl_status fail_unknown(const hl_stream *stream, const unsigned char *byte
 
 static hl_status load(hl_stream **stream, hl_load_request *request, hl_volume **volume, hl_error *error);
 
-/* The file in an archive that has only one, apart from files that macOS adds; null if there are several, or
- * none. */
+/* The only file of an archive, apart from files that macOS adds; null if the archive has no such file or
+ * several. */
 static const hl_bundle_entry *only_file(const hl_bundle *bundle) {
   const hl_bundle_entry *only = NULL;
   for (size_t n = 0; n < bundle->count; n++) {
@@ -176,7 +177,7 @@ static const hl_bundle_entry *only_file(const hl_bundle *bundle) {
   return only;
 }
 
-/* Unpacks a volume file into memory, and reads it. */
+/* Unpacks a volume's file of an archive into memory, and reads the volume. */
 static hl_status load_packed(const hl_bundle *bundle, const hl_bundle_entry *entry, hl_load_request *request,
                              hl_volume **volume, hl_error *error) {
   hl_context *context = request->context;
@@ -199,7 +200,8 @@ static hl_status load_packed(const hl_bundle *bundle, const hl_bundle_entry *ent
   return status;
 }
 
-/* Reads a folder or a zip archive: asks the formats one by one whether they read it. */
+/* Reads a folder or a zip archive: calls the readers of the formats one by one, until a reader claims the
+ * folder or archive. */
 static hl_status load_bundle(hl_bundle *bundle, hl_load_request *request, hl_volume **volume,
                              hl_error *error) {
   bool claimed = false;
@@ -223,8 +225,8 @@ static hl_status load_folder(const char *path, hl_load_request *request, hl_volu
   return status;
 }
 
-/* Reads a store on a server. If the caller names no level of resolution, a level is read that is fine enough
- * for a picture of the size that the caller gives, or of PIXELS pixels if the caller gives none. */
+/* Reads a store on a server. If the caller names no level of resolution, the function reads a level that is
+ * fine enough for a picture of the caller's size, or of PIXELS pixels if the caller states no size. */
 static hl_status load_from_server(const char *url, hl_load_request *request, hl_volume **volume,
                                   hl_error *error) {
   enum { PIXELS = 512 };
@@ -324,8 +326,8 @@ static hl_status check_series(const hl_load_request *request, const char *path, 
                  path);
 }
 
-/* Gives the volume the facts that the reader has found, such as the list of arrays, and warns about default
- * choices. */
+/* Copies to the volume the facts that the reader has found, such as the list of arrays, and warns about
+ * default choices. */
 static hl_status finish(hl_load_request *request, const char *path, hl_status status, hl_volume **volume,
                         hl_error *error) {
   if (status == HL_OK) {

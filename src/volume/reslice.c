@@ -1,7 +1,7 @@
 /* volume/reslice.c - computes planes of samples of a volume: rows of samples, in one or more layers.
  *
- * In: a volume, and a grid of samples in the volume's indices. Out: a data value for each sample. If there
- * are many samples, rows are divided among threads. */
+ * In: a volume, and a grid of samples in the volume's indices. Out: a data value for each sample. Rows of a
+ * large number of samples are divided among threads. */
 #include <halflight/reslice.h>
 #include <math.h>
 
@@ -10,7 +10,7 @@
 #include "core/pool.h"
 #include "volume/volume.h"
 
-/* The least number of samples that are computed on several threads. */
+/* The number of samples from which on several threads compute the samples. */
 static const double MANY_SAMPLES = 1 << 20;
 static const double MOST_VOXELS = 1e9; /* The greatest magnitude of a number that describes a plane */
 
@@ -50,8 +50,8 @@ static hl_status check(const hl_volume *volume, const hl_reslice_options *option
   return HL_OK;
 }
 
-/* Returns whether a place, in voxel indices, lies in one of the grid's voxels, which reach half a voxel
- * beyond their centres. */
+/* Returns whether a position in voxel indices lies in a voxel of the grid. A voxel extends half a voxel
+ * around its centre. */
 static bool is_within(const hl_volume *volume, const double at[3]) {
   for (int axis = 0; axis < 3; axis++)
     if (!(at[axis] >= -0.5 && at[axis] < (double)volume->dimension[axis] - 0.5)) return false;

@@ -1,8 +1,8 @@
 /* volume/save.c - writes a volume, or a box of it, to a file. Rows of data values are converted to a type,
  * packed, and written in a format (writer.h).
  *
- * The file appears complete or not at all, and the same volume gives the same bytes. Only one row is in
- * memory at a time. */
+ * After a failure no incomplete file is left. The bytes of the file depend only on the volume and the
+ * options. Only one row of voxels is in memory at a time. */
 #define _GNU_SOURCE
 #include <errno.h>
 #include <math.h>
@@ -19,12 +19,12 @@
 #include "volume/io/writer.h"
 #include "volume/volume.h"
 
-/* ZLIB_WINDOW is zlib's largest window; GZIP is added to it for gzip (zlib.h). */
+/* ZLIB_WINDOW is zlib's largest window; GZIP is added to ZLIB_WINDOW to write gzip (zlib.h). */
 enum { OUT_BYTES = 1 << 18, ZLIB_WINDOW = 15, GZIP = 16 };
 enum {
   MOST_SHRUNK_LABELS = 64
-}; /* greatest `shrink` of label maps. All labels of the voxels that are merged in one voxel are kept in
-    * memory, which takes up to two megabytes for each voxel of a row */
+}; /* greatest `shrink` of label maps. The labels of all voxels that are merged in one voxel are in memory, up
+    * to two megabytes for each voxel of a row */
 
 /* The state of writing voxels. */
 typedef struct saving {
@@ -36,9 +36,9 @@ typedef struct saving {
                                * mean */
   hl_volume_description grid; /* the grid that is written */
   const char *unit;           /* unit of the grid's lengths, static; null if unknown */
-  bool unit_asked;            /* whether the options say the unit */
+  bool unit_asked;            /* whether the unit comes from the options */
   hl_output output;
-  bool packs; /* whether bytes are packed now */
+  bool packs; /* whether the bytes that are written next are packed */
   struct {
     double *sums;          /* [grid.dimensions[0]]; sums of the data values that are merged */
     uint32_t *counts;      /* [grid.dimensions[0]]; number of finite voxels in each sum */
@@ -48,7 +48,7 @@ typedef struct saving {
     void *source_row;      /* a row of the volume's stored values, for volumes with pages */
     unsigned char *packed; /* [OUT_BYTES] */
   } memory;                /* all arrays are owned */
-  uint64_t clamped, holes; /* number of voxels that lay beyond the type's range; number of voxels that are not
+  uint64_t clamped, holes; /* number of voxels clamped to the type's range; number of voxels that were not
                             * finite and became 0 */
   z_stream stream;
 } saving;
@@ -63,7 +63,7 @@ static bool whole_range(hl_voxel_type type, double *low, double *high) {
   double span = ldexp(1, 8 * (int)hl_voxel_type_bytes(type));
   *low = is_signed ? -span / 2 : 0;
   *high = *low + span - 1;
-  /* For 64 bits: the greatest double in the type's range. */
+  /* For types of 64 bits, *high is the greatest double in the type's range. */
   if (*high == *low + span) *high = nextafter(*high, 0);
   return true;
 }
@@ -73,8 +73,8 @@ static bool holds(hl_voxel_type type, double least, double greatest) {
   return whole_range(type, &low, &high) && least >= low && greatest <= high;
 }
 
-/* Returns whether all data values are finite whole numbers, because the file's are integers, and scale and
- * offset are whole numbers. */
+/* Returns whether all data values are finite whole numbers, because the file's numbers are integers, and
+ * scale and offset are whole numbers. */
 static bool is_whole(const hl_volume *volume) {
   double low, high;
   return whole_range(volume->type, &low, &high) && volume->value_scale == floor(volume->value_scale) &&
@@ -133,7 +133,8 @@ static hl_status set_box(saving *s, const hl_volume_save_options *options, const
   return HL_OK;
 }
 
-/* Finds the unit of the volume's lengths: the one that its file tells, or else the one of the options. */
+/* Finds the unit of the volume's lengths: the unit that the volume's file states, or else the unit in the
+ * options. */
 static hl_status find_unit(saving *s, const char *asked, const char *path, hl_error *error) {
   static const char *const names[] = {"metre",      "centimetre", "millimetre",
                                       "micrometre", "nanometre",  "angstrom"};
@@ -150,8 +151,9 @@ static hl_status find_unit(saving *s, const char *asked, const char *path, hl_er
                                    path, asked);
 }
 
-/* Sets the place of the grid that is written. A voxel lies in the middle of the voxels that are merged in it.
- * At the box's end some of them may be missing; the voxel lies where it would if all were there. */
+/* Sets the origin and the axes of the grid that is written. A written voxel lies in the middle of the voxels
+ * that are merged in it. At the box's end some of these voxels may be missing; the written voxel is placed as
+ * if no voxel were missing. */
 static void place_box(saving *s) {
   const hl_volume *volume = s->volume;
   vec3 origin = volume->index_to_world.offset;
@@ -180,8 +182,8 @@ static bool keeps_numbers(const saving *s) {
          volume->value_scale == 1 && volume->value_offset == 0;
 }
 
-/* The bits that identify a label: the bits of the file's own number if it is kept, else the bits of the
- * value. Equal labels have equal bits. */
+/* The bits that identify a label. They are the bits of the file's own number if keeps_numbers() is true, else
+ * the bits of the data value. Equal labels have equal bits. */
 static uint64_t bits_of(const saving *s, hl_number_row row, size_t i, double value) {
   uint64_t bits = 0;
   const size_t bytes = hl_voxel_type_bytes(row.type);
@@ -207,8 +209,9 @@ static void add_row(saving *s, size_t j, size_t k) {
     }
 }
 
-/* The most frequent value; of several equally frequent values, the first one. Occurrences of a value are
- * counted at the value's first place. This is fast, because a box has few different values. */
+/* The most frequent label of a box; of several equally frequent labels, the first one. The occurrences of a
+ * label are counted at its first position in the list. Counting is fast, because a box has few different
+ * labels. */
 static uint64_t commonest(const uint64_t *values, size_t count) {
   uint64_t best = values[0];
   size_t most = 0;
@@ -224,8 +227,8 @@ static uint64_t commonest(const uint64_t *values, size_t count) {
   return best;
 }
 
-/* Stores a label from its bits: in the row that is written if the file's own numbers are kept, else among the
- * values. */
+/* Stores a label that bits_of() has made bits of. If keeps_numbers() is true, the label is stored in the row
+ * that is written, else in `sums` as a data value. */
 static void put_label(saving *s, size_t n, uint64_t bits) {
   const size_t bytes = hl_voxel_type_bytes(s->grid.type);
   if (keeps_numbers(s)) memcpy(s->memory.row + n * bytes, &bits, bytes);
@@ -233,8 +236,8 @@ static void put_label(saving *s, size_t n, uint64_t bits) {
 }
 
 /* Computes the data values of row (j, k) of the written grid in `sums`: the mean of the finite voxels or the
- * most common label, NAN if no voxel is finite. If the file's own numbers are kept, labels are stored in
- * `row` instead. */
+ * most common label, NAN if no voxel is finite. If keeps_numbers() is true, labels are stored in `row`
+ * instead. */
 static void make_row(saving *s, size_t j, size_t k) {
   const size_t count = s->grid.dimensions[0], box = s->shrink * s->shrink * s->shrink;
   memset(s->memory.sums, 0, count * sizeof *s->memory.sums);
@@ -247,13 +250,13 @@ static void make_row(saving *s, size_t j, size_t k) {
     if (s->memory.counts[n] == 0 && keeps_numbers(s))
       memcpy(s->memory.row + n * sizeof(double), &s->memory.sums[n], sizeof(double));
     if (s->memory.counts[n] == 0)
-      continue; /* no voxel is finite; where the file's own numbers are kept, this happens only for doubles */
+      continue; /* no merged voxel is finite; among the file's own numbers, only doubles can be non-finite */
     if (s->labels) put_label(s, n, commonest(s->memory.boxes + n * box, s->memory.counts[n]));
     else if (s->memory.counts[n] > 1) s->memory.sums[n] /= s->memory.counts[n];
   }
 }
 
-/* Rounds to the nearest IEEE 754 binary16, ties to even. The type _Float16 would do the same, but not every
+/* Rounds to the nearest IEEE 754 binary16, ties to even. The type _Float16 is not used, because not every
  * compiler has it. */
 static uint16_t half_of(double value) {
   uint16_t sign = signbit(value) ? 0x8000 : 0;
@@ -264,9 +267,9 @@ static uint16_t half_of(double value) {
   frexp(size, &exponent); /* frexp() splits size into f 2^exponent, with f from 0.5 to 1. The lowest of the 11
                            * bits of a half is therefore worth 2^(exponent - 11) */
   int last = exponent - 11 > -24 ? exponent - 11 : -24;
-  double units = nearbyint(ldexp(size, -last)); /* a number from 1024 to 2048, or less for subnormals */
-  /* The exponent field of the half, less 1. It is used for numbers of 1024 units or more, which are not
-   * subnormal. */
+  double units = nearbyint(ldexp(size, -last)); /* from 1024 to 2048, or less for subnormal halves */
+  /* The exponent field of the half, less 1. This field is used if `units` is at least 1024, so that the half
+   * is not subnormal. */
   int biased = last + 24;
   return (uint16_t)(sign | (units < 1024 ? (unsigned)units
                                          : ((unsigned)(biased + 1) << 10) + (unsigned)(units - 1024)));
@@ -324,7 +327,8 @@ static void convert_row(saving *s) {
 
 /* ---- bytes ---- */
 
-/* Writes bytes. hl_output_commit() detects short writes. */
+/* Writes bytes to the file, packed if `packs` is set. Errors of writing are detected later by
+ * hl_output_commit(). */
 static void put(saving *s, const void *bytes, size_t count, bool last) {
   if (!s->packs) {
     fwrite(bytes, 1, count, s->output.file);
@@ -419,7 +423,8 @@ static hl_status save(saving *s, const char *path, hl_error *error) {
 
 /* ---- all steps together ---- */
 
-/* Checks the name of a file of bare voxels. It must state the size and type, as the file itself does not. */
+/* Checks the name of a file of bare voxels. The name must state the size and the type of the voxels, because
+ * the file itself does not. */
 static hl_status check_raw_name(const saving *s, const char *path, hl_error *error) {
   hl_payload payload;
   const size_t *n = s->grid.dimensions;
@@ -433,8 +438,8 @@ static hl_status check_raw_name(const saving *s, const char *path, hl_error *err
                  path, n[0], n[1], n[2], hl_voxel_type_name(s->grid.type));
 }
 
-/* Returns whether a grid has an origin, directions or a space; with `spacing`, also where its voxels are no
- * cubes of the length 1. */
+/* Returns whether a grid has an origin, directions or a space that differ from the defaults. spacing: whether
+ * the lengths of its voxels' edges must also be 1. */
 static bool has_place(const hl_volume_description *grid, bool spacing) {
   hl_volume_description plain;
   hl_volume_description_defaults(&plain);
@@ -444,8 +449,8 @@ static bool has_place(const hl_volume_description *grid, bool spacing) {
          memcmp(grid->origin, plain.origin, sizeof plain.origin) != 0;
 }
 
-/* Warns that the file gets more voxels than the field has coefficients. The warning comes before the field is
- * evaluated, which takes long. */
+/* Warns that the file gets more voxels than the field has coefficients. The warning is written before the
+ * field is evaluated, because the evaluation takes long. */
 static void tell_evaluation(const saving *s, const char *path) {
   const size_t *n = s->grid.dimensions, size = hl_voxel_type_bytes(s->grid.type);
   if (s->volume->bricks == NULL) return;

@@ -1,4 +1,5 @@
-/* volume/scraps.c - see scraps.h. Bodies are found from runs, which are neighbouring firm voxels of a row. */
+/* volume/scraps.c - see scraps.h. Bodies are assembled from runs. A run is a sequence of neighbouring firm
+ * voxels in a row. */
 #include "volume/scraps.h"
 
 #include <math.h>
@@ -7,17 +8,18 @@
 #include "core/context.h"
 #include "core/memory.h"
 
-/* The number of steps, from voxel to voxel, that faint matter reaches from a body to which it belongs. The
- * rim of a body is two or three voxels thick. */
+/* The greatest distance, in steps from voxel to voxel, of faint matter from the body to which the matter
+ * belongs. The faint rim of a body is two or three voxels thick. */
 enum { REACH = 4 };
 
-/* The marks of voxels. Faint voxels that belong to a body have KEPT + their number of steps from it. */
+/* The marks of voxels. A faint voxel that belongs to a body has the mark KEPT + n, where n is the number of
+ * steps from the body. */
 enum { UNSEEN = 0, FAINT = 1, FIRM = 2, KEPT = 3 };
 
 typedef struct run {
-  uint32_t first, end; /* the voxels of a row */
+  uint32_t first, end; /* the run's voxels in its row: first .. end - 1 */
   uint32_t body;       /* the index of a run of the same body; a body's first run has its own index */
-  uint64_t voxels;     /* of the whole body; only the body's first run has them */
+  uint64_t voxels;     /* number of voxels of the whole body; set only in the body's first run */
 } run;
 
 typedef struct hl_kept_scraps {
@@ -37,7 +39,8 @@ typedef struct search {
 
 /* ---- marks ---- */
 
-/* Matter below its surroundings is marked by its negated values. */
+/* Marks the voxels of a row. If matter has lower values than its surroundings, negated values are
+ * compared. */
 #define MARK(type)                                               \
   for (size_t i = 0; i < count; i++) {                           \
     const float value = side * (float)((const type *)row)[i];    \
@@ -60,7 +63,7 @@ static uint32_t body_of(run *runs, uint32_t n) {
   return n;
 }
 
-/* Joins the runs of a row with the runs of another row that they touch. */
+/* Joins the bodies of runs in two neighbouring rows that touch each other. */
 static void join(search *s, size_t row, size_t other) {
   uint32_t a = (uint32_t)s->first_of_row[row], b = (uint32_t)s->first_of_row[other];
   const uint32_t end = (uint32_t)s->run_count, other_end = (uint32_t)s->first_of_row[other + 1];
@@ -120,7 +123,8 @@ static hl_status find_runs(search *s, hl_error *error) {
   return status;
 }
 
-/* Marks the voxels of the bodies that are not hidden, and describes those that are. */
+/* Marks the voxels of bodies that are not hidden, and sets in *scraps the number and the share of hidden
+ * bodies. */
 static void keep_bodies(search *s, double least, hl_scraps *scraps) {
   const size_t *n = s->volume->dimension;
   uint64_t most = 0, all = 0, hidden = 0;
@@ -155,7 +159,7 @@ static bool has_neighbour(const search *s, size_t j, size_t k, size_t i, unsigne
          (k + 1 < n[2] && at[slice] == mark);
 }
 
-/* Lets the faint voxels beside voxels with a mark belong to the same body. */
+/* Marks faint voxels beside voxels with the mark `mark` as one step further from the body. */
 static void reach_on(search *s, unsigned char mark) {
   const size_t *n = s->volume->dimension;
   for (size_t k = 0; k < n[2]; k++)
@@ -185,7 +189,7 @@ static hl_status make_volume(const search *s, hl_volume **made, hl_error *error)
       [HL_STORAGE_U8] = HL_VOXEL_U8, [HL_STORAGE_U16] = HL_VOXEL_U16, [HL_STORAGE_F32] = HL_VOXEL_F32};
   const hl_volume *volume = s->volume;
   const size_t *n = volume->dimension, row_bytes = n[0] * hl_storage_bytes(volume->storage);
-  /* whole numbers are rounded to the side where nothing is seen */
+  /* the value `faint` is rounded to a whole number in the direction in which matter is not seen */
   const float value = volume->storage == HL_STORAGE_F32 ? s->faint
                       : s->above                        ? fmaxf(floorf(s->faint), 0)
                                                         : ceilf(s->faint);
@@ -258,7 +262,7 @@ static void release(hl_context *context, hl_kept_scraps *kept) {
   hl_release(context, kept);
 }
 
-/* Keeps a result in place of an earlier one. */
+/* Stores a result in the volume, and releases an earlier result. */
 static hl_status keep(hl_volume *volume, const hl_scraps_rule *rule, const hl_scraps *scraps,
                       hl_error *error) {
   hl_kept_scraps *made = hl_allocate(volume->context, 1, sizeof *made);

@@ -10,11 +10,11 @@
 #include "elementary/elementary.h"
 
 /* The weights of a Gaussian, exp(-d^2 / (2 sigma^2)), at whole distances d up to three standard deviations.
- * The weights of both sides add up to 1. */
+ * The weights of all distances, on both sides, add up to 1. */
 enum { LONGEST = 64 };
 typedef struct gaussian {
   int radius;
-  float weight[LONGEST + 1]; /* by distance */
+  float weight[LONGEST + 1]; /* weight at each distance in voxels */
 } gaussian;
 
 static gaussian make_gaussian(double sigma) {
@@ -29,8 +29,8 @@ static gaussian make_gaussian(double sigma) {
 }
 
 /* Convolves `count` lines at once. A line has `length` numbers, and number n of all lines is a block of
- * `count` adjacent numbers; these blocks are `step` apart. Beyond its ends, a line's first and last number
- * repeat. line: scratch memory, [length][count]. */
+ * `count` adjacent numbers; these blocks are `step` apart. Numbers beyond a line's ends equal the line's
+ * first or last number. line: scratch memory, [length][count]. */
 static void convolve_lines(const gaussian *kernel, float *numbers, size_t length, size_t step, size_t count,
                            float *line) {
   for (size_t n = 0; n < length; n++) memcpy(line + n * count, numbers + n * step, count * sizeof *line);
@@ -45,7 +45,7 @@ static void convolve_lines(const gaussian *kernel, float *numbers, size_t length
   }
 }
 
-/* Convolves a row. line: scratch memory, [length + 2 LONGEST]. */
+/* Convolves a row of numbers along x. line: scratch memory, [length + 2 LONGEST]. */
 static void convolve_row(const gaussian *kernel, float *numbers, size_t length, float *line) {
   float *middle = line + LONGEST;
   memcpy(middle, numbers, length * sizeof *line);
@@ -60,7 +60,7 @@ static void convolve_row(const gaussian *kernel, float *numbers, size_t length, 
   }
 }
 
-/* Convolves along i, j and k. Returns false if cancelled. */
+/* Convolves a block of numbers along i, j and k. Returns false if the user has cancelled. */
 static bool convolve(hl_context *context, const gaussian *kernel, const size_t dimension[3], float *numbers,
                      float *line) {
   const size_t row = dimension[0], slice = row * dimension[1];
@@ -94,7 +94,8 @@ static void take_values(const hl_volume *volume, float *line, float *values, flo
 }
 
 /* Corrects smoothed values for voxels that are not finite: divides each value by the sum of the weights of
- * the finite voxels in it. Voxels that are not finite become NAN. share: these sums of weights. */
+ * the finite voxels in it. Voxels that are not finite become NAN. share: for each voxel, the sum of the
+ * weights of finite voxels. */
 static void weigh(const hl_volume *volume, float *line, float *values, const float *share) {
   const size_t row = volume->dimension[0];
   for (size_t k = 0, n = 0; k < volume->dimension[2]; k++)
@@ -126,9 +127,9 @@ static void store_in_16_bits(float *values, size_t count, hl_volume_description 
   description->value_offset = low;
 }
 
-/* Makes a volume of the smoothed values, with the grid and the place of the original volume. If the original
- * voxels are stored as integers, the smoothed values are stored in 16 bits, which is exact enough and makes
- * pictures take less memory and time.
+/* Makes a volume of the smoothed values, with the grid of the original volume. If the original voxels are
+ * stored as integers, the smoothed values are stored in 16 bits, which are exact enough and save memory and
+ * time.
  */
 static hl_status adopt(const hl_volume *volume, float *values, hl_volume **smoothed, hl_error *error) {
   const size_t count = hl_volume_voxel_count(volume);

@@ -10,7 +10,8 @@
 /* The number of slices that are stored before the next check for cancellation. */
 enum { SLICES_AT_ONCE = 8 };
 
-/* Stores all voxels of a volume whose rows and slices have no gaps. Returns false if cancelled. */
+/* Stores all voxels of a volume whose rows and slices have no gaps. Returns false if the user has
+ * cancelled. */
 static bool store_voxels(const hl_volume *volume, hl_pages *pages) {
   const size_t *n = volume->dimension, slice = n[0] * n[1];
   for (size_t k = 0, count; k < n[2]; k += count) {

@@ -2,8 +2,8 @@
 #ifndef HL_VOLUME_LENGTHS_H
 #define HL_VOLUME_LENGTHS_H
 
-/* The length of a unit in micrometres, by the unit's symbol or name; 0 if it is no known unit of length. The
- * case of a symbol's letters matters: "mm" is not "Mm". */
+/* The length of a unit in micrometres, by the unit's symbol or name; 0 if the unit is not a known unit of
+ * length. The case of a symbol's letters matters: "mm" is a millimetre, and "Mm" a megametre. */
 double hl_micrometres(const char *unit);
 
 #endif

@@ -9,17 +9,17 @@
 /* Returns whether a character may stand between numbers of a text. */
 static inline bool hl_is_separator(unsigned char c) { return hl_is_space((char)c) || c == ','; }
 
-/* Reads the next number of a text. *found is set to false at the end. */
+/* Reads the next number of a text. *found: set to false at the end of the text. */
 hl_status hl_next_number(hl_stream *stream, double *value, bool *found, hl_error *error);
 
-/* The coding of numbers. */
+/* The type and the coding of numbers in a stream. */
 typedef struct hl_number_code {
   hl_voxel_type type;
   bool text, big_endian; /* text: whether the numbers are decimal numbers in a text, which may have any
                           * type */
 } hl_number_code;
 
-/* The number that these bytes of a type stand for. */
+/* Converts the bytes of a number of the given type to a double. */
 double hl_binary_number(const unsigned char *bytes, hl_voxel_type type, bool big_endian);
 
 /* Reads `count` numbers. *numbers: [count], owned by the caller (hl_release). Integers are exact up to 2^53.

@@ -1,8 +1,8 @@
-/* volume/io/packed_streams.c - makes streams that unpack whole files of bzip2 and xz. These files are
- * recognised by their first bytes, as files of gzip are.
+/* volume/io/packed_streams.c - makes streams that unpack whole files of bzip2 and xz. Files of bzip2, xz and
+ * gzip are recognised by their first bytes.
  *
- * In: packed bytes from the stream below. Out: plain bytes, never more than the reader requests. The two
- * libraries take their own memory: bzip2 some 4 MB, xz at most XZ_MEMORY. */
+ * In: packed bytes from the stream below. Out: plain bytes, never more than the reader requests. The
+ * libraries allocate memory of their own: libbz2 about 4 MB, liblzma at most XZ_MEMORY. */
 #include <limits.h>
 #include <string.h>
 #ifdef HL_HAS_BZIP2
@@ -43,8 +43,8 @@ static hl_status fail_absent(const hl_stream *stream, const char *name, hl_error
 
 #ifdef HL_HAS_BZIP2
 
-/* The greatest number of bytes that one packed byte gives. A block of 900000 bytes is packed to at least
- * about 40 bytes. */
+/* The greatest number of bytes to which one byte packed by bzip2 unpacks. A block of 900000 bytes is packed
+ * to about 40 bytes or more. */
 enum { BZIP2_GREATEST_RATIO = 25000 };
 
 typedef struct bzip2_stream {
@@ -132,12 +132,12 @@ hl_status hl_stream_push_bzip2(hl_stream **stream, hl_error *error) {
 
 #ifdef HL_HAS_LZMA
 
-/* The greatest number of bytes of memory that unpacking may take. Files packed with the strongest setting
- * need 65 MiB. */
+/* The greatest number of bytes of memory that liblzma may allocate to unpack xz. Files packed with the
+ * strongest setting need 65 MiB. */
 #define XZ_MEMORY ((uint64_t)256 << 20)
-/* The greatest number of bytes from one packed byte. Derived: the longest match repeats 273 bytes, and costs
- * fourteen binary decisions of at least log2(2048 / 2017) = .022 bits each. The result is 7,090 bytes from
- * one byte. */
+/* The greatest number of bytes to which one byte packed by xz unpacks. Derived: the longest match repeats 273
+ * bytes, and costs fourteen binary decisions of at least log2(2048 / 2017) = .022 bits each, so that one byte
+ * unpacks to at most 7,090 bytes. */
 enum { XZ_GREATEST_RATIO = 8192 };
 
 typedef struct xz_stream {
@@ -202,8 +202,8 @@ hl_status hl_stream_unpack(hl_stream **stream, hl_error *error) {
   hl_status status = hl_stream_peek(*stream, 10, &bytes, &length, error);
   if (status != HL_OK) return status;
   if (length >= 3 && memcmp(bytes, "\x1f\x8b\x08", 3) == 0) return hl_stream_push_inflate(stream, error);
-  /* the mark of bzip2 is "BZh", a digit, and six bytes: digits of pi, or of its square root if the file is
-   * empty. A file that was cut short may have fewer of these bytes */
+  /* the mark of bzip2 is "BZh", a digit, and six bytes: digits of pi or, if the file is empty, digits of the
+   * square root of pi. A file that was cut off may have fewer than these six bytes */
   size_t marked = length < 10 ? (length > 4 ? length - 4 : 0) : 6;
   if (length >= 4 && memcmp(bytes, "BZh", 3) == 0 && bytes[3] >= '1' && bytes[3] <= '9' &&
       (memcmp(bytes + 4, "\x31\x41\x59\x26\x53\x59", marked) == 0 ||

@@ -1,5 +1,5 @@
-/* volume/io/parallel.c - reads the parts of a volume on all threads. It also reports progress, handles
- * cancellation, and keeps the first error. */
+/* volume/io/parallel.c - reads the parts of a volume on all threads. The reading also reports progress,
+ * handles cancellation, and returns the error of the failed part with the lowest index. */
 #include "volume/io/parallel.h"
 
 #include <pthread.h>
@@ -14,8 +14,8 @@ typedef struct parts {
   void *data;
   pthread_mutex_t lock;
   atomic_size_t done, failed; /* done: number of parts that have been read; failed: the lowest index of a part
-                               * that failed, SIZE_MAX if there is none */
-  hl_status status;           /* status of one part */
+                               * that failed, SIZE_MAX if no part has failed */
+  hl_status status;           /* status of part `failed` */
   hl_error error;
 } parts;
 

@@ -1,9 +1,9 @@
 /* volume/io/payload.c - reads the voxels that a header promises.
  *
  * In: a stream at the first voxel, and the header. Out: the volume. The file's bytes are read into the
- * volume's own memory and converted there, piece by piece. Voxels of 8 bytes, which become shorter, are read
- * through a small buffer. If a volume is larger than memory, its voxels are read piece by piece, and each
- * piece is copied to its place. */
+ * volume's own memory, and are converted in this memory piece by piece. Voxels of 8 bytes, whose stored
+ * values are shorter, are read through a small buffer. If a volume is larger than memory, the voxels are read
+ * piece by piece, and each piece is copied into pages. */
 #include "volume/io/payload.h"
 
 #include <math.h>
@@ -57,8 +57,8 @@ static hl_status check_promise(const hl_stream *stream, const hl_payload *payloa
   if (payload->text)
     promised = value_count(payload) > UINT64_MAX / 2
                    ? UINT64_MAX
-                   : 2 * value_count(payload) - 1; /* each value has at least one digit, and there is a
-                                                    * separator between values */
+                   : 2 * value_count(payload) - 1; /* each value has at least one digit, and a separator
+                                                    * follows each value but the last */
   if (promised <= most) return HL_OK;
   return hl_fail_offset(
       error, HL_ERROR_INPUT, (int64_t)stream->offset,
@@ -69,7 +69,7 @@ static hl_status check_promise(const hl_stream *stream, const hl_payload *payloa
       (unsigned long long)most);
 }
 
-/* Reports progress. Fails once cancelled. */
+/* Reports the progress of reading. Fails if the user has cancelled. */
 static hl_status report(const hl_stream *stream, size_t done, size_t count, hl_error *error) {
   hl_progress(stream->context, "load", (double)done / (double)count);
   return hl_cancelled(stream->context) ? hl_fail(error, HL_ERROR_CANCELLED, "%s: cancelled", stream->path)
@@ -92,7 +92,7 @@ static bool is_swapped(const hl_payload *payload) {
 }
 
 /* Reads the next `count` values into `raw`, and converts them into `place`, which may be the same memory.
- * done: the number of values that were read before; this is also the number of the first voxel in `place`. */
+ * done: the number of values that were read before, which is the number of the first voxel in `place`. */
 static hl_status read_piece(hl_stream *stream, const hl_payload *payload, uint64_t done, size_t count,
                             void *raw, void *place, hl_destination *destination, hl_error *error) {
   hl_voxel_type type = payload->grid.type;
@@ -105,8 +105,8 @@ static hl_status read_piece(hl_stream *stream, const hl_payload *payload, uint64
   return HL_OK;
 }
 
-/* The state of reading voxels into pages. Threads take turns at reading the stream, in order. All threads
- * copy what they have read into pages. */
+/* The state of reading voxels into pages. One thread at a time reads the next piece of the stream. Each
+ * thread copies the piece that it has read into pages. */
 typedef struct page_reading {
   hl_stream *stream;
   const hl_payload *payload;
@@ -118,8 +118,8 @@ typedef struct page_reading {
   pthread_mutex_t lock;
 } page_reading;
 
-/* Reads the next piece of the stream, and stores it. The index is ignored: pieces are read in their order in
- * the stream, whichever thread comes first. */
+/* Reads the next piece of the stream, and stores it. The index is ignored, because a thread always reads the
+ * next piece of the stream. */
 static hl_status read_into_pages(void *data, size_t index, int worker, hl_error *error) {
   page_reading *r = data;
   (void)index, (void)worker;
@@ -141,9 +141,9 @@ static hl_status read_into_pages(void *data, size_t index, int worker, hl_error 
   return status;
 }
 
-/* The number of voxels that a thread reads at once. Storing is fastest for whole slices. Therefore some whole
- * slices are read at once, if the slices of all threads take at most an eighth of the memory limit. Otherwise
- * about PIECE_BYTES are read: whole rows, or a part of one row. */
+/* The number of voxels that a thread reads at once. Storing is fastest for whole slices. Therefore a piece is
+ * a number of whole slices, if the pieces of all threads take at most an eighth of the memory limit.
+ * Otherwise a piece has about PIECE_BYTES: whole rows, or a part of a row. */
 static size_t piece_for_pages(const hl_context *context, const hl_payload *payload, int threads,
                               size_t voxel_bytes) {
   enum { SLICES = 8, MOST_BYTES = 1 << 27 };
@@ -214,8 +214,8 @@ static bool fits_type(hl_voxel_type type, double value) {
   return value >= low[type] && value <= high[type] && value == floor(value);
 }
 
-/* The type that values have directly after they are read. It is the payload's type, except that numbers of a
- * text are not rounded to halves. */
+/* The type of values directly after reading. This type is the payload's type, except that numbers in a text
+ * are read as floats instead of halves. */
 static hl_voxel_type read_type(const hl_payload *payload) {
   return payload->text && payload->grid.type == HL_VOXEL_F16 ? HL_VOXEL_F32 : payload->grid.type;
 }
@@ -226,7 +226,8 @@ static hl_voxel_type read_type(const hl_payload *payload) {
     memcpy(raw + index * sizeof number, &number, sizeof number); \
   } while (0)
 
-/* Stores a number as bytes of a type, whose range it does not exceed. */
+/* Stores a number as a value of a type. A number that the type's range does not contain must not be
+ * passed. */
 static void put_number(hl_voxel_type type, double value, size_t index, unsigned char *raw) {
   switch (type) {
     case HL_VOXEL_U8: PUT(uint8_t); break;
@@ -248,7 +249,7 @@ static void put_number(hl_voxel_type type, double value, size_t index, unsigned 
   }
 }
 
-/* Reads the next number of a text. done: the number of numbers that were read before this one. */
+/* Reads the next number of a text. done: how many numbers of the text were read before. */
 static hl_status read_text_value(hl_stream *stream, const hl_payload *payload, uint64_t done, size_t index,
                                  unsigned char *raw, hl_error *error) {
   double value;
@@ -270,7 +271,7 @@ static hl_status read_text_value(hl_stream *stream, const hl_payload *payload, u
 }
 
 /* Reads `count` values into `raw`, as values of the type read_type(). done: the number of values that were
- * read before these. */
+ * read earlier. */
 static hl_status read_values(hl_stream *stream, const hl_payload *payload, uint64_t done, size_t count,
                              unsigned char *raw, hl_error *error) {
   size_t bytes = hl_voxel_type_bytes(payload->grid.type), got;
@@ -302,11 +303,12 @@ static hl_status read_text(hl_stream *stream, const hl_payload *payload, hl_dest
 
 /* ---- several components: one of them, or their magnitude ----
  *
- * The file holds [outer][component][block] values, block voxels of one component at a time: block is 1 if the
- * components of a voxel lie side by side. It is the number of all voxels if each component is a whole volume.
- * The magnitude is summed up in the voxels themselves, so that any order needs no more memory. */
+ * The file holds [outer][component][block] values: `block` is the number of consecutive values of one
+ * component. If the components of a voxel lie side by side, `block` is 1. If each component is a whole
+ * volume, `block` is the number of all voxels. The magnitude is accumulated in the voxels, so that no order
+ * of components needs further memory. */
 
-/* The place of the next value among blocks and components. */
+/* The position of the next value: its block, its component and its index in the block. */
 typedef struct component_place {
   size_t first; /* number of the voxel to which the current block's first value belongs */
   size_t component;
@@ -325,14 +327,14 @@ static double value_of(const hl_payload *payload, const void *stage, size_t inde
 }
 
 /* Adds a component to the magnitude of a vector, which is the square root of the sum of the components'
- * squares. It is computed in double, which holds the squares of all floats. */
+ * squares. The magnitude is computed in double precision, whose range contains the squares of all floats. */
 static void add_square(float *magnitude, size_t component, double value) {
   double before = component > 0 ? (double)*magnitude : 0;
   *magnitude = (float)(component > 0 ? sqrt(before * before + value * value) : fabs(value));
 }
 
-/* Stores a value in the volume, if its component is wanted. raw: values as they were read. stage: their
- * stored values. */
+/* Stores a value in the volume, if the value's component is wanted. raw: values as they were read. stage: the
+ * same values, converted to stored values. */
 static void take_value(const hl_payload *payload, const unsigned char *raw, const unsigned char *stage,
                        size_t index, const component_place *place, hl_destination *destination) {
   size_t voxel = place->first + place->in_block;
@@ -360,7 +362,7 @@ static void advance(const hl_payload *payload, component_place *place) {
   place->first += payload->block;
 }
 
-/* Skips the current block, if it is large and its component is not wanted. */
+/* Skips the current block, if the block is large and its component is not wanted. */
 static hl_status skip_block(hl_stream *stream, const hl_payload *payload, component_place *place,
                             bool *skipped, hl_error *error) {
   uint64_t bytes = (uint64_t)payload->block * hl_voxel_type_bytes(payload->grid.type);

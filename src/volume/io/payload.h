@@ -1,4 +1,5 @@
-/* volume/io/payload.h - makes a volume from a header and a stream of voxels. All formats use it. */
+/* volume/io/payload.h - makes a volume from a header and a stream of voxels. The readers of most formats use
+ * these functions. */
 #ifndef HL_VOLUME_PAYLOAD_H
 #define HL_VOLUME_PAYLOAD_H
 
@@ -6,19 +7,20 @@
 #include "volume/volume.h"
 
 typedef enum hl_trailing {
-  HL_TRAILING_IGNORED, /* something else may follow the voxels */
+  HL_TRAILING_IGNORED, /* other data may follow the voxels */
   HL_TRAILING_WARNS,
   HL_TRAILING_REFUSED
 } hl_trailing;
 
 /* Whether three or four components of a voxel are a colour. */
 typedef enum hl_payload_colors {
-  HL_COLORS_WHERE_ASKED, /* the file does not say; they are colours if the caller asks for colours */
+  HL_COLORS_WHERE_ASKED, /* the file does not say; the components are colours if the caller asks for
+                          * colours */
   HL_COLORS_MEANT,       /* the file says that the values are colours */
   HL_COLORS_UNREAD       /* the reader cannot collect colours */
 } hl_payload_colors;
 
-/* A file's header, as a description of its voxels. */
+/* The description of a file's voxels that the file's header gives. */
 typedef struct hl_payload {
   hl_volume_description grid; /* only dimensions, type, origin, axis, value_scale and value_offset are set */
   size_t components;          /* number of values of each voxel */
@@ -38,17 +40,17 @@ typedef struct hl_payload {
 
 void hl_payload_defaults(hl_payload *payload);
 
-/* The number of bytes of all components of all voxels in the file; UINT64_MAX on overflow. The grid must have
- * been checked. */
+/* The number of bytes of all components of all voxels in the file; UINT64_MAX on overflow. The caller has
+ * checked the grid. */
 uint64_t hl_payload_bytes(const hl_payload *payload);
 
-/* The grid of the volume that is made of the payload. A magnitude has floats, to which the file's scale and
- * offset have been applied. spacing: the lengths of the steps, which replace the file's lengths unless all
- * are 0. */
+/* The grid of the volume that is made of the payload. The values of a magnitude are floats, to which the
+ * file's scale and offset have been applied. spacing: the lengths of the steps, which replace the file's
+ * lengths unless all are 0. */
 hl_volume_description hl_payload_grid(const hl_payload *payload, const double spacing[3]);
 
 /* Checks the grid and, before any allocation, whether the stream can hold the voxels. Then reads and converts
- * the voxels and makes the volume. Reports progress and can be cancelled. spacing: as for
+ * the voxels, and makes the volume. The function reports progress and can be cancelled. spacing: as for
  * hl_payload_grid(). */
 hl_status hl_payload_read(hl_stream *stream, const hl_payload *payload, const double spacing[3],
                           hl_volume **volume, hl_error *error);

@@ -1,6 +1,6 @@
 /* volume/io/source.c - reads bytes at any position of a file, of memory, or of deflated data. Files are read
- * by pread(). Deflated data are inflated up to the last byte that was needed so far, and the inflated bytes
- * are kept. */
+ * by pread(). Deflated data are inflated up to the last byte that was requested so far, and the inflated
+ * bytes stay in memory. */
 #define _GNU_SOURCE
 #include "volume/io/source.h"
 
@@ -28,9 +28,9 @@ struct hl_source {
   uint64_t window_begin;
   size_t window_length, window_most; /* number of bytes in the window; number of bytes that the last call read
                                       * from the file */
-  /* These members serve data that are a part of another source, and that may be deflated. */
+  /* These members are set if the data are a part of another source, and may be deflated. */
   hl_source *below;  /* owned; may be null */
-  uint64_t below_at; /* the next byte that is taken from `below` */
+  uint64_t below_at; /* position of the next byte to read from `below` */
   struct {
     unsigned char *bytes; /* owned; [capacity]; the first `length` bytes have been inflated */
     size_t length, capacity;
@@ -154,12 +154,12 @@ hl_status hl_source_inflate(hl_source **source, uint64_t begin, uint64_t limit, 
   made->inflated.zlib.zalloc = zlib_allocate;
   made->inflated.zlib.zfree = zlib_release;
   made->inflated.zlib.opaque = below->context;
-  /* zlib.h: 15 is the largest window; the negative sign means deflate data without a header. */
+  /* In zlib.h, 15 is the largest window; the negative sign means that the data have no header. */
   if (inflateInit2(&made->inflated.zlib, -15) != Z_OK) {
     hl_source_close(made);
     return hl_fail_memory(error, 50000, "decompression");
   }
-  /* one byte of deflate data gives at most 1032 bytes: two bits give 258 */
+  /* one byte of deflate data unpacks to at most 1032 bytes, because two bits can stand for 258 bytes */
   uint64_t left = begin < below->size ? below->size - begin : 0;
   uint64_t most = left > UINT64_MAX / 1032 ? UINT64_MAX : left * 1032;
   made->below = below;
@@ -173,9 +173,9 @@ hl_context *hl_source_context(const hl_source *source) { return source->context;
 const char *hl_source_path(const hl_source *source) { return source->path; }
 uint64_t hl_source_size(const hl_source *source) { return source->size; }
 
-/* Finds the part that holds the byte at `offset`, and returns the part's descriptor, or -1 if there is no
- * such part. *offset is set to the byte's position in the descriptor. *wanted is reduced to the number of
- * bytes up to the part's end, or to 0 if there is no such part. */
+/* Finds the part that holds the byte at `offset`, and returns the part's descriptor, or -1 if no part holds
+ * the byte. *offset is set to the byte's position in the descriptor. *wanted is reduced to the number of
+ * bytes up to the part's end, or to 0 if no part holds the byte. */
 static int find_part(const hl_source *source, uint64_t *offset, size_t *wanted) {
   for (size_t n = 0; n < source->part_count; n++) {
     const hl_source_part *part = &source->parts[n];
@@ -216,7 +216,7 @@ static hl_status grow(hl_source *source, uint64_t needed, hl_error *error) {
   return HL_OK;
 }
 
-/* Calls inflate() once. The result may fill all memory that is free in `inflated`. */
+/* Calls zlib's inflate() once. The inflated bytes may fill the free memory in `inflated`. */
 static hl_status inflate_more(hl_source *source, hl_error *error) {
   const unsigned char *bytes;
   size_t available;
@@ -240,7 +240,7 @@ static hl_status inflate_more(hl_source *source, hl_error *error) {
   return HL_OK;
 }
 
-/* Inflates until at least `needed` bytes are known, or until the data end. */
+/* Inflates data until at least the first `needed` bytes are in memory, or until the data end. */
 static hl_status inflate_up_to(hl_source *source, uint64_t needed, hl_error *error) {
   if (needed > source->size) needed = source->size;
   hl_status status = HL_OK;
@@ -286,7 +286,8 @@ hl_status hl_source_peek(hl_source *source, uint64_t offset, size_t wanted, cons
   if (source->below != NULL)
     return hl_source_peek(source->below, source->below_at + offset, *available, bytes, available, error);
   if (offset < source->window_begin || offset + *available > source->window_begin + source->window_length) {
-    /* the first calls read little, as most headers are short; later calls read more and more */
+    /* the first call reads few bytes, because most headers are short; each later call reads up to four times
+     * as many */
     size_t most = source->window_most > 0 ? 4 * source->window_most : FIRST_LOOK_BYTES;
     source->window_most = most < *available ? *available : most;
     if (source->window_most > HL_SOURCE_WINDOW_BYTES) source->window_most = HL_SOURCE_WINDOW_BYTES;

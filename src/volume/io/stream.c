@@ -1,4 +1,4 @@
-/* volume/io/stream.c - functions that all streams share: they fill the buffer, read lines, and skip bytes.
+/* volume/io/stream.c - functions that all streams share, which fill the buffer, read lines, and skip bytes.
  * This file also implements streams of files and of memory. */
 #define _GNU_SOURCE
 #include "volume/io/stream.h"
@@ -217,7 +217,7 @@ hl_status hl_stream_read(hl_stream *stream, void *bytes, size_t wanted, size_t *
   while (status == HL_OK && *count < wanted) {
     size_t left = wanted - *count, got;
     if (stream->begin == stream->end &&
-        left >= HL_STREAM_BUFFER_BYTES) { /* many bytes are read directly, without a copy in the buffer */
+        left >= HL_STREAM_BUFFER_BYTES) { /* large amounts are read without the buffer */
       status = pull(stream, destination + *count, left, &got, error);
       stream->offset += got;
     } else {
@@ -243,8 +243,8 @@ hl_status hl_stream_read_all(hl_stream *stream, void *bytes, size_t wanted, hl_e
   return status;
 }
 
-/* Skips bytes of a plain file or of memory without reading them. A small number of bytes is not skipped in
- * this way, because that would save no time. Returns the number of bytes that were skipped. */
+/* Skips bytes of a plain file or of memory without reading them. A small number of bytes is not skipped by
+ * seeking, because seeking would save no time. Returns the number of bytes that were skipped. */
 static uint64_t seek_over(hl_stream *stream, uint64_t count) {
   if (stream->below != NULL || !file_of(stream)->regular) return 0;
   file_stream *file = (file_stream *)stream;
@@ -275,7 +275,7 @@ hl_status hl_stream_skip(hl_stream *stream, uint64_t count, hl_error *error) {
   return HL_OK;
 }
 
-/* Finds which line ends the stream has, from its first line. Lines end with CR only if no LF follows the
+/* Finds out, from the first line, how lines of the stream end. Lines end with CR only if no LF follows the
  * first CR. */
 static void learn_line_end(hl_stream *stream, const unsigned char *bytes, size_t length, size_t available) {
   if (stream->line_end_known) return;

@@ -1,7 +1,7 @@
 /* volume/io/text.c - reads words and numbers of text headers.
  *
- * These functions do not depend on the program's locale. The C library's conversions depend on it: in some
- * locales they do not accept "1.5" as a number. */
+ * These functions do not depend on the program's locale. The conversions of the C library depend on the
+ * locale, and in some locales do not accept "1.5" as a number. */
 #include "volume/io/text.h"
 
 #include <math.h>
@@ -38,8 +38,8 @@ bool hl_text_is_one_of(const char *text, const char *alternatives) {
   }
 }
 
-/* A number written as sign digits [. digits] [e sign digits]. Its value is mantissa * 10^exponent. If
- * `long_form` is set, it has too many digits for the mantissa. */
+/* A number that a text gives as sign digits [. digits] [e sign digits]. The number's value is mantissa *
+ * 10^exponent. long_form: whether the number has too many digits for the mantissa. */
 typedef struct decimal {
   bool negative, long_form;
   uint64_t mantissa;
@@ -107,8 +107,9 @@ bool hl_text_number(const char *text, size_t length, double *value) {
   decimal number;
   if (length == 0 || length >= HL_NUMBER_CHARACTERS) return false;
   if (!scan_decimal(text, text + length, &number)) return scan_special(text, length, value);
-  /* the mantissa and the power of ten are exact as doubles, so that a single rounding gives the nearest
-   * double (W. D. Clinger, "How to read floating point numbers accurately", 1990, section 2) */
+  /* the mantissa and the power of ten are exact as doubles, so that their product or quotient, which is
+   * rounded once, is the nearest double (W. D. Clinger, "How to read floating point numbers accurately",
+   * 1990, section 2) */
   if (!number.long_form && number.mantissa <= (uint64_t)1 << 53 && number.exponent >= -22 &&
       number.exponent <= 22) {
     double magnitude = number.exponent < 0 ? (double)number.mantissa / power_of_ten[-number.exponent]

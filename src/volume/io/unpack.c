@@ -22,7 +22,7 @@
 /* ---- deflate ---- */
 
 bool hl_deflate_can_hold(size_t length, size_t count) {
-  enum { GREATEST_RATIO = 1032 }; /* 258 bytes in two bits */
+  enum { GREATEST_RATIO = 1032 }; /* two bits stand for at most 258 bytes */
   return count / GREATEST_RATIO <= length;
 }
 
@@ -31,14 +31,15 @@ static voidpf zlib_allocate(voidpf context, uInt count, uInt size) {
 }
 static void zlib_release(voidpf context, voidpf memory) { hl_release(context, memory); }
 
-/* The number of bytes that one call of zlib can process, at most `left`. zlib counts in 32 bits. */
+/* The number of the next bytes that one call of zlib processes, at most `left`. zlib counts bytes in 32
+ * bits. */
 static uInt at_most(size_t left) { return left < (1u << 30) ? (uInt)left : 1u << 30; }
 
 hl_status hl_unpack_deflate(hl_context *context, const unsigned char *packed, size_t length, void *bytes,
                             size_t count, bool *sound, hl_error *error) {
   enum {
     EITHER_HEADER = 15 + 32
-  }; /* zlib.h: the header may be a header of zlib or of gzip; the first bytes tell which one */
+  }; /* in zlib.h: the header is a header of zlib or of gzip, which zlib finds out from the first bytes */
   z_stream zlib = {.zalloc = zlib_allocate,
                    .zfree = zlib_release,
                    .opaque = context,

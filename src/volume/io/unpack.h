@@ -7,23 +7,23 @@
 
 #include "core/error.h"
 
-/* Returns whether packed data of `length` bytes can unpack to `count` bytes. Callers ask this before they
- * allocate memory. For deflate data, the greatest possible ratio decides; for Blosc data, the size in the
- * block's header. */
+/* Returns whether packed data of `length` bytes can unpack to `count` bytes. Callers call these functions
+ * before they allocate memory. For deflate data, the greatest possible ratio decides. For Blosc data, the
+ * size in the block's header decides. */
 bool hl_deflate_can_hold(size_t length, size_t count);
 bool hl_blosc_can_hold(const unsigned char *packed, size_t length, size_t count);
 
-/* Unpacks data, which must give exactly `count` bytes. *sound: set to false if the data are damaged, or give
- * more or fewer bytes. Deflate data may have the header of zlib or of gzip. hl_unpack_blosc() fails in builds
- * without Blosc. */
+/* Unpacks data, which must unpack to exactly `count` bytes. *sound: set to false if the data are damaged, or
+ * unpack to more or fewer bytes. Deflate data may have the header of zlib or of gzip. hl_unpack_blosc() fails
+ * in builds without Blosc. */
 hl_status hl_unpack_deflate(hl_context *context, const unsigned char *packed, size_t length, void *bytes,
                             size_t count, bool *sound, hl_error *error);
 hl_status hl_unpack_blosc(const char *path, const unsigned char *packed, size_t length, void *bytes,
                           size_t count, bool *sound, hl_error *error);
 
-/* These functions unpack a block of LZ4 (without a header), or a stream of bzip2 or xz. They fail in builds
- * without the library. They check whether the data can unpack to `count` bytes before they unpack
- * anything. */
+/* These functions unpack a block of LZ4 (without a header), or a stream of bzip2 or xz. In builds without the
+ * library of a packing, its function fails. The functions first check whether the data can unpack to `count`
+ * bytes. */
 hl_status hl_unpack_lz4(const char *path, const unsigned char *packed, size_t length, void *bytes,
                         size_t count, bool *sound, hl_error *error);
 hl_status hl_unpack_bzip2(const char *path, const unsigned char *packed, size_t length, void *bytes,
@@ -31,8 +31,8 @@ hl_status hl_unpack_bzip2(const char *path, const unsigned char *packed, size_t 
 hl_status hl_unpack_xz(const char *path, const unsigned char *packed, size_t length, void *bytes,
                        size_t count, bool *sound, hl_error *error);
 
-/* Returns whether `length` packed bytes can unpack to `count` bytes. ratio: the greatest number of bytes that
- * one packed byte can give. */
+/* Returns whether `length` packed bytes can unpack to `count` bytes. ratio: the greatest number of bytes to
+ * which one packed byte can unpack. */
 static inline bool hl_packed_can_hold(size_t length, size_t count, size_t ratio) {
   return count / ratio <= length;
 }

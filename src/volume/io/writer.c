@@ -2,7 +2,7 @@
  *
  * In: the grid of a volume. Out: the bytes before the voxels, native byte order. The world of NIfTI is
  * right-anterior-superior. The world of MetaImage is left-posterior-superior. The coordinates of a grid of
- * another anatomical space are converted, so that each voxel stays at its place in the body. */
+ * another anatomical space are converted, so that each voxel stays at its position in the body. */
 #define _GNU_SOURCE
 #include "volume/io/writer.h"
 
@@ -62,7 +62,7 @@ static void turn(hl_volume_description *grid) {
 
 /* Converts a grid to the format's anatomical space, if the grid states its own space. */
 static void bring_into(hl_space wanted, hl_volume_description *grid) {
-  if (grid->space == HL_SPACE_LAS) { /* only x differs from RAS */
+  if (grid->space == HL_SPACE_LAS) { /* LAS differs from RAS only in the sign of x */
     grid->origin[0] = 0 - grid->origin[0];
     for (int axis = 0; axis < 3; axis++) grid->axis[axis][0] = 0 - grid->axis[axis][0];
     grid->space = HL_SPACE_RAS;
@@ -79,7 +79,7 @@ static void find_steps(const hl_volume_description *grid, double length[3], doub
 
 /* ---- NRRD ---- */
 
-/* A unit's name as NRRD's documentation writes it. */
+/* The name of a unit in NRRD's documentation, such as "mm". */
 static const char *short_name(const char *unit) {
   if (strcmp(unit, "metre") == 0) return "m";
   if (strcmp(unit, "millimetre") == 0) return "mm";
@@ -176,7 +176,7 @@ static hl_status make_nifti(const char *path, const hl_volume_description *given
                      "%s: NIfTI holds %d voxels along an axis, not %zu: write .nrrd", path, INT16_MAX,
                      grid.dimensions[axis]);
   bring_into(HL_SPACE_RAS, &grid);
-  header->length = HEADER_BYTES + 4; /* four zeros after the header mean that there are no extensions */
+  header->length = HEADER_BYTES + 4; /* four zeros after the header mean that the file has no extensions */
   put_integer(header, 0, HEADER_BYTES);
   put_word(header, DIM, 3);
   put_word(header, DATATYPE, codes[grid.type]);
@@ -238,8 +238,8 @@ static hl_status make_vti(const char *path, const hl_volume_description *grid, h
 
 /* ---- MRC2014 (Cheng et al., J. Struct. Biol. 192, 2015, table 1) ---- */
 
-/* Returns whether the grid's axes have the directions that a crystal's cell has: the first one along X, the
- * second one in the plane of X and Y. */
+/* Returns whether the grid's axes have the directions of a crystal's cell: the first axis along X, the second
+ * axis in the plane of X and Y. */
 static bool is_cell(const hl_volume_description *grid) {
   const double(*axis)[3] = grid->axis;
   double flat = 1e-6 * vec3_length(vec3_of(axis[0]));
@@ -317,7 +317,7 @@ static hl_status make_npy(const char *path, const hl_volume_description *grid, h
       : is_little() ? '<'
                     : '>',
       kinds[grid->type], bytes, n[2], n[1], n[0]);
-  /* The text ends with a line feed, before which spaces fill it up, so that the voxels are aligned. */
+  /* The header's text is padded with spaces and ends with a line feed, so that the voxels are aligned. */
   size_t end = (header->length + ALIGNMENT) / ALIGNMENT * ALIGNMENT;
   memset(header->bytes + header->length, ' ', end - header->length);
   header->bytes[end - 1] = '\n';
@@ -330,26 +330,27 @@ static hl_status make_npy(const char *path, const hl_volume_description *grid, h
 /* ---- TIFF 6.0: a page for each slice, with the voxels' lengths as ImageJ writes them ----
  *
  * The first page's directory is in the header, the pixels of all pages follow it, and the other pages'
- * directories follow the pixels. ImageJ's own way for files above 4 GB is one page: places have 32 bits, and
- * the description tells how many pictures follow each other. */
+ * directories follow the pixels. Since positions in a TIFF file have 32 bits, a file above 4 GB is written as
+ * ImageJ writes it: with one page, whose description states the number of pictures that follow each other. */
 
 enum { TIFF_ENTRIES = 14, TIFF_ENTRY_BYTES = 12, TIFF_HEADER_BYTES = 1024 };
-/* places in the header: the directory, the two resolutions, and the description */
+/* positions in the header of the directory, of the two resolutions, and of the description */
 enum { TIFF_DIRECTORY = 8, TIFF_RESOLUTIONS = 192, TIFF_DESCRIPTION = 208 };
-/* the length of a directory: the number of entries, the entries, the place of the next directory */
+/* the number of bytes of a directory, which holds the number of entries, the entries, and the position of the
+ * next directory */
 enum { TIFF_DIRECTORY_BYTES = 2 + TIFF_ENTRIES * TIFF_ENTRY_BYTES + 4 };
 
 static uint64_t slice_bytes(const hl_volume_description *grid) {
   return (uint64_t)grid->dimensions[0] * grid->dimensions[1] * hl_voxel_type_bytes(grid->type);
 }
 
-/* The place of a page's directory after the voxels; directories begin at even places. */
+/* The position of a page's directory after the voxels. Directories begin at even positions. */
 static uint64_t directory_at(const hl_volume_description *grid, size_t page) {
   const uint64_t end = TIFF_HEADER_BYTES + slice_bytes(grid) * grid->dimensions[2];
   return end + end % 2 + (page - 1) * (uint64_t)TIFF_DIRECTORY_BYTES;
 }
 
-/* Returns whether all pages have a directory, because their places have 32 bits. */
+/* Returns whether all pages can have a directory, because the directories' positions fit into 32 bits. */
 static bool has_all_pages(const hl_volume_description *grid) {
   return directory_at(grid, grid->dimensions[2]) <= UINT32_MAX;
 }
@@ -373,15 +374,15 @@ static void put_directory(const hl_volume_description *grid, const char *descrip
       {257, LONG, 1, height},
       {258, SHORT, 1, 8 * (uint32_t)hl_voxel_type_bytes(type)}, /* bits of a sample */
       {259, SHORT, 1, 1},                                       /* no compression */
-      {262, SHORT, 1, 1},                                       /* black is 0 */
+      {262, SHORT, 1, 1},                                       /* the value 0 is black */
       {270, ASCII, (uint32_t)strlen(description) + 1, TIFF_DESCRIPTION},
-      {273, LONG, 1, (uint32_t)(TIFF_HEADER_BYTES + page * slice_bytes(grid))}, /* place of the pixels */
+      {273, LONG, 1, (uint32_t)(TIFF_HEADER_BYTES + page * slice_bytes(grid))}, /* position of the pixels */
       {277, SHORT, 1, 1},                                                       /* samples of a pixel */
       {278, LONG, 1, height},                                                   /* rows of a strip */
       {279, LONG, 1, (uint32_t)slice_bytes(grid)},
       {282, RATIONAL, 1, TIFF_RESOLUTIONS},
       {283, RATIONAL, 1, TIFF_RESOLUTIONS + 8},
-      {296, SHORT, 1, 1}, /* the resolution's unit is not an inch */
+      {296, SHORT, 1, 1}, /* the resolution has no unit */
       {339, SHORT, 1,
        !whole      ? 3
        : is_signed ? 2
@@ -401,7 +402,8 @@ static void put_directory(const hl_volume_description *grid, const char *descrip
 }
 
 /* Writes the number of pixels in a length of 1 as a fraction of whole numbers of 32 bits. Derived: the larger
- * one is near 2^31, so that the fraction's relative error is below 2^-31. Returns false if there is none. */
+ * of the two numbers is near 2^31, so that the fraction's relative error is below 2^-31. Returns false if no
+ * such fraction exists. */
 static bool put_resolution(double spacing, unsigned char *bytes) {
   const double most = 0x1p31, pixels = 1 / spacing, below = pixels < 1 ? most : floor(most / pixels);
   const double above = pixels < 1 ? floor(most * pixels) : floor(pixels * below + 0.5);
@@ -486,7 +488,7 @@ const hl_writer *hl_writer_at(size_t index) {
   return index < sizeof writers / sizeof *writers ? &writers[index] : NULL;
 }
 
-/* The exponent of ten of a unit in metres. */
+/* The exponent n of a unit that has 10^n metres. */
 static int power_of(const char *unit) {
   if (hl_text_starts(unit, "metre")) return 0;
   if (hl_text_starts(unit, "centimetre")) return -2;

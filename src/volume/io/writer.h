@@ -19,7 +19,7 @@ typedef struct hl_written_header {
   unsigned char bytes[HL_WRITER_HEADER_BYTES];
   size_t length;
   const char *end;  /* text after the voxels; null if there is none */
-  const char *unit; /* set by the caller: the unit of the grid's lengths, one that the writer knows; null if
+  const char *unit; /* set by the caller: the unit of the grid's lengths, one of the writer's `units`; null if
                      * unknown */
   size_t size_at;   /* position in the header at which the length of the packed voxels is to be written, in
                      * HL_WRITER_SIZE_CHARACTERS; 0 if the header does not state it */
@@ -34,28 +34,28 @@ typedef struct hl_writer {
    * dimensions, type, origin, axes, space. */
   hl_status (*make_header)(const char *path, const hl_volume_description *grid, hl_written_header *header,
                            hl_error *error);
-  /* the parts of the grid's place that the format cannot state: "space"; "origin", with the directions and
-   * the space; "place", which is everything; null if the format states all */
+  /* the properties of the grid that the format cannot state: "space"; "origin" (origin, directions and
+   * space); "place" (all properties); null if the format states all of them */
   const char *loses;
   const char *units; /* units of length that the format can state, separated by '|'. Lengths in other units
-                      * are converted to the first of them. Null if the format states no units; then lengths
-                      * are written as they are */
-  /* Makes the n-th piece of bytes that follows the voxels, from 0 on; returns its length, 0 after the last
-   * one. Null if there are no such bytes. */
+                      * are converted to the first unit. Null if the format states no units; lengths are then
+                      * written without conversion */
+  /* Makes the n-th piece of bytes that follows the voxels, from 0 on; returns the piece's length, 0 after the
+   * last piece. Null if no bytes follow the voxels. */
   size_t (*make_piece)(const hl_volume_description *grid, const hl_written_header *header, size_t n,
                        unsigned char bytes[HL_WRITER_HEADER_BYTES]);
-  const char *claims; /* the anatomical space that every file of the format states, as "RAS", also if the grid
-                       * has none; null if the format can leave it open */
+  const char *claims; /* the anatomical space that every file of the format states, such as "RAS", even if the
+                       * grid states no space; null if a file of the format need not state a space */
 } hl_writer;
 
 /* The unit in which a writer writes lengths that are given in `unit`. *factor: the number by which the
  * lengths are multiplied. If the volume or the format has no unit, the result is null and *factor is 1. */
 const char *hl_written_unit(const hl_writer *writer, const char *unit, double *factor);
 
-/* The writer for a file's name; null if there is none. */
+/* The writer for the ending of a file's name; null if no writer has the ending. */
 const hl_writer *hl_writer_for(const char *path);
 
-/* The writer number `index`, from 0 on; null beyond the last. */
+/* The writer with the number `index`, from 0; null after the last writer. */
 const hl_writer *hl_writer_at(size_t index);
 
 #endif

@@ -10,7 +10,8 @@ static hl_status fail(const hl_stream *stream, const char *message, hl_error *er
                         (unsigned long long)stream->offset, message);
 }
 
-/* Goes to the next character c. *found: set to false if the stream ends before there is one. */
+/* Moves the stream to the next character c. *found: set to false if the rest of the stream has no character
+ * c. */
 static hl_status skip_to(hl_stream *stream, char c, bool *found, hl_error *error) {
   *found = false;
   while (!*found) {
@@ -25,7 +26,7 @@ static hl_status skip_to(hl_stream *stream, char c, bool *found, hl_error *error
   return HL_OK;
 }
 
-/* Goes past the next text `ending`, which must end with '>'. */
+/* Moves the stream past the next occurrence of the text `ending`, which must end with '>'. */
 static hl_status skip_past(hl_stream *stream, const char *ending, hl_error *error) {
   size_t length = strlen(ending);
   for (;;) {
@@ -59,7 +60,7 @@ static size_t tag_length(const unsigned char *bytes, size_t length) {
   return 0;
 }
 
-/* Reads a character reference, such as "&#181;" or "&#xB5;", and writes its character to *out as UTF-8. This
+/* Reads a character reference, such as "&#181;" or "&#xB5;", and writes the character to *out as UTF-8, which
  * is never longer than the reference. Returns the reference's length; 0 if the text is no character
  * reference. */
 static size_t resolve_number(const char *value, char **out) {
@@ -85,7 +86,7 @@ static size_t resolve_number(const char *value, char **out) {
   return n + 1;
 }
 
-/* Replaces &lt; &gt; &amp; &quot; &apos; and character references in place; other entities stay as they are.
+/* Replaces &lt; &gt; &amp; &quot; &apos; and character references in place; other entities are not changed.
  */
 static void resolve_entities(char *value) {
   static const struct {
@@ -108,8 +109,8 @@ static void resolve_entities(char *value) {
 
 static bool ends_name(char c) { return c == 0 || hl_is_space(c) || c == '=' || c == '/'; }
 
-/* Separates the attribute name="value" at *cursor from the rest of the tag, and moves *cursor past it.
- * Returns false if it is malformed. */
+/* Separates the attribute name="value" at *cursor from the rest of the tag, and moves *cursor past the
+ * attribute. Returns false if the attribute is malformed. */
 static bool cut_attribute(char **cursor, hl_xml_tag *tag) {
   if (tag->attribute_count == HL_XML_ATTRIBUTES) return false;
   char *name = *cursor, *end = name;

@@ -1,5 +1,5 @@
-/* volume/io/xml.h - reads the tags of an XML file one by one. The reader is sufficient for VTK's files, and
- * safe for all other XML files.
+/* volume/io/xml.h - reads the tags of an XML file one by one. The functions read the XML of VTK's and OME's
+ * files, and are safe for all other XML files.
  *
  * Text between tags, comments and processing instructions are skipped. Document type declarations (and with
  * them entity definitions and external references) and CDATA are refused. */
@@ -11,7 +11,7 @@
 enum { HL_XML_TAG_BYTES = 8192, HL_XML_ATTRIBUTES = 32 };
 
 typedef struct hl_xml_tag {
-  char text[HL_XML_TAG_BYTES]; /* the tag's text; names and values are pointers into it */
+  char text[HL_XML_TAG_BYTES]; /* the tag's text, into which the names and values point */
   const char *name;
   bool is_start, is_end; /* whether the tag begins, and whether it ends, an element; both are true for
                           * <name/> */
@@ -21,7 +21,8 @@ typedef struct hl_xml_tag {
   } attribute[HL_XML_ATTRIBUTES];
 } hl_xml_tag;
 
-/* Reads the next tag. The stream continues after it. *ended: whether there are no more tags. */
+/* Reads the next tag. The stream continues after the tag. *ended: set to whether the file has no further
+ * tag. */
 hl_status hl_xml_next_tag(hl_stream *stream, hl_xml_tag *tag, bool *ended, hl_error *error);
 
 /* The value of an attribute; null if the tag does not have it. */

@@ -8,7 +8,7 @@
 #include "volume/exact.h"
 #include "volume/store/pages.h"
 
-/* The arrays of a copy while it is made. */
+/* The state of making a copy of a label map over ranks in one array. */
 typedef struct gathering {
   const hl_volume *map;
   const hl_own_voxels *own;
@@ -38,7 +38,8 @@ static void pack_numbers(const gathering *g, const hl_box *slice, unsigned char 
 }
 
 /* Packs a slice of this rank's block for the other ranks. If `exact`, all ranks send the file's own numbers.
- * A rank whose floats round nothing has kept no such numbers, and makes them from its floats. */
+ * A rank whose floats round none of its numbers has not kept the file's own numbers, and converts its floats
+ * to them. */
 static void pack(const gathering *g, const hl_box *slice) {
   const size_t count = slice->count[0] * slice->count[1];
   if (g->exact && has_numbers(g->own)) {
@@ -128,7 +129,8 @@ static hl_status gather(const hl_volume *map, hl_volume **whole, hl_error *error
 
 /* ---- sparse pages ---- */
 
-/* Makes a copy whose voxels are in one array. Sparse pages have no numbers that the stored values round. */
+/* Makes a copy, in one array, of a map in sparse pages. Stored values in sparse pages never round the file's
+ * numbers. */
 static hl_status spread(const hl_volume *map, hl_volume **whole, hl_error *error) {
   const size_t *n = map->dimension, rows = n[1] * n[2];
   unsigned char *voxels = hl_allocate(map->context, rows, map->row_bytes);
@@ -138,8 +140,8 @@ static hl_status spread(const hl_volume *map, hl_volume **whole, hl_error *error
   return adopt(map, voxels, NULL, whole, error);
 }
 
-/* Makes the copy, unless it has been made already. Several threads may call this function, because they may
- * draw labels of one map. */
+/* Makes the copy of a map in sparse pages, unless the copy exists. Several threads that draw labels of one
+ * map may call this function. */
 static hl_status spread_once(hl_volume *map, hl_error *error) {
   pthread_mutex_lock(&map->pages->lock);
   hl_status status = map->gathered != NULL ? HL_OK : spread(map, &map->gathered, error);

@@ -39,8 +39,8 @@ enum { LATTICES = 6 };
 
 typedef struct lattice {
   size_t count[3];       /* number of indices kept along each axis */
-  uint32_t *place[3];    /* [dimension]; for each index along the axis, its place among the kept indices, or
-                          * NOT_KEPT */
+  uint32_t *place[3];    /* [dimension]; for each index along the axis, the position of this index among the
+                          * kept indices, or NOT_KEPT */
   unsigned char *voxels; /* [count[2]][count[1]][count[0]]; stored values */
 } lattice;
 
@@ -52,8 +52,8 @@ struct hl_glimpse {
 
 /* The indices along an axis that a lattice keeps. */
 typedef struct series {
-  size_t first, step; /* kept indices form runs of neighbours; the runs begin at first, first + step, first +
-                       * 2 step and so on */
+  size_t first, step; /* the kept indices form runs of neighbours, which begin at the indices first, first +
+                       * step, first + 2 step and so on */
   size_t run;         /* number of consecutive indices in each run */
   bool last;          /* whether the last index of the axis is kept, too */
 } series;
@@ -64,8 +64,8 @@ static bool keeps(const series *s, size_t index, size_t dimension) {
 
 /* Lists the indices that each lattice of voxels keeps for the automatic choices of guess/. Lattice 0:
  * samples, of which the first lies half a step inside the grid, and the next neighbour of each sample along
- * each axis. Lattice 1: samples, of which the first is voxel 0, and the next two neighbours of each. Lattice
- * 2: whole rows along x. Lattices 3 to 5: samples on the three pairs of opposite faces. */
+ * each axis. Lattice 1: samples, of which the first is voxel 0, and the next two neighbours of each sample.
+ * Lattice 2: whole rows along x. Lattices 3 to 5: samples on the three pairs of opposite faces. */
 static void list_series(const size_t dimension[3], series all[LATTICES][3]) {
   size_t step = hl_lattice_step(dimension, HL_LATTICE_PLACES), border = hl_border_step(dimension),
          rows = hl_row_step(dimension);

@@ -1,7 +1,8 @@
-/* volume/store/over_ranks.c - volumes whose voxels lie in the memory of all ranks (halflight/ranks.h).
+/* volume/store/over_ranks.c - makes volumes whose voxels lie in the memory of several ranks
+ * (halflight/ranks.h).
  *
- * In: this rank's block, which is given by a caller (here), or consists of slices that were read from a file
- * (destination.c). Out: a volume whose pages (pages.h) are fetched from the ranks. */
+ * In: this rank's block, which is a caller's block, or slices that destination.c has stored from a file. Out:
+ * a volume whose pages (pages.h) are fetched from the ranks. */
 #include "core/door.h"
 #include "core/memory.h"
 #include "volume/store/own_voxels.h"

@@ -97,7 +97,7 @@ void hl_own_voxels_release(hl_own_voxels *own) {
   hl_release(own->context, own);
 }
 
-/* Copies a part of a row of the box. */
+/* Copies `count` adjacent voxels of a row as stored values. */
 static void copy_row(const hl_own_voxels *own, const unsigned char *from, size_t count, unsigned char *to) {
   if (own->row != NULL) {
     hl_voxels_gather(from, own->stride[0], hl_voxel_type_bytes(own->type), count, own->row);

@@ -3,7 +3,7 @@
  *
  * Whole slices, and whole rows of a slice, are written to the file page by page, in as few pieces as
  * possible. If they were copied into the mapping, the system would first have to map each unit of memory, and
- * to read or clear it. Incomplete rows are copied into the mapping. */
+ * to read or clear it. Only incomplete rows are copied into the mapping. */
 #define _GNU_SOURCE
 #include <string.h>
 
@@ -16,11 +16,11 @@
 /* ---- parts of rows ---- */
 
 /* Finds which pages along an axis hold a voxel: the function returns the number of the first page, and *last
- * is set to the number of the last page. They differ if the voxel lies where pages overlap. */
+ * is set to the number of the last page. The two numbers differ if the voxel lies where pages overlap. */
 static size_t first_page(const hl_pages *pages, int axis, size_t voxel, size_t *last) {
   *last = hl_page_of(pages, axis, voxel);
   size_t within = voxel - (*last << pages->shift), first = *last;
-  /* pages that are small may overlap with more than one other page */
+  /* a small page may overlap with more than one other page */
   while (first > 0 &&
          within + ((*last - first + 1) << pages->shift) < ((size_t)1 << pages->shift) + PAGE_OVERLAP)
     first--;
@@ -59,8 +59,8 @@ enum {
   SLICES_AT_ONCE = 8 /* number of slices that are written to a page at once */
 };
 
-/* A block of voxels to write: rows j0 to j1 - 1 of slices k0 to k1 - 1. Of several slices, it must have all
- * rows. */
+/* A block of voxels to write: rows j0 to j1 - 1 of slices k0 to k1 - 1. A block of several slices must have
+ * all rows of each slice. */
 typedef struct row_block {
   size_t j0, j1, k0, k1;
   const unsigned char *values; /* [k1 - k0][j1 - j0][dimension[0]]; stored values */
@@ -86,9 +86,9 @@ static page_part part_in(const hl_pages *pages, const size_t page[3], const row_
   return p;
 }
 
-/* Writes slices k0 to k1 - 1 of a page's part of a block. In the page, they are a single run of bytes. Slices
- * of zeros are not written: the file is sparse, and has zeros where nothing was written. Returns false if the
- * system has refused the write. */
+/* Writes slices k0 to k1 - 1 of a page's part of a block. In the page, these slices are a single run of
+ * bytes. Slices of zeros are not written, because parts of the sparse file that were not written are zeros.
+ * Returns false if the system has refused the write. */
 static bool write_part(const hl_pages *pages, const page_part *p, size_t k0, size_t k1,
                        const row_block *block) {
   unsigned char part[SLICES_AT_ONCE * PAGE_SLICE_BYTES], *to = part;
@@ -134,8 +134,8 @@ static bool write_block(const hl_pages *pages, const row_block *block) {
 }
 
 /* Writes the first of `count` voxels, which begin with number `first`. If the voxels begin at the start of a
- * slice and hold at least one whole slice, writes their whole slices. If not, writes their whole rows in the
- * first slice. Returns the number of voxels that were written; it may be 0. */
+ * slice and contain at least one whole slice, all whole slices are written. Otherwise the whole rows in the
+ * first slice are written. Returns the number of voxels that were written, which may be 0. */
 static size_t write_rows(hl_pages *pages, size_t first, size_t count, const unsigned char *values) {
   const size_t *n = pages->dimension;
   size_t row = first / n[0], j = row % n[1], k = row / n[1], rows = count / n[0];
@@ -167,7 +167,7 @@ void hl_pages_store(hl_pages *pages, size_t first, size_t count, const void *val
 
 /* ---- sparse pages ---- */
 
-/* Returns whether all given voxels have the value that voxels have before they are stored. */
+/* Returns whether all values equal the value of voxels of sparse pages that were not stored. */
 static bool all_unstored(const hl_pages *pages, const unsigned char *values, size_t count) {
   const size_t bytes = hl_storage_bytes(pages->storage);
   return memcmp(values, pages->value, bytes) == 0 && memcmp(values, values + bytes, (count - 1) * bytes) == 0;

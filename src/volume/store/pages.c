@@ -18,9 +18,9 @@
 /* ---- the scratch file ---- */
 
 /* SLICES_AROUND: the mapping has room for this many slices before the first page and after the last, because
- * samplers load whole windows of voxels, which may reach beyond. LINE: pages begin at a cache line. UNIT,
- * WHOLE_UNITS: pages of at least WHOLE_UNITS bytes, and pages over ranks, begin at one of the system's units
- * of memory. */
+ * samplers load whole windows of voxels, which may reach beyond the volume. LINE: pages begin at a cache
+ * line. UNIT, WHOLE_UNITS: pages of at least WHOLE_UNITS bytes, and pages over ranks, begin at one of the
+ * system's units of memory. */
 enum { SLICES_AROUND = 16, LINE = 64, UNIT = 4096, WHOLE_UNITS = 16 * UNIT };
 
 static size_t round_up(size_t bytes, size_t unit) { return (bytes + unit - 1) / unit * unit; }
@@ -33,7 +33,7 @@ static bool multiply_all(const size_t *factors, int count, size_t *product) {
 }
 
 /* Sets all sizes of the pages and the mapping. in_units: whether each page begins at one of the system's
- * units of memory. Returns false if sizes overflow. */
+ * units of memory. Returns false if a size overflows. */
 static bool plan(const hl_volume_description *grid, int shift, bool in_units, hl_pages *pages) {
   size_t side = (size_t)1 << shift, voxels[3];
   *pages = (hl_pages){.storage = hl_voxel_type_storage(grid->type), .shift = shift};
@@ -118,14 +118,14 @@ static void count_held(hl_pages *pages, bool more) {
 
 /* ---- sparse pages ---- */
 
-/* Takes the next place in the mapping, and gives all voxels there the value of voxels that are not stored.
- * Returns the place's number. */
+/* Takes the next free place in the mapping for a sparse page, and sets all voxels of the page to the value of
+ * voxels that are not stored. Returns the place's number. */
 static size_t take_place(hl_pages *pages) {
   const size_t place = __atomic_fetch_add(&pages->places, 1, __ATOMIC_RELAXED),
                bytes = hl_storage_bytes(pages->storage);
   static const unsigned char zero[4] = {0};
   count_held(pages, true);
-  if (memcmp(pages->value, zero, bytes) == 0) return place; /* memory from the system is zero already */
+  if (memcmp(pages->value, zero, bytes) == 0) return place; /* new memory from the system is zero */
   unsigned char *to = pages->first + place * pages->page_bytes;
   for (size_t at = 0; at < pages->page_bytes; at += bytes) memcpy(to + at, pages->value, bytes);
   return place;
@@ -151,7 +151,7 @@ static hl_status map_nothing(hl_pages *pages, hl_error *error) {
   if (mapping == MAP_FAILED)
     return hl_fail(error, HL_ERROR_MEMORY, "out of memory: no addresses for %.1f MiB of voxels: %s",
                    (double)pages->mapping_bytes / (1 << 20), strerror(errno));
-  /* without this, the system could join several pages to one large page of its own */
+  /* without this call, the system could back several pages by one large page of memory */
   madvise(mapping, pages->mapping_bytes, MADV_NOHUGEPAGE);
   pages->mapping = mapping;
   pages->first = pages->mapping + round_up(SLICES_AROUND * pages->slice_bytes, UNIT);
@@ -173,7 +173,7 @@ hl_status hl_pages_create_sparse(hl_context *context, const hl_volume_descriptio
   hl_pages *made = hl_allocate_zeroed(context, 1, sizeof *made);
   if (made == NULL) return hl_fail_memory(error, sizeof *made, "a volume's pages");
   bool possible = plan(grid, shift, true, made) && page_count(made) < UINT32_MAX;
-  made->mapping_bytes += made->page_bytes; /* place 0 */
+  made->mapping_bytes += made->page_bytes; /* place 0 stands for all pages in which nothing was stored */
   made->context = context;
   made->file = made->exact_file = -1;
   pthread_mutex_init(&made->lock, NULL);
@@ -272,12 +272,12 @@ bool hl_pages_wanted(const hl_context *context, const hl_volume_description *gri
 
 /* ---- memory ---- */
 
-/* A page fault may also map neighbouring units of memory. They lie in an aligned window of this many bytes
- * (Linux, fault_around_bytes). */
+/* A page fault may also map neighbouring units of memory. All units that a fault maps lie in an aligned
+ * window of FAULT_WINDOW bytes (Linux, fault_around_bytes). */
 enum { FAULT_WINDOW = 1 << 16 };
 
-/* Tells the system that it may take back the memory of a page. This includes all units of memory that page
- * faults in the page may have mapped. */
+/* Gives the memory of a page back to the system, with all units of memory that page faults in the page may
+ * have mapped. */
 static void drop(const hl_pages *pages, size_t number) {
   uintptr_t first = (uintptr_t)pages->first + number * pages->page_bytes;
   if (pages->blocks != NULL) {
@@ -292,7 +292,7 @@ static void drop(const hl_pages *pages, size_t number) {
   if (begin < end) madvise((void *)begin, end - begin, MADV_DONTNEED);
 }
 
-/* Forgets a page if it still is in the state `state`. Other threads may have changed the state. */
+/* Forgets a page if the page is still in the state `state`. Other threads may have changed the state. */
 static void forget_if(hl_pages *pages, size_t number, unsigned char state) {
   if (!__atomic_compare_exchange_n(&pages->state[number], &state, (unsigned char)PAGE_FORGOTTEN, false,
                                    __ATOMIC_RELAXED, __ATOMIC_RELAXED))
@@ -305,8 +305,8 @@ static void forget_if(hl_pages *pages, size_t number, unsigned char state) {
   count_held(pages, false);
 }
 
-/* Moves the clock's hand past one page. If the page was not needed since the hand moved past it the last
- * time, the page is forgotten. */
+/* Moves the clock's hand past one page. A page that was not needed since the hand's last visit is
+ * forgotten. */
 static void move_hand(hl_pages *pages, size_t count) {
   size_t number = __atomic_fetch_add(&pages->hand, 1, __ATOMIC_RELAXED) % count;
   unsigned char state = __atomic_load_n(&pages->state[number], __ATOMIC_RELAXED);
@@ -317,7 +317,7 @@ static void move_hand(hl_pages *pages, size_t count) {
 }
 
 /* The number of bytes of this volume's pages that may stay in memory when `bytes` more bytes are allocated;
- * UINT64_MAX if there is no limit. */
+ * UINT64_MAX if the context has no memory limit. */
 static uint64_t room(const hl_pages *pages, uint64_t bytes) {
   hl_context *context = pages->context;
   uint64_t limit = context->options.memory_limit, least = LEAST_PAGES * (uint64_t)pages->page_bytes;
@@ -327,9 +327,9 @@ static uint64_t room(const hl_pages *pages, uint64_t bytes) {
   return limit < others + least ? least : limit - others;
 }
 
-/* Makes room for an allocation of `bytes` bytes. If the pages in memory exceed the bytes that they may then
- * have, pages are forgotten until they have a sixteenth less than these bytes. In this way the hand moves
- * seldom. */
+/* Makes room for an allocation of `bytes` bytes. If the pages in memory exceed the bytes that room() allows,
+ * pages are forgotten until the pages take a sixteenth less than these bytes. Due to the surplus, pages are
+ * forgotten seldom. */
 static void make_room(hl_pages *pages, uint64_t bytes) {
   if (hl_pages_are_sparse(pages)) return;
   uint64_t most = room(pages, bytes);
@@ -345,12 +345,12 @@ void hl_pages_finish(hl_pages *pages) {
   if (pages->blocks != NULL || hl_pages_are_sparse(pages)) return;
   close(pages->file);
   pages->file = -1;
-  madvise(pages->mapping, pages->mapping_bytes, MADV_RANDOM); /* from now on the system reads no further than
-                                                               * fetch() asks */
+  madvise(pages->mapping, pages->mapping_bytes, MADV_RANDOM); /* from now on the system reads only the bytes
+                                                               * that fetch() requests */
 }
 
-/* Asks the system to read a whole page at once. Otherwise the system reads small parts of it, each when it is
- * first accessed. */
+/* Asks the system to read a whole page at once. Otherwise the system would read each small part of the page
+ * when the part is first accessed. */
 static void fetch(const hl_pages *pages, size_t number) {
   uintptr_t first = (uintptr_t)pages->first + number * pages->page_bytes, begin = first / UNIT * UNIT;
   madvise((void *)begin, first + pages->page_bytes - begin, MADV_WILLNEED);
@@ -371,8 +371,8 @@ static void fetch_from_ranks(const hl_pages *pages, size_t number) {
                   pages->slice_bytes);
 }
 
-/* Makes sure that a page over ranks is in memory. Its state becomes PAGE_NEEDED only after its voxels are
- * complete, because other threads then read them at once. */
+/* Makes sure that a page over ranks is in memory. The page's state becomes PAGE_NEEDED only after all voxels
+ * were copied, because other threads read the voxels of a page in this state. */
 static void hold_over_ranks(hl_pages *pages, size_t number) {
   unsigned char state = PAGE_HELD;
   if (__atomic_compare_exchange_n(&pages->state[number], &state, (unsigned char)PAGE_NEEDED, false,
@@ -386,7 +386,8 @@ static void hold_over_ranks(hl_pages *pages, size_t number) {
     __atomic_store_n(&pages->state[number], (unsigned char)PAGE_COMING, __ATOMIC_RELAXED);
     count_held(pages, true);
     make_room(pages, 0);
-    pthread_mutex_unlock(&pages->lock); /* while this thread waits, other threads can fetch other pages */
+    pthread_mutex_unlock(&pages->lock); /* without the lock, other threads can fetch other pages while this
+                                         * thread waits */
     fetch_from_ranks(pages, number);
     pthread_mutex_lock(&pages->lock);
     pthread_cond_broadcast(&pages->came);
@@ -396,8 +397,7 @@ static void hold_over_ranks(hl_pages *pages, size_t number) {
 }
 
 void hl_pages_hold(const hl_pages *held, size_t number) {
-  hl_pages *pages = (hl_pages *)held; /* volumes are constant for their readers, but the states of pages are
-                                       * not */
+  hl_pages *pages = (hl_pages *)held; /* readers get constant pages, but holding a page changes its state */
   if (pages->blocks != NULL) {
     hold_over_ranks(pages, number);
     return;
@@ -457,7 +457,7 @@ bool hl_pages_take_counts(hl_pages *pages, uint64_t *counts) {
   return whole;
 }
 
-/* Copies a row from this rank's own block. Returns false unless the whole row lies in the block. */
+/* Copies row (j, k) from this rank's own block. Returns false unless the block contains the whole row. */
 static bool own_row(const hl_pages *pages, size_t j, size_t k, void *row) {
   if (pages->own == NULL) return false;
   const hl_box wanted = {{0, j, k}, {pages->dimension[0], 1, 1}};

@@ -1,24 +1,26 @@
-/* volume/store/pages.h - voxels in a scratch file, or in the memory of other ranks, for volumes that are
- * larger than memory; and voxels in memory of which most have one value.
+/* volume/store/pages.h - stores voxels in pages: in a scratch file or in the memory of other ranks for
+ * volumes that are larger than memory, or in sparse pages in memory for volumes most of whose voxels have one
+ * value.
  *
  * A scratch file holds pages: cubes of voxels. Page p of an axis holds the voxels from p * side to p * side +
- * side + PAGE_OVERLAP - 1, fewer at the grid's end. Therefore any 4x4x4 neighbouring voxels lie completely in
- * the page of the first of them. The file is mapped: the system reads a page when one of its voxels is
- * needed. A renderer's sheet crosses few pages, and neighbouring sheets cross the same ones. The file has no
- * name, so that it vanishes with the volume or the process.
+ * side + PAGE_OVERLAP - 1, and fewer voxels at the grid's end. Therefore any 4x4x4 neighbouring voxels lie
+ * completely in the page of their first voxel. The file is mapped into memory, and the system reads a page
+ * when a voxel of the page is needed. A renderer's sheet crosses few pages, and neighbouring sheets cross
+ * mostly the same pages. The file has no name, so that it vanishes with the volume or the process.
  *
  * Pages and the context's blocks together stay below the context's memory limit, except that LEAST_PAGES
- * pages are always allowed. If one more page is needed, pages that were not needed for long are forgotten
- * (the clock algorithm: F. J. Corbato, A Paging Experiment with the Multics System, 1968). If another thread
- * is reading such a page, the system reads it from the file again.
+ * pages are always allowed. If a further page is needed, pages that were not needed for the longest time are
+ * forgotten (the clock algorithm: F. J. Corbato, A Paging Experiment with the Multics System, 1968). If
+ * another thread is reading a page that is forgotten, the system reads the page from the file again.
  *
- * Pages over ranks do not lie in a file: a page is copied from the ranks whose blocks hold it
- * (ranks/blocks.h), and forgotten as a whole. Each page has a version. By the version, a thread that has read
- * a page can tell whether the page was forgotten meanwhile. If so, the thread reads the page once more: see
- * hl_page_begin().
+ * Pages over ranks do not lie in a file: a page is copied from the ranks whose blocks hold the page's voxels
+ * (ranks/blocks.h), and is forgotten as a whole. Each page has a version, which changes when the page is
+ * forgotten. A thread that has read voxels of a page compares versions, and reads the voxels again if the
+ * page was forgotten meanwhile: see hl_page_begin().
  *
- * Sparse pages lie in memory, in the order in which their first voxels were stored. All pages in which
- * nothing was stored are one page, whose voxels have one value. Sparse pages are never forgotten. */
+ * Sparse pages lie in memory, in the order in which their first voxels were stored. All pages in which no
+ * voxel was stored share one page of memory, whose voxels have one value. Sparse pages are never
+ * forgotten. */
 #ifndef HL_VOLUME_PAGES_H
 #define HL_VOLUME_PAGES_H
 
@@ -27,14 +29,15 @@
 #include "volume/store/own_voxels.h"
 #include "volume/volume.h"
 
-/* The states of a page. FORGOTTEN: not in memory. HELD: in memory. NEEDED: in memory, and needed since the
- * clock's hand moved past it. COMING: a thread is fetching the page from other ranks. */
-enum { PAGE_FORGOTTEN = 0, PAGE_HELD = 1, PAGE_NEEDED = 2, PAGE_COMING = 3 /* over ranks */ };
+/* The states of a page. FORGOTTEN: the page is not in memory. HELD: the page is in memory. NEEDED: the page
+ * is in memory, and was needed since the clock's hand moved past it. COMING: a thread is fetching the page
+ * from other ranks. */
+enum { PAGE_FORGOTTEN = 0, PAGE_HELD = 1, PAGE_NEEDED = 2, PAGE_COMING = 3 /* only over ranks */ };
 
 enum {
   PAGE_SHIFT = 6,   /* a page's side is 2^6 = 64 voxels; tests use smaller pages */
   PAGE_OVERLAP = 3, /* number of voxels along an axis that a page has in common with the next page */
-  LEAST_PAGES = 16  /* this number of pages may be in memory even if they exceed the limit */
+  LEAST_PAGES = 16  /* number of pages that may be in memory even if they exceed the memory limit */
 };
 
 typedef struct hl_pages {
@@ -45,18 +48,18 @@ typedef struct hl_pages {
   unsigned char *first; /* the first page in the mapping */
   hl_context *context;  /* the context, whose count and limit of memory include the pages */
   hl_storage storage;
-  size_t dimension[3];  /* voxels of the volume */
+  size_t dimension[3];  /* number of voxels of the volume along each axis */
   size_t count[3];      /* number of pages along each axis; page (x, y, z) has the number (z * count[1] + y) *
                          * count[0] + x */
   unsigned char *state; /* owned; [pages]; the state of each page, PAGE_...; atomic */
   uint64_t held_bytes;  /* bytes of this volume's pages that are in memory; atomic */
-  size_t hand;          /* the clock's hand: modulo the number of pages, the number of the page that it
+  size_t hand;          /* the clock's hand: modulo the number of pages, the number of the page that the hand
                          * reaches next; atomic */
   bool filled;          /* whether hl_pages_finish() has been called */
   bool in_use;          /* whether the pages belong to a volume; if several ranks share the volume, other
-                         * ranks may then ask for voxels */
+                         * ranks can request voxels while in_use is true */
   hl_blocks *blocks;    /* owned; null for a scratch file */
-  hl_own_voxels *own;   /* owned; the voxels behind `blocks` */
+  hl_own_voxels *own;   /* owned; the voxels of this rank's block */
   uint32_t *version;    /* owned; [pages] over ranks, else null; the version of each page, which rises when
                          * the page is forgotten; atomic */
   uint32_t *place;      /* owned; [pages] of sparse pages, else null; the place of each page in the mapping,
@@ -80,14 +83,15 @@ typedef struct hl_pages {
                                               * of a page to the next, and from a page to the next */
 } hl_pages;
 
-/* Makes pages in a new scratch file in the folder. The file's space on the disk is taken at once, and all
+/* Makes pages in a new scratch file in the folder. The file's space on the disk is reserved at once, and all
  * voxels are zeros. *pages is owned by the caller, until a volume takes it over. */
 hl_status hl_pages_create(hl_context *context, const char *folder, const hl_volume_description *grid,
                           int shift, hl_pages **pages, hl_error *error);
 void hl_pages_release(hl_pages *pages); /* null is allowed */
 
-/* Makes the pages of a volume over ranks. They are filled when they are needed. own: taken over, also on
- * failure. All ranks must call this function, and hl_pages_release(). */
+/* Makes the pages of a volume over ranks. A page gets its voxels from the ranks when the page is needed. own:
+ * the pages take over the block, also on failure. All ranks must call this function, and
+ * hl_pages_release(). */
 hl_status hl_pages_create_over_ranks(hl_ranks *ranks, hl_own_voxels *own, const hl_volume_description *grid,
                                      int shift, hl_pages **pages, hl_error *error);
 
@@ -100,57 +104,58 @@ static inline bool hl_pages_are_sparse(const hl_pages *pages) { return pages->pl
 /* The fraction of all sparse pages in which voxels were stored, 0 to 1. */
 double hl_pages_share(const hl_pages *pages);
 
-/* Gives memory to a sparse page, unless the page has some already. Several threads may call this function. */
+/* Allocates the memory of a sparse page, unless the page has memory already. Several threads may call this
+ * function. */
 void hl_pages_own(hl_pages *pages, size_t number);
 
 /* Stores a box of voxels in sparse pages. values: [count[2]][count[1]][count[0]]; stored values. Several
  * threads may store different voxels at the same time. */
 void hl_pages_store_box(hl_pages *pages, const size_t begin[3], const size_t count[3], const void *values);
 
-/* Copies all voxels of sparse pages to `voxels` ([k][j][i]), and gives the memory of pages back as soon as
- * they are copied. Afterwards the pages can only be released. */
+/* Copies all voxels of sparse pages to `voxels` ([k][j][i]), and gives back the memory of pages as soon as
+ * their voxels are copied. Afterwards the caller can only release the pages. */
 void hl_pages_spread(hl_pages *pages, void *voxels);
 
 /* Returns whether none of `count` voxels from number `first` on ([k][j][i]) lies in a sparse page in which
- * voxels were stored. Returns false for pages of another kind. */
+ * voxels were stored. Returns false if the pages are not sparse. */
 bool hl_pages_have_one_value(const hl_pages *pages, size_t first, size_t count);
 
-/* Returns whether a volume should be put into a scratch file. It should if its voxels, together with a
- * renderer's tables for them, exceed the memory that the limit leaves, and if the context has a scratch
- * folder. */
+/* Returns whether a volume should be put into a scratch file. The result is true if the context has a scratch
+ * folder, and if the voxels and a renderer's tables for them exceed the free memory within the limit. */
 bool hl_pages_wanted(const hl_context *context, const hl_volume_description *grid);
 
 /* Stores `count` values from number `first` on ([k][j][i]) in all pages that hold these voxels. Each voxel
  * may be stored only once. Storing several whole slices at once is fastest. */
 void hl_pages_store(hl_pages *pages, size_t first, size_t count, const void *values);
 
-/* Takes the counts of the stored values. counts: [hl_values_of(storage)]. Returns false for floats, if the
- * counts were taken before, or if not each voxel was stored once. */
+/* Copies the counts of the stored values, and releases the pages' own counts. counts:
+ * [hl_values_of(storage)]. Returns false for floats, if the counts were taken before, or if not each voxel
+ * was stored once. */
 bool hl_pages_take_counts(hl_pages *pages, uint64_t *counts);
 
-/* Must be called after the last voxel was stored. From then on, a page that is needed is read as a whole, and
- * without its neighbours. Without this call, the system would read farther than the page, and would map more
- * memory than is counted. */
+/* Must be called after the last voxel was stored. After this call, a needed page is read as a whole, and
+ * without neighbouring pages. Without this call, the system would read farther than the page, and would map
+ * more memory than is counted. */
 void hl_pages_finish(hl_pages *pages);
 
-/* Makes a volume over ranks. own: taken over, also on failure. shift: PAGE_SHIFT; less for smaller pages.
- * name: starts the error lines. */
+/* Makes a volume over ranks. own: the volume takes over the block, also on failure. shift: a page's side is
+ * 2^shift voxels; usually PAGE_SHIFT. name: starts the error lines. */
 hl_status hl_volume_over_ranks(hl_ranks *ranks, const hl_volume_description *whole, hl_own_voxels *own,
                                int shift, const char *name, hl_volume **volume, hl_error *error);
 
 /* Copies the voxels of a row. row: [dimension[0]] stored values. */
 void hl_pages_load_row(const hl_pages *pages, size_t j, size_t k, void *row);
 
-/* Forgets all pages. It is called after a pass over all voxels, before other memory is allocated. Other
- * threads may read pages at the same time. */
+/* Forgets all pages. Callers call this function after a pass over all voxels, before they allocate other
+ * memory. Other threads may read pages at the same time. */
 void hl_pages_forget(const hl_pages *pages);
 
 /* Forgets pages until `bytes` bytes can be allocated within the limit. Without this call, the limit would be
  * exceeded until the next page is needed. Other threads may read pages at the same time. */
 void hl_pages_leave_room(const hl_pages *pages, uint64_t bytes);
 
-/* Makes sure that a page is in memory, and notes that the page was needed now. Forgets other pages if the
- * memory limit is reached. */
+/* Makes sure that a page is in memory, and marks the page as needed. Forgets other pages if the memory limit
+ * is reached. */
 void hl_pages_hold(const hl_pages *pages, size_t number);
 
 /* The index, along an axis, of the page of a voxel. A voxel at the end of the grid may belong to the last
@@ -160,22 +165,22 @@ static inline size_t hl_page_of(const hl_pages *pages, int axis, size_t voxel) {
   return page < pages->count[axis] ? page : pages->count[axis] - 1;
 }
 
-/* A page while it is being read. */
+/* A page whose voxels a thread is reading. */
 typedef struct hl_page_reading {
   const unsigned char *first; /* the page's first voxel, as it is stored */
   size_t number;
-  uint32_t version; /* set over ranks */
+  uint32_t version; /* the page's version at hl_page_begin(); set only over ranks */
 } hl_page_reading;
 
-/* The first voxel of a page. */
+/* A pointer to the first voxel of a page. */
 static inline unsigned char *hl_page_first(const hl_pages *pages, size_t number) {
   size_t place = pages->place != NULL ? __atomic_load_n(&pages->place[number], __ATOMIC_ACQUIRE) : number;
   return pages->first + place * pages->page_bytes;
 }
 
 /* Begins to read a page. Voxels that were read are valid only if hl_page_stayed() is true afterwards;
- * otherwise, begin again (H.-J. Boehm, Can Seqlocks Get Along with Programming Language Memory Models?,
- * 2012). */
+ * otherwise the caller begins again (H.-J. Boehm, Can Seqlocks Get Along with Programming Language Memory
+ * Models?, 2012). */
 static inline hl_page_reading hl_page_begin(const hl_pages *pages, const size_t page[3]) {
   size_t number = (page[2] * pages->count[1] + page[1]) * pages->count[0] + page[0];
   uint32_t version = pages->version != NULL ? __atomic_load_n(&pages->version[number], __ATOMIC_ACQUIRE) : 0;
@@ -191,8 +196,8 @@ static inline bool hl_page_stayed(const hl_pages *pages, const hl_page_reading *
   return __atomic_load_n(&pages->version[reading->number], __ATOMIC_RELAXED) == reading->version;
 }
 
-/* Begins to read the page of a voxel. Returns a pointer to the stored voxel, after which its neighbours up to
- * the page's end follow. */
+/* Begins to read the page of a voxel. Returns a pointer to the voxel's stored value; the voxels after it in
+ * the page follow. */
 static inline const unsigned char *hl_page_voxel(const hl_pages *pages, size_t i, size_t j, size_t k,
                                                  hl_page_reading *reading) {
   const size_t page[3] = {hl_page_of(pages, 0, i), hl_page_of(pages, 1, j), hl_page_of(pages, 2, k)};

@@ -1,5 +1,5 @@
-/* volume/store/scratch_file.h - makes files without a name for data that do not fit into memory. A file is
- * gone when it is closed, or when the process ends. */
+/* volume/store/scratch_file.h - makes files without a name for data that do not fit into memory. Such a file
+ * vanishes when it is closed, or when the process ends. */
 #ifndef HL_VOLUME_SCRATCH_FILE_H
 #define HL_VOLUME_SCRATCH_FILE_H
 
@@ -8,8 +8,8 @@
 
 #include "core/error.h"
 
-/* Makes a file of `bytes` zeros in the folder. Its space on the disk is taken at once. *file is closed by the
- * caller; -1 on failure. */
+/* Makes a file of `bytes` zeros in the folder. The file's space on the disk is reserved at once. *file: the
+ * file's descriptor, which the caller closes; -1 on failure. */
 hl_status hl_scratch_open(hl_context *context, const char *folder, size_t bytes, int *file, hl_error *error);
 
 /* Makes an empty file in the folder, which grows as it is written. Returns -1, with errno set, on failure. */
