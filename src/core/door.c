@@ -1,7 +1,7 @@
 /* core/door.c - sets and restores the floating-point environment (door.h). Reading and writing the whole
  * environment takes about a hundred nanoseconds, which is too long in functions that hosts call for each
- * voxel. On x86, two control words tell in a few nanoseconds whether anything must be changed. One of the two
- * words also has the flags. */
+ * voxel. On x86, two control words tell in a few nanoseconds whether anything must be changed. On x86, MXCSR,
+ * one of the two words, also holds the exception flags. */
 #include "core/door.h"
 
 #if defined(__x86_64__)
@@ -16,7 +16,8 @@ static const unsigned int VECTOR_CONTROL = 0xffc0, VECTOR_DEFAULT = 0x1f80;
 static const unsigned short SCALAR_CONTROL = 0x0f3f, SCALAR_DEFAULT = 0x033f;
 
 static bool is_default(unsigned int vector) {
-  /* 0, because the memory sanitizer does not see that the instruction below writes this variable */
+  /* initialised, because the memory sanitizer does not see that the assembler instruction writes this
+   * variable */
   unsigned short scalar = 0;
   __asm__ volatile("fnstcw %0" : "=m"(scalar));
   return (vector & VECTOR_CONTROL) == VECTOR_DEFAULT && (scalar & SCALAR_CONTROL) == SCALAR_DEFAULT;

@@ -1,13 +1,14 @@
-/* core/door.h - sets the floating-point environment of public functions: they compute in C's default
- * environment, and restore the host's environment when they return. The entry to such a function is called a
- * door.
+/* core/door.h - sets the floating-point environment of public functions: such functions compute in C's
+ * default environment, and restore the host's environment when they return. A door is the entry to such a
+ * function.
  *
  * A host may round upwards, flush small numbers to zero for speed, or let a division by zero send a signal.
- * None of this may change a picture or end a call. A public function that computes begins with HL_DOOR, and
- * so does a thread of the library. The default environment holds until the function returns; then the host's
- * environment is restored, flags included. The compiler might move computations with arguments that are
- * numbers across the door. It does not move loads and stores through pointers, because it does not know which
- * memory the door's functions access. tests/checks/doors.py looks for missing doors. */
+ * Such settings of the host must not change a picture or end a call. Each public function that computes, and
+ * each thread of the library, begins with HL_DOOR. The default environment holds until the function returns;
+ * then the host's environment is restored, including the exception flags. The compiler might move
+ * computations that use only arguments passed as numbers across the door. The compiler does not move loads
+ * and stores through pointers across the door, because it does not know which memory the door's functions
+ * access. tests/checks/doors.py looks for missing doors. */
 #ifndef HL_CORE_DOOR_H
 #define HL_CORE_DOOR_H
 
@@ -15,8 +16,8 @@
 #include <stdbool.h>
 
 typedef struct hl_door {
-  fenv_t host;         /* the host's floating-point environment; it is saved completely only if `changed` is
-                        * set */
+  fenv_t host;         /* the host's floating-point environment; the whole environment is saved only if
+                        * `changed` is set */
   unsigned int vector; /* on x86: the host's value of MXCSR, the control and status register for vectors */
   bool changed;
 } hl_door;

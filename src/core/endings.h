@@ -8,7 +8,7 @@
 
 enum { HL_ENDINGS_BYTES = sizeof((hl_file_format *)0)->read_endings };
 
-/* Adds an ending, or several that blanks separate, to a list, [HL_ENDINGS_BYTES]. */
+/* Adds an ending, or several endings separated by blanks, to a list. endings: [HL_ENDINGS_BYTES]. */
 static inline void hl_endings_add(char *endings, const char *ending) {
   size_t used = strlen(endings);
   snprintf(endings + used, HL_ENDINGS_BYTES - used, "%s%s", used > 0 ? " " : "", ending);

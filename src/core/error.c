@@ -1,4 +1,4 @@
-/* core/error.c - status names and error lines. */
+/* core/error.c - returns the names of statuses, and writes error lines. */
 #include "core/error.h"
 
 #include <stdarg.h>

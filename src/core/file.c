@@ -23,8 +23,8 @@ static hl_status fail_system(hl_error *error, const char *path, const char *verb
   return hl_fail(error, HL_ERROR_IO, "%s: cannot %s: %s", path, verb, strerror(errno));
 }
 
-/* Opens a file if the context may open this file. Returns -1, with errno set, if the context may not open it,
- * or if the system cannot. */
+/* Opens a file if the context may open this file. Returns -1, with errno set, if the context may not open the
+ * file, or if the system cannot open it. */
 static int open_allowed(const hl_context *context, const char *path, int flags) {
   flags |= O_CLOEXEC;
   /* with these flags, open() waits neither for the writer of a pipe nor for a device */
@@ -101,7 +101,8 @@ typedef struct file_reading {
   size_t length, capacity;
 } file_reading;
 
-/* Enlarges the block when only one byte of it is free, because this byte is kept for the terminating zero. */
+/* Enlarges the block of bytes if only one byte is free, because the last byte is reserved for the terminating
+ * zero. */
 static hl_status make_room(file_reading *file, hl_error *error) {
   if (file->length + 1 < file->capacity) return HL_OK;
   if (file->judge != NULL) {
@@ -187,10 +188,10 @@ static char *temporary_path(hl_context *context, const char *path) {
 }
 
 /* Creates a file under a free name; the last letters of `path` are replaced. The file's mode follows from the
- * process's umask. mkstemp() is not used: it would make the file private, and its mode could not be corrected
- * afterwards, because the umask cannot be read without changing it. */
+ * process's umask. The function mkstemp() is not used, because it makes private files. The mode of such a
+ * file could not be corrected afterwards, because the umask cannot be read without changing it. */
 static int create_temporary(char *path) {
-  /* there are 32 letters, so that five random bits choose one */
+  /* five random bits choose one of the 32 letters */
   static const char letters[] = "abcdefghijklmnopqrstuvwxyz234567";
   enum { LETTERS = 6, TRIES = 1000 };
   for (int n = 0; n < TRIES; n++) {
@@ -334,8 +335,8 @@ char *hl_path_join(hl_context *context, const char *folder, const char *path) {
   if (folder == NULL || folder[0] == 0)
     folder = path[0] == '/' || path[0] == '\\'
                  ? "."
-                 : NULL; /* on Windows, "//server" names a computer in the network and is no absolute path; it
-                          * becomes a name in the current folder */
+                 : NULL; /* on Windows, "//server" names a computer in the network and is no absolute path;
+                          * the path then becomes relative to the current folder */
   if (hl_path_is_absolute(path) || hl_plain_is_url(path) || folder == NULL)
     return hl_copy_text(context, path);
   size_t folder_length = strlen(folder), path_length = strlen(path);

@@ -8,15 +8,15 @@
 #include "core/error.h"
 #include "platform/byte_stream.h"
 
-/* Opens a file for reading and calls the context's `reads` callback. Does not block on a pipe that has no
- * writer. */
+/* Opens a file for reading and calls the context's `reads` callback. The function does not wait for the
+ * writer of a pipe. */
 hl_status hl_file_open(hl_context *context, const char *path, int *descriptor, hl_error *error);
 /* Opens a file like hl_file_open(), but does not call `reads`. Threads other than the caller's use this
- * function, because they may not call `reads`. It also serves for files that were reported to `reads`
- * before. */
+ * function, because they may not call `reads`. The function is also used for files that were reported to
+ * `reads` before. */
 hl_status hl_file_open_again(hl_context *context, const char *path, int *descriptor, hl_error *error);
-/* Opens a folder, for hl_beneath_open() and fdopendir(). "" is the current folder, or the folder of a
- * confined context. */
+/* Opens a folder, for hl_beneath_open() and fdopendir(). path: "" stands for the current folder, or for the
+ * folder of a confined context. */
 hl_status hl_folder_open(hl_context *context, const char *path, int *descriptor, hl_error *error);
 /* The kind of the file with this name: 'f' for a file that can be read, 'd' for a folder, and 0 for anything
  * else. Files that the context may not open have the kind 0, too. */
@@ -26,19 +26,19 @@ char hl_file_kind(const hl_context *context, const char *path);
 hl_status hl_file_pull(hl_context *context, int descriptor, const char *path, void *bytes, size_t capacity,
                        size_t *count, hl_error *error);
 
-/* Reads a whole file of at most `limit` bytes. *bytes is owned by the caller (hl_release) and is followed by
- * one zero byte. */
+/* Reads a whole file of at most `limit` bytes. The caller owns *bytes (hl_release). A zero byte follows the
+ * last byte. */
 hl_status hl_file_read(hl_context *context, const char *path, size_t limit, unsigned char **bytes,
                        size_t *length, hl_error *error);
 
 /* Judges a file by its first `length` bytes: sets *limit to the greatest length, in bytes, that the complete
  * file may have, or refuses the file. The function is called after 64 KiB, and again each time the number of
- * bytes that were read has doubled. It is never called for files shorter than 64 KiB. */
+ * bytes that were read has doubled. The function is not called for files shorter than 64 KiB. */
 typedef hl_status (*hl_file_judge)(const char *path, const unsigned char *bytes, size_t length, size_t *limit,
                                    hl_error *error);
 
-/* Reads a whole file. `judge` derives the length limit from the file's header, so that reading an endless
- * file stops early. */
+/* Reads a whole file. `judge` derives the length limit from the file's header, so that reading stops early
+ * even if the file is endless. */
 hl_status hl_file_read_judged(hl_context *context, const char *path, hl_file_judge judge,
                               unsigned char **bytes, size_t *length, hl_error *error);
 
@@ -77,8 +77,8 @@ hl_status hl_output_memory_commit(hl_output_memory *memory, unsigned char **byte
 /* Releases an output in memory. After a commit the function does nothing. */
 void hl_output_memory_abort(hl_output_memory *memory);
 
-/* Joins folder + "/" + path. The result is `path` itself if it is absolute or a URL, or if `folder` is null
- * or empty. The result is owned by the caller; it is null if memory is short. */
+/* Joins folder + "/" + path. The result is a copy of `path` if `path` is absolute or a URL, or if `folder` is
+ * null or empty. The caller owns the result, which is null if memory is short. */
 char *hl_path_join(hl_context *context, const char *folder, const char *path);
 /* The folder part of a path; "" if the path has none. The result is owned by the caller; it is null if memory
  * is short. */

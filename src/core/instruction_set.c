@@ -13,9 +13,9 @@
 #if ON_X86
 
 /* Bits of the results of CPUID, and of the register XCR0, which says which registers the system saves when it
- * switches threads. Intel 64 and IA-32 Architectures Software Developer's Manual, volume 2A, CPUID; volume 1,
- * 13.3. __builtin_cpu_supports() is not used, because it relies on the compiler's runtime library, and
- * ziglang's library for Windows recognises no processor. */
+ * switches threads. Source: Intel 64 and IA-32 Architectures Software Developer's Manual, volume 2A, CPUID;
+ * volume 1, 13.3. __builtin_cpu_supports() is not used, because it relies on the compiler's runtime library,
+ * and ziglang's library for Windows recognises no processor. */
 /* bits of CPUID's leaf 1, register ecx */
 enum { FMA = 1 << 12, OSXSAVE = 1 << 27 };
 /* bits of CPUID's leaf 7, register ebx */

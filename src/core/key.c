@@ -11,8 +11,8 @@ void hl_key_add(hl_key *key, const void *bytes, size_t count) {
 }
 
 /* Stores doubles so that their bytes sort as the numbers do: the highest byte comes first. The bits of a
- * double, read as a whole number, grow with the double's magnitude. So of a negative number all bits are
- * inverted, and of any other number only the sign bit. */
+ * double, read as a whole number, grow with the double's magnitude. Therefore all bits of a negative number
+ * are inverted, and only the sign bit of any other number. */
 void hl_key_add_numbers(hl_key *key, const double *numbers, size_t count) {
   for (size_t n = 0; n < count; n++) {
     uint64_t bits;
@@ -35,7 +35,7 @@ uint64_t hl_key_mark(const void *bytes, size_t count) {
     uint64_t word = 0, *sum = &sums[at / WORD % SUMS];
     memcpy(&word, from + at, count - at < WORD ? count - at : WORD);
     *sum = (*sum ^ word) * prime;
-    *sum ^= *sum >> 32; /* mixes the bits, so that the high bits have an effect on the low ones, too */
+    *sum ^= *sum >> 32; /* mixes the bits, so that the high bits affect the low bits, too */
   }
   for (int s = 1; s < SUMS; s++) sums[0] = (sums[0] ^ sums[s]) * prime;
   return (sums[0] ^ count) * prime;

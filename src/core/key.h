@@ -1,5 +1,5 @@
-/* core/key.h - keys of results that are kept from one use to the next. A key has the bytes of everything on
- * which its result depends. */
+/* core/key.h - makes and compares the keys of results that are kept for later use. A key consists of the
+ * bytes of all data on which its result depends. */
 #ifndef HL_CORE_KEY_H
 #define HL_CORE_KEY_H
 
@@ -27,16 +27,16 @@ static inline void hl_key_add_affine(hl_key *key, const affine3 *map) {
   hl_key_add_numbers(key, &map->offset.x, 3);
 }
 
-/* A number that stands for some bytes in keys: a hash. The chance that other bytes have the same number is
- * one in 2^64. */
+/* Returns a hash that stands for a block of bytes in keys. The chance that different bytes have the same hash
+ * is one in 2^64. */
 uint64_t hl_key_mark(const void *bytes, size_t count);
 
-/* The type of a function that adds to a key everything on which a result depends. It must add the same bytes
- * each time it is called for the same data. */
+/* The type of a function that adds to a key all data on which a result depends. Such a function must add the
+ * same bytes in each call for the same data. */
 typedef void hl_key_write(const void *data, hl_key *key);
 
-/* Tells whether the kept key is the key of the data, so that the kept result can be used. If not, the data's
- * key becomes the kept key. After a failure the kept key is unchanged. */
+/* Finds out whether the kept key equals the key of the data, so that the kept result is still valid. If the
+ * keys differ, the data's key becomes the kept key. After a failure the kept key is unchanged. */
 hl_status hl_key_renew(hl_context *context, hl_key_write *write, const void *data, hl_key *kept, bool *same,
                        hl_error *error);
 

@@ -6,8 +6,8 @@
 
 #include "core/context.h"
 
-/* Each block starts with its size. This head takes 64 bytes, so that the bytes for the user are aligned for
- * vectors. */
+/* Each block starts with a head of 64 bytes, which holds the block's size. The bytes of the block's user
+ * after the head are thus aligned for vectors. */
 typedef struct block_header {
   size_t size; /* number of bytes that the block's user asked for */
 } block_header;

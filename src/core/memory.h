@@ -9,21 +9,21 @@
 
 #include "core/error.h"
 
-/* Allocates count * size uninitialised bytes. Returns null on overflow, at the limit, or when the allocator
- * has no more. A request for 0 bytes gives a valid block. */
+/* Allocates count * size uninitialised bytes. Returns null on overflow, at the context's memory limit, or if
+ * the allocator fails. A request for 0 bytes gives a valid block. */
 void *hl_allocate(hl_context *context, size_t count, size_t size);
 
 /* Allocates like hl_allocate(), with all bytes zero. */
 void *hl_allocate_zeroed(hl_context *context, size_t count, size_t size);
 
-/* Moves a block's content to a block of another size, cut to the shorter of both sizes. On failure returns
- * null and leaves the old block as it was. old may be null. */
+/* Moves a block's content to a block of another size. The content is cut if the new block is smaller. On
+ * failure the function returns null and does not change the old block. old: may be null. */
 void *hl_reallocate(hl_context *context, void *old, size_t count, size_t size);
 
 /* releases a block; does nothing if either pointer is null */
 void hl_release(hl_context *context, void *memory);
 
-/* A copy of a null-terminated text; null for null, or when there is no memory. */
+/* A copy of a null-terminated text; null if the text is null or memory is short. */
 char *hl_copy_text(hl_context *context, const char *text);
 
 /* Sets *product to a * b. Returns false on overflow. */
@@ -32,23 +32,25 @@ bool hl_multiply(size_t a, size_t b, size_t *product);
 /* ---- blocks kept from frame to frame ----
  *
  * When a block returns to the system and is allocated again, the system has to find and clear new pages: 4 to
- * 15 % of a frame's time. A reserve keeps the blocks and lends them instead. Every frame requests nearly the
- * same blocks in the same order, so that each request gets the same block as in the frame before. */
+ * 15 % of a frame's time. Therefore a reserve keeps the blocks, and lends them to each frame. Every frame
+ * requests nearly the same blocks in the same order, so that each request gets the same block as in the frame
+ * before. */
 
 enum { RESERVE_BLOCKS = 32 };
 
 typedef struct reserve_block {
-  void *memory; /* owned; the block; null if there is no block */
+  void *memory; /* owned; memory of the block; null if the entry has no block */
   size_t bytes;
 } reserve_block;
 
 typedef struct hl_reserve {
   hl_context *context;
-  /* whether blocks are kept; if not, every block is allocated anew, and released when it is returned */
+  /* whether blocks are kept; if false, every block is allocated when it is taken, and released when it is
+   * returned */
   bool keeps;
   int taken;                           /* number of blocks that were requested in this frame so far */
-  reserve_block block[RESERVE_BLOCKS]; /* block[n] is the n-th block that each frame takes; if its bytes
-                                        * are 0, there is no block */
+  reserve_block block[RESERVE_BLOCKS]; /* block[n] is the n-th block that each frame takes; an entry of 0
+                                        * bytes has no block */
 } hl_reserve;
 
 /* Takes a block of count * size uninitialised bytes from the reserve, or else from hl_allocate(). The result
@@ -59,24 +61,25 @@ void hl_reserve_return(hl_reserve *reserve, void *memory);
 
 /* Releases the blocks of a reserve that the current frame has not taken yet. */
 void hl_reserve_drop_idle(hl_reserve *reserve);
-/* Ends a frame, after all blocks were returned: releases the blocks that this frame did not take. */
+/* Ends a frame, and releases the blocks that this frame did not take. All blocks must have been returned
+ * before. */
 void hl_reserve_end_frame(hl_reserve *reserve);
-/* Releases all blocks of a reserve. All of them must have been returned. */
+/* Releases all blocks of a reserve. All blocks must have been returned before. */
 void hl_reserve_release(hl_reserve *reserve);
 
 /* ---- Memory that is planned once ----
  *
- * One function says which arrays a thing has: it takes each of them from a layout. With a layout of zeros it
- * counts the bytes and gets null pointers; with `base` set to a block of the counted size it gets the arrays.
- * No second function says how large the block is: an estimate runs the same function, and counts only.
+ * The function that lays out a thing takes each of the thing's arrays from a layout. With a layout of zeros,
+ * the function counts bytes and gets null pointers; with `base` set to a block of the counted size, it gets
+ * the arrays. An estimate of the size runs the same function, and only counts.
  *
  *     hl_layout layout = {0};
  *     while (hl_layout_pass(&layout, context)) lay_out(thing, &layout);
  *     if (layout.base == NULL) return hl_fail_memory(error, layout.bytes, "the thing");
  *     thing->memory = layout.base;
  *
- * An estimate takes the arrays of many things from one layout. Arrays that are released before the next ones
- * are allocated are given back (hl_layout_give_back): `most` is then the peak. */
+ * An estimate takes the arrays of many things from one layout. Arrays that are released before further arrays
+ * are allocated are given back (hl_layout_give_back), so that `most` is the peak. */
 
 typedef struct hl_layout {
   unsigned char *base; /* the block from which arrays are taken, aligned to 64 bytes; if null, bytes are only
@@ -90,9 +93,10 @@ typedef struct hl_layout {
 } hl_layout;
 
 /* Begins the next pass over a layout. The first pass counts bytes, and the second pass takes arrays from a
- * block of the counted size. Returns true before each of the two passes, and false after them. In the end
- * `base` is null if the block could not be allocated. It is also null if the second pass took another number
- * of bytes than the first, because arrays might then lie beyond the block. The caller owns the block. */
+ * block of the counted size. Returns true before each of the two passes, and false after them. After the
+ * passes, `base` is null if the block could not be allocated. `base` is also null if the second pass took a
+ * different number of bytes than the first pass, because arrays might then lie beyond the block. The caller
+ * owns the block. */
 bool hl_layout_pass(hl_layout *layout, hl_context *context);
 
 /* Takes count * size bytes from a layout, aligned to 64 bytes. Returns null while bytes are only counted. */
@@ -109,7 +113,7 @@ static inline void *hl_layout_take(hl_layout *layout, size_t count, size_t size)
   return taken;
 }
 
-/* In a counting pass: gives back all bytes that were taken after layout->bytes had the value `bytes`. */
+/* Gives back, in a pass that counts, all bytes that were taken since layout->bytes had the value `bytes`. */
 static inline void hl_layout_give_back(hl_layout *layout, size_t bytes) {
   if (layout->bytes != SIZE_MAX) layout->bytes = bytes;
 }

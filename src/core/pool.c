@@ -1,17 +1,17 @@
-/* core/pool.c - runs a team of threads that run jobs together. Jobs follow each other quickly (two for each
- * sheet). So a worker without work spins for a while before it sleeps; with more threads than processors it
- * sleeps at once.
+/* core/pool.c - runs a team of threads that run jobs together. Jobs follow each other quickly (two jobs for
+ * each sheet). Therefore a worker without work spins for a while before it sleeps. If the pool has more
+ * threads than the machine has processors, the worker sleeps at once.
  *
- * Each thread owns a share: a run of consecutive indices of the job. In all jobs of one length a thread has
- * the same run, so that it uses the same memory again. A share is one 64-bit word on its own cache line:
- * generation, end, next index. The owner claims indices from one end by compare-and-swap. A thread whose own
- * share is empty claims indices from the other end of another thread's share. Every second thread begins with
- * the last index of its share. Two threads with neighbouring shares then meet near the border of their
- * shares, and a thread mostly takes the same indices of the other share as in the job before. No thread waits
- * for a worker that the system has not woken yet, so that on a busy machine the caller does all the work.
- * Jobs alternate between two slots, by the parity of their generation. A job's description stays in its slot
- * until all workers have reported the indices that they claimed; only then can a later job of the same parity
- * start.
+ * Each thread owns a share: a run of consecutive indices of the job. In all jobs of the same length a thread
+ * has the same run, so that the thread uses the same memory in each job. A share is one 64-bit word on its
+ * own cache line: generation, end, next index. The owner claims indices from one end by compare-and-swap. A
+ * thread whose own share is empty claims indices from the other end of another thread's share. Every second
+ * thread begins with the last index of its share. Two threads with neighbouring shares then meet near the
+ * border of their shares, and a thread mostly takes the same indices of the other share as in the job before.
+ * No thread waits for a worker that the system has not woken yet, so that on a busy machine the caller does
+ * all the work. Jobs alternate between two slots, by the parity of their generation. A job's description
+ * stays in its slot until all workers have reported the indices that they claimed; only then can a later job
+ * of the same parity start.
  *
  * An offer is a second job with shares of its own (hl_pool_offer()). When the current job has no index left,
  * a worker claims one of the offer's indices, and then looks for a new job. The caller has further jobs to
@@ -34,11 +34,11 @@
 
 enum { MAXIMUM_THREADS = 256, SPINS = 4000 };
 
-/* The time between two calls of the cancel callback while a job runs. It is much less than a person notices,
- * and much more than a call takes. */
+/* The time between two calls of the cancel callback while a job runs. This time is much less than a user
+ * notices, and much more than a call takes. */
 static const int64_t NANOSECONDS_BETWEEN_QUESTIONS = 2000000;
-/* The clock is read again after MOST_UNREAD calls at most. It is read earlier if MOST_UNREAD calls could take
- * longer than NANOSECONDS_BETWEEN_READINGS. */
+/* The clock is read again after MOST_UNREAD calls at most. The clock is read earlier if MOST_UNREAD calls
+ * could take longer than NANOSECONDS_BETWEEN_READINGS. */
 static const int64_t NANOSECONDS_BETWEEN_READINGS = 50000;
 enum { MOST_UNREAD = 15 };
 
@@ -61,13 +61,12 @@ enum {
 static const uint64_t INDEX_MASK = ((uint64_t)1 << INDEX_BITS) - 1, ONE_OF_END = (uint64_t)1 << INDEX_BITS;
 
 typedef struct share {
-  /* three numbers in one word: generation << 40 | end << 20 | next index */
+  /* three numbers in one 64-bit word: generation << 40 | end << 20 | next index */
   _Alignas(64) atomic_uint_least64_t range;
 } share;
 
 typedef struct offer {
-  share *shares; /* [share_count]; the shares of the offer, which lie behind the pool's own shares in
-                  * memory */
+  share *shares; /* [share_count]; the shares of the offer, which follow the pool's own shares in memory */
   size_t count;  /* the number of indices of the offered job; 0 if no job is offered */
   job job;
 } offer;
@@ -92,7 +91,7 @@ struct hl_pool {
   atomic_int sleepers;
   pthread_mutex_t mutex;
   pthread_cond_t wake; /* signalled when `generation` or `stop` has changed */
-  /* The members below are used by the calling thread only. */
+  /* Only the calling thread uses the members from here on. */
   _Alignas(64) int64_t asked, read; /* the times, in nanoseconds, at which the cancel callback was last called
                                      * and the clock was last read */
   uint64_t waits; /* number of times that the caller waited for other threads, at the end of an offer or of a
@@ -120,8 +119,8 @@ hl_status hl_pool_check(hl_pool *pool, const char *doing, hl_error *error) {
   return hl_pool_cancelled(pool) ? hl_fail(error, HL_ERROR_CANCELLED, "cancelled while %s", doing) : HL_OK;
 }
 
-/* Returns whether it is time to call the cancel callback. Reads the clock seldom where calls follow each
- * other quickly. */
+/* Returns whether it is time to call the cancel callback. If calls of this function follow each other
+ * quickly, the clock is not read in each call. */
 static bool is_time_to_ask(hl_pool *pool) {
   if (pool->unread > 0) {
     pool->unread--;
@@ -151,7 +150,7 @@ typedef struct claim {
   uint64_t generation, index;
 } claim;
 
-/* Claims the first or the last index that is left in a share. */
+/* Claims the first or the last of the remaining indices of a share. */
 static bool claim_of_share(share *share, bool first, claim *claimed) {
   uint64_t range = atomic_load(&share->range);
   while (next_of(range) < end_of(range)) {
@@ -171,9 +170,9 @@ static bool claim_index(const hl_pool *pool, share *shares, int number, claim *c
   return false;
 }
 
-/* Claims and runs indices of the current job until no share has any left. A job ends only when its workers
- * have reported their finished indices. So all indices that a worker claims between two reports belong to one
- * job. */
+/* Claims and runs indices of the current job until all shares are empty. Since a job ends only when its
+ * workers have reported their finished indices, all indices that a worker claims between two reports belong
+ * to the same job. */
 static void work(hl_pool *pool, int number) {
   claim claimed;
   while (claim_index(pool, pool->shares, number, &claimed)) {
@@ -243,8 +242,8 @@ static void wait_until_done(hl_pool *pool, const job *job, size_t count) {
   }
 }
 
-/* Begins a job: deals its indices out to the shares and wakes the workers. The caller has set the job's other
- * members. */
+/* Begins a job: divides its indices among the shares, and wakes the workers. The caller has set the job's
+ * other members. */
 static void begin_job(hl_pool *pool, job *job, share *shares, uint64_t generation, size_t count) {
   atomic_store(&job->done, 0);
   uint64_t threads = (uint64_t)pool->threads;
@@ -269,7 +268,8 @@ static void run_part(hl_pool *pool, size_t base, size_t count, void (*function)(
 }
 
 void hl_pool_run(hl_pool *pool, size_t count, void (*function)(void *, size_t, int), void *data) {
-  pool->readings = pool->unread = 0; /* the time that an index of the next job takes is not known yet */
+  pool->readings = pool->unread = 0; /* the clock is read again soon, because the time for an index of this
+                                      * job is not known yet */
   if (pool->threads == 1 || count <= 1) {
     for (size_t index = 0; index < count && !hl_pool_stops(pool, 0); index++) function(data, index, 0);
     return;
@@ -287,8 +287,8 @@ void hl_pool_offer(hl_pool *pool, size_t count, void (*function)(void *, size_t,
   job->function = function;
   job->data = data;
   pool->offer.count = count;
-  /* The generation of an offer is 2 above the generation of the last job. So its parity is the same, and the
-   * last job's shares are empty. */
+  /* The generation of an offer is 2 above the generation of the last job. The offer therefore has the parity
+   * of the last job, whose shares are empty. */
   begin_job(pool, job, pool->offer.shares, atomic_load(&pool->generation) + 2, count);
 }
 
@@ -348,7 +348,8 @@ uint64_t hl_pool_waits(const hl_pool *pool) { return pool->waits; }
 
 bool hl_pool_is_own(const hl_pool *pool) { return pool->process == getpid(); }
 
-/* A new thread inherits the signal mask of the thread that starts it. */
+/* Starts the workers with all signals blocked: a new thread inherits the signal mask of the thread that
+ * starts it. */
 static void start_workers(hl_pool *pool) {
   sigset_t all, own;
   sigfillset(&all);

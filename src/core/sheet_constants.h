@@ -1,15 +1,16 @@
-/* core/sheet_constants.h - constants of the loop over sheets. The functions of the sheet loop for processors
- * and the kernels for devices include this same file, so that both have the same law of light.
+/* core/sheet_constants.h - defines constants of the loop over sheets. The functions of the sheet loop for
+ * processors and the kernels for devices include this file, so that processors and devices compute light by
+ * the same law.
  *
- * The text is valid C17, OpenCL C 1.2 and CUDA C++: it consists of comments and of macros alone. A macro's
- * comment says where the number is used, and why it has its value. */
+ * The text is valid C17, OpenCL C 1.2 and CUDA C++: the file consists of comments and macros only. The
+ * comment of a macro says where its number is used, and why the number has its value. */
 #ifndef HL_CORE_SHEET_CONSTANTS_H
 #define HL_CORE_SHEET_CONSTANTS_H
 
 /* ---- the grid ---- */
 
-/* A grid has values outside of its box, up to this distance in voxels. Slabs that cross the box's faces need
- * them. */
+/* A grid also has values outside of its box, up to GRID_MARGIN voxels away, because slabs that cross the
+ * box's faces need these values. */
 #define GRID_MARGIN 4
 
 /* The distance behind a face, in voxels, beyond which the face does not affect how matter is lit. Matter
@@ -19,8 +20,9 @@
 /* ---- the sheets ---- */
 
 /* The greatest number of sheets of a sweep; a sweep of more sheets is refused. A cube of 14,000 voxels a side
- * has as many with sheets a quarter of a voxel apart. A picture of 32 x 32 pixels takes some ten seconds with
- * as many sheets, and floats tell their heights apart to a hundredth of their distance. */
+ * has this number of sheets if the sheets are a quarter of a voxel apart. With this number of sheets, a
+ * picture of 32 x 32 pixels takes about ten seconds, and the rounding of a sheet's height to a float is a
+ * hundredth of the distance of sheets. */
 #define GREATEST_SHEETS 100000
 
 /* ---- the weights of voxels ---- */
@@ -28,28 +30,28 @@
 /* Weights along x of u8 and u16 voxels are integers, so that the weighted sum of four taps is exact on every
  * instruction set. The sum is at most 255 * 32766 for u8, which a float holds exactly, and 65535 * 32766 for
  * u16, which 32 bits hold. A weight is never negative and fits a signed 16-bit number. A slope is the
- * derivative of a weight. It fits a signed 16-bit number as well: the slopes of all kernels, and the sums of
- * slopes, are below 1.08 in magnitude. */
+ * derivative of a weight. A slope fits a signed 16-bit number, too: the slopes of all kernels, and the sums
+ * of slopes, are below 1.08 in magnitude. */
 #define WEIGHT_UNITS 32766
 #define SLOPE_UNITS  30000
 
 /* ---- classification ---- */
 
-/* If two coordinates of a classifier's table are closer than this number of entries, the mean between them is
- * the mean of the values at both. A difference of integrals would then lose digits, and this mean is as
- * accurate. */
+/* If two coordinates of a classifier's table are closer than this number of entries, the mean of the table
+ * between the coordinates is computed as the mean of the two values there. A difference of integrals would
+ * lose digits for such coordinates, and the mean of two values is accurate enough. */
 #define CLOSE_ENTRIES 4.0f
 
 /* The least bending of a way through the table for which the colour is computed as a mean over the way. The
- * bending is the change of a colour's slope along the way, times the way's length in entries. For less
- * bending, the colour at the mean entry is taken. This colour differs from the mean by at most a quarter of
- * the bending, 1/1024 (derived: the difference is greatest for one bend in the middle and half of the weight
- * at either end). */
+ * bending is the change of a colour's slope along the way, times the way's length in entries. If a way bends
+ * less, the colour at the mean entry is used. The colour at the mean entry differs from the mean colour by at
+ * most a quarter of the bending, 1/1024 (derived: the difference is greatest for a single bend in the middle,
+ * with half of the weight at each end). */
 #define CLASSIFIER_LEAST_BENDING (1.0f / 256)
 
-/* The colour of a slab comes from differences of the integral T at two coordinates, T(f2) - T(f1). This is
- * the least difference that is used, as a fraction of T. A smaller difference of two floats has too few exact
- * digits. */
+/* The colour of a slab comes from differences of the integral T at two coordinates, T(f2) - T(f1).
+ * LEAST_PART_OF_SHOWN is the least such difference that is used, as a fraction of T. A smaller difference of
+ * two floats has too few exact digits. */
 #define LEAST_PART_OF_SHOWN (1.0f / 4096)
 
 /* ---- the picture ---- */
@@ -73,54 +75,57 @@
 
 /* OUTWARDS_POWER sets how soon a surface has ended for light that leaves it again (shadow/attenuate.h). When
  * the depth h has fallen by a tenth, the fraction .19 of the absorbed light still lights the surface. When h
- * has fallen by a third, only the fraction .0015 does. */
+ * has fallen by a third, only the fraction .0015 of the absorbed light does. */
 #define OUTWARDS_POWER 16
 
 /* The number of voxels of even matter over which the kept light k falls by the factor e. Matter that is even
- * over a voxel is no edge of a surface. So light that a wall has absorbed does not light a floor behind even
- * matter again. For the faces of cuts, behind which matter is often even, skin is used in addition. */
+ * over a voxel is no edge of a surface. Therefore light that a wall has absorbed does not light a floor
+ * behind even matter a second time. At the faces of cuts, behind which matter is often even, the skin is used
+ * in addition. */
 #define EVEN_VOXELS 1
 
-/* A slab's end, times this factor, is a height just beyond the end: one or two steps of a float further. Rays
- * that no cut ends at the slab's end leave the slab at this height. So they differ from rays that end there.
+/* A slab's end, times this factor, is a height just beyond the end: one or two steps of a float further. A
+ * ray that no cut ends leaves the slab at this height, which distinguishes the ray from a ray that ends at
+ * the slab's end.
  */
 #define BEYOND_SLAB 1.00000012f
 
 /* Light may come from the matter of one surface into another surface, which begins at the value `foot`. In a
- * blurred edge, values rise through the values of the first surface to the values of the second. In such an
- * edge the two are one surface, and the light that the first surface has absorbed lights the second one, too.
- * The optical depth of the first surface on the light's way is compared with the depth of a straight ramp of
- * values. Up to SAME_RAMP times this depth, the two surfaces are such an edge. From OTHER_LAYER times this
- * depth on, the first surface is a layer of its own, and the light that it has absorbed does not light the
- * second one. */
+ * blurred edge, values rise through the values of the first surface to the values of the second. In a blurred
+ * edge the two surfaces are one surface, and the light that the first surface has absorbed lights the second
+ * surface, too. The optical depth of the first surface on the light's way is compared with the depth of a
+ * straight ramp of values. If the first surface has at most SAME_RAMP times the depth of the ramp, the two
+ * surfaces are a blurred edge. From OTHER_LAYER times the depth of the ramp on, the first surface is a layer
+ * of its own, and the light that it has absorbed does not light the second surface. */
 #define SAME_RAMP   1.2f
 #define OTHER_LAYER 1.6f
 
 /* ---- the matter between a face of a box and the slab ---- */
 
-/* The number of pixels of the shadow buffer that lie around a position. A look-up between pixels uses them.
+/* The number of pixels of the shadow buffer that lie around a position. A look-up between pixels uses these
+ * four near pixels.
  */
 #define NEAR_PIXELS 4
 
-/* A limit for faces that are nearly parallel to the light. With a step to a near pixel, the distance to such
- * a face changes much. The face counts fully while this change is below ALONG_FACE times the length of the
- * light's way through the box, and not at all from twice this value on: light on both sides of the face
- * enters the box through another face, far away. */
+/* A limit for faces that are nearly parallel to the light. The distance to such a face changes much from one
+ * near pixel to the next. The face counts fully while this change is below ALONG_FACE times the length of the
+ * light's way through the box. From twice this value on, the face does not count, because light on both sides
+ * of the face enters the box through another face, far away. */
 #define ALONG_FACE 0.5f
 
-/* The greatest optical depth that is used. It leaves hardly any light, but exp(-depth) is still above 0 as a
- * float. */
+/* The greatest optical depth that is used. Behind this depth hardly any light is left, but exp(-depth) is
+ * still above 0 as a float. */
 #define DEEPEST 80.0f
 
-/* Each near pixel has an optical depth, from the face to the slab. EVEN_LIGHT is a difference between these
- * depths. If they differ by less, the buffer is read as if there were no face. If they differ by at least
- * twice as much, the face counts fully. */
+/* Each near pixel has an optical depth, from the face to the slab. If these depths differ by less than
+ * EVEN_LIGHT, the buffer is read as if there were no face. If the depths differ by at least twice EVEN_LIGHT,
+ * the face counts fully. */
 #define EVEN_LIGHT 0.1f
 
 /* ---- the cascade ---- */
 
-/* Blurred sums leave a little light in umbrae, which should be dark. So a transmittance below UMBRA becomes
- * 0. */
+/* Blurred sums leave a little light in umbrae, which should be dark. Therefore a transmittance below UMBRA is
+ * set to 0. */
 #define UMBRA (1.0f / 160)
 
 /* Matter counts as thin if it absorbs less than THIN_MATTER of the light in a chunk, and as solid if it
@@ -139,8 +144,7 @@
 #define SUBLIGHT_TAPS 8
 
 /* The least fraction of light that a slab absorbs for which the kept light k (shadow/attenuate.h) is found
- * from the slab's two transmittances. For a smaller fraction, rounding hides which part of the light surfaces
- * keep. */
+ * from the slab's two transmittances. For a smaller fraction, k would be lost in rounding errors. */
 #define LEAST_ABSORBED 1e-5f
 
 /* The number of pixels around a block of the slab that count as part of the block. A value at a half pixel
@@ -155,13 +159,15 @@
 
 /* ---- the light of a sky ---- */
 
-/* The greatest magnitude of a number that a cell of the sky's field stores. Such a number has 16 bits. */
+/* The greatest magnitude of a number that a cell of the sky's field stores. The numbers in a cell of the
+ * sky's field have 16 bits. */
 #define SKY_MOST 32767
 
-/* A cell of the sky's field is SKY_CELL numbers of 16 bits. lanes_unpack_shorts() joins the numbers of two
- * cells, and changes their order. SKY_PLACE() gives the index at which a harmonic must be stored so that it
- * becomes number `harmonic` of the sums. The indices SKY_PASSING and SKY_PASSING + 1 hold no harmonic, but
- * the transmittances of the cell and of the next cell along x; SKY_MOST stands for 1. */
+/* A cell of the sky's field is SKY_CELL numbers of 16 bits. The function lanes_unpack_shorts() joins the
+ * numbers of two cells, and changes the order of the numbers. SKY_PLACE() gives the index at which a harmonic
+ * must be stored so that it becomes number `harmonic` of the sums. The indices SKY_PASSING and SKY_PASSING +
+ * 1 hold no harmonic, but the transmittances of the cell and of the next cell along x; SKY_MOST stands for
+ * 1. */
 #define SKY_CELL            32
 #define SKY_PASSING         28
 #define SKY_PLACE(harmonic) ((harmonic) % 16 / 4 * 8 + (harmonic) % 4 + ((harmonic) < 16 ? 0 : 4))
@@ -180,14 +186,15 @@
 #define HARMONIC_20     0.31539156525252000 /* harmonic of degree 2: sqrt(5 / (16 pi)) (3 z^2 - 1) */
 #define HARMONIC_22     0.54627421529603953 /* harmonic of degree 2: sqrt(15 / (16 pi)) (x^2 - y^2) */
 
-/* The least factor by which the trilinear weight of a cell of the sky's field is multiplied. It is also the
- * least weight of the cell that no surface separates from the position. */
+/* The least factor by which the trilinear weight of a cell of the sky's field is multiplied. LEAST_COUNTED is
+ * also the least weight of the cell that no surface separates from the position. */
 #define LEAST_COUNTED (1.0f / 1024)
 
 /* The sky's field holds the light that reaches a cell, before the cell itself absorbs light. On its way to a
  * medium's sample, light crosses half of the cell. For a direction with the slopes u and v
- * (field/sky_lanes.h), this is half of sqrt(1 + u^2 + v^2) edges of a cell. The mean of this length over all
- * directions is 3 / (4 pi) times the integral of 1 / (1 + u^2 + v^2) over -1 < u, v < 1 (derived). */
+ * (field/sky_lanes.h), half of the cell is half of sqrt(1 + u^2 + v^2) edges of a cell. The mean of this
+ * length over all directions is 3 / (4 pi) times the integral of 1 / (1 + u^2 + v^2) over -1 < u, v < 1
+ * (derived). */
 #define HALF_CELL 0.6107f
 
 /* The greatest distance, in voxels, by which a sample is moved to the outside of its surface. */

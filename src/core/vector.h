@@ -1,5 +1,5 @@
-/* core/vector.h - vectors and matrices of three dimensions in double precision, for work that is done once
- * per frame. */
+/* core/vector.h - defines vectors and matrices of three dimensions in double precision, for computations that
+ * are made once per frame. */
 #ifndef HL_CORE_VECTOR_H
 #define HL_CORE_VECTOR_H
 
@@ -43,7 +43,7 @@ static inline vec3 vec3_normalise(vec3 a) {
   double length = vec3_length(a);
   return length > 0 ? vec3_scale(a, 1 / length) : a;
 }
-/* Any unit vector perpendicular to the unit vector a. */
+/* Returns a unit vector perpendicular to the unit vector a. */
 static inline vec3 vec3_perpendicular(vec3 a) {
   vec3 other = fabs(a.x) < 0.6 ? (vec3){1, 0, 0} : (vec3){0, 1, 0};
   return vec3_normalise(vec3_cross(a, other));
@@ -68,8 +68,8 @@ static inline mat3 mat3_transpose(mat3 m) { return mat3_from_columns(m.row[0], m
 static inline double mat3_row_sizes(mat3 m) {
   return vec3_length(m.row[0]) * vec3_length(m.row[1]) * vec3_length(m.row[2]);
 }
-/* Inverts a matrix. Returns false if m is singular to working precision; the scales of its rows and columns
- * do not matter. */
+/* Inverts a matrix. Returns false if m is singular to working precision; the test does not depend on the
+ * scales of the rows and columns. */
 static inline bool mat3_invert(mat3 m, mat3 *inverse) {
   vec3 c0 = vec3_cross(m.row[1], m.row[2]), c1 = vec3_cross(m.row[2], m.row[0]),
        c2 = vec3_cross(m.row[0], m.row[1]);
@@ -121,7 +121,7 @@ static inline void affine3_store(float rows[3][4], const affine3 *map) {
   }
 }
 static inline vec3 affine3_apply(affine3 a, vec3 p) { return vec3_add(mat3_apply(a.linear, p), a.offset); }
-/* The map p -> a(b(p)): first b, then a. */
+/* The map p -> a(b(p)), which applies first b and then a. */
 static inline affine3 affine3_multiply(affine3 a, affine3 b) {
   return (affine3){mat3_multiply(a.linear, b.linear), affine3_apply(a, b.offset)};
 }

@@ -1,8 +1,8 @@
 /* elementary/elementary.c - exponentials, logarithms, powers, roots and angles by plain arithmetic
  * (elementary.h).
  *
- * Each function reduces its argument to a short interval, where a Taylor series is accurate. The series have
- * as many terms as double precision needs on the interval. */
+ * Each function reduces its argument to a short interval, on which a Taylor series is accurate. The number of
+ * terms of a series is the number that double precision needs on its interval. */
 #include "elementary/elementary.h"
 
 #include <math.h>
@@ -13,7 +13,8 @@
  * exact. The second part is ln 2 minus the first part. */
 static const double LN2_HIGH = 0x1.62e42feep-1, LN2_LOW = 0x1.a39ef35793c76p-33;
 
-/* Three parts of pi / 2, of 33 bits, 33 bits and the rest, for the same reason. */
+/* Three parts of pi / 2: 33 bits, the next 33 bits, and the rest. The products of the first two parts with
+ * whole numbers of up to 20 bits are exact. */
 static const double RIGHT_ANGLE[3] = {0x1.921fb544p+0, 0x1.0b4611a6p-34, 0x1.3198a2e037073p-69};
 
 /* ---- the parts of a number ---- */
@@ -26,8 +27,8 @@ static double power_of_two(int k) {
   return power;
 }
 
-/* Computes x 2^k for whole numbers k from -2044 to 2046. Two factors are used because 2^k may be no normal
- * number. */
+/* Computes x 2^k for whole numbers k from -2044 to 2046. The number x is multiplied by two factors, because
+ * 2^k itself may lie outside the range of normal numbers. */
 static double scaled(double x, int k) {
   int half = k / 2;
   return x * power_of_two(half) * power_of_two(k - half);
@@ -37,7 +38,7 @@ static double scaled(double x, int k) {
 static double mantissa(double x, int *k) {
   uint64_t bits;
   int shift = 0;
-  if (x < 0x1p-1022) x *= 0x1p54, shift = -54; /* a number below the normal ones */
+  if (x < 0x1p-1022) x *= 0x1p54, shift = -54; /* makes a subnormal number normal */
   memcpy(&bits, &x, sizeof bits);
   *k = (int)(bits >> 52) - 1023 + shift;
   bits = (bits & 0x000fffffffffffff) | (uint64_t)1023 << 52;
@@ -81,7 +82,8 @@ double hl_exp2(double x) {
   return scaled(1 + small_expm1((x - k) * HL_LN2), (int)k);
 }
 
-/* Derived: with x = k ln 2 + r, e^x - 1 = 2^k (e^r - 1) + (2^k - 1). From 40 on, e^x has no place for the 1.
+/* Derived: with x = k ln 2 + r, e^x - 1 = 2^k (e^r - 1) + (2^k - 1). For x of at least 40, the 1 is less than
+ * the rounding error of e^x.
  */
 double hl_expm1(double x) {
   if (x == 0 || isnan(x)) return x;
@@ -96,7 +98,7 @@ double hl_expm1(double x) {
 /* Computes k ln 2 + ln(1 + f), for sqrt(1/2) <= 1 + f < sqrt(2). more: the difference of the argument and 1 +
  * f, divided by the argument. Derived: with s = f / (2 + f), ln(1 + f) = 2 artanh s = 2 s + s R, where R is
  * the sum of 2 s^(2n) / (2n + 1) from n = 1. As 2 s = f - s f and f - s f = f - f^2 / 2 + s f^2 / 2, ln(1 +
- * f) = f - (f^2 / 2 - s (f^2 / 2 + R)): the greatest term of this sum is exact. */
+ * f) = f - (f^2 / 2 - s (f^2 / 2 + R)): the greatest term of this sum, f, is exact. */
 static double ln_of_parts(double f, int k, double more) {
   static const double series[] = {2.0 / 3,  2.0 / 5,  2.0 / 7,  2.0 / 9,  2.0 / 11, 2.0 / 13,
                                   2.0 / 15, 2.0 / 17, 2.0 / 19, 2.0 / 21, 2.0 / 23};
@@ -111,7 +113,8 @@ static double centred_mantissa(double x, int *k) {
   return m - 1;
 }
 
-/* Returns whether x has a logarithm that is a finite number. If not, *value is the logarithm. */
+/* Returns whether x has a logarithm that is a finite number. If the logarithm is infinite or NaN, sets *value
+ * to it. */
 static int has_logarithm(double x, double *value) {
   if (x > 0 && x < INFINITY) return 1;
   *value = x == 0 ? -INFINITY : x > 0 ? x : NAN;
@@ -131,7 +134,7 @@ double hl_log1p(double x) {
   int k;
   if (!has_logarithm(sum, &value)) return value;
   if (fabs(x) < 0.25) return x == 0 ? x : ln_of_parts(x, 0, 0);
-  /* the sum is rounded; its rounding error becomes part of the argument */
+  /* the sum 1 + x is rounded; its rounding error is added to the argument */
   double lacking = x > 1 ? 1 - (sum - x) : x - (sum - 1), f = centred_mantissa(sum, &k);
   return ln_of_parts(f, k, lacking / sum);
 }
@@ -174,7 +177,7 @@ static void halves(double x, double *high, double *low) {
   *low = x - *high;
 }
 
-/* What the product a b lacks of its rounded value (Dekker). */
+/* The rounding error of a product: a b minus its rounded value `product` (Dekker). */
 static double lacking_of_product(double a, double b, double product) {
   double a_high, a_low, b_high, b_low;
   halves(a, &a_high, &a_low);
@@ -209,7 +212,7 @@ double hl_pow(double x, double y) {
   return odd && signbit(x) ? -power : power;
 }
 
-/* Newton's method for m = 2^(3 j) n with 1 <= n < 8; its error is squared by each step. */
+/* Newton's method for m = 2^(3 j) n with 1 <= n < 8; each step squares the relative error. */
 double hl_cbrt(double x) {
   if (x == 0 || isnan(x) || isinf(x)) return x;
   int k;
@@ -263,7 +266,7 @@ static double small_cosine(double r) {
   return begin + (((1 - begin) - half) + square * square * polynomial(series, 8, square));
 }
 
-/* The sine and cosine of `quarter` right angles and a rest. */
+/* The sine and cosine of the angle `quarter` pi / 2 + rest. */
 static void turned(double rest, int64_t quarter, double *sine, double *cosine) {
   double s = small_sine(rest), c = small_cosine(rest);
   switch (quarter & 3) {
@@ -312,8 +315,9 @@ void hl_sine_cosine(double angle_deg, double *sine, double *cosine) {
   turned((angle_deg - 90 * quarters) * (HL_PI / 180), (int64_t)quarters, sine, cosine);
 }
 
-/* The arc tangent of 0 <= x <= 1. Derived: tan(a - b) = (tan a - tan b) / (1 + tan a tan b). b is a multiple
- * of 1/8 nearby whose arc tangent is known, so that the series is needed up to 1/16 alone. */
+/* The arc tangent of 0 <= x <= 1. Derived: tan(a - b) = (tan a - tan b) / (1 + tan a tan b). The number tan b
+ * is the nearest multiple of 1/8, whose arc tangent is in a table, so that the series is needed only for
+ * arguments up to 1/16. */
 static double small_atan(double x) {
   static const double known[] = {0,
                                  0.12435499454676143503,
@@ -365,8 +369,9 @@ static double complement_of_error(double x) {
 
 enum { TERMS_OF_ERROR = 40 };
 
-/* Up to 2: the Taylor series about 0, multiplied by exp(x^2) term by term: 2 / sqrt(pi) exp(-x^2) sum of 2^n
- * x^(2n + 1) / (2n + 1)!! (Abramowitz and Stegun 7.1.6). All terms have one sign. */
+/* For x up to 2, erf(x) is computed by the Taylor series about 0, multiplied by exp(x^2) term by term: 2 /
+ * sqrt(pi) exp(-x^2) sum of 2^n x^(2n + 1) / (2n + 1)!! (Abramowitz and Stegun 7.1.6). All terms of this
+ * series have the same sign. */
 double hl_erf(double x) {
   if (isnan(x)) return x;
   if (x > 2) return 1 - complement_of_error(x);

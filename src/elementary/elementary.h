@@ -1,11 +1,12 @@
 /* elementary/elementary.h - computes exponentials, logarithms, powers, roots and angles by plain arithmetic.
  *
  * The functions of C libraries differ between systems, and between processors of one system, in their last
- * bits. A camera, a light or a table that differs in its last bit makes another picture. The functions here
- * use additions, multiplications, divisions and square roots alone, which every machine rounds alike, so that
- * pictures have the same bytes everywhere. Their greatest errors are those of the table in
- * tests/unit/elementary.c, one to four units in the last place. Special values follow the C standard (annex
- * F), but without exceptions of the floating-point environment. The file calls nothing else. */
+ * bits. A picture changes if the last bit of a number of its camera, lights or tables changes. The functions
+ * here use additions, multiplications, divisions and square roots alone, which every machine rounds alike, so
+ * that pictures have the same bytes everywhere. The table in tests/unit/elementary.c has the greatest errors
+ * of the functions, one to four units in the last place. Results for special values follow the C standard
+ * (annex F), but floating-point exceptions do not. Of the C library, the functions use only functions whose
+ * results are exact or correctly rounded, such as floor() and sqrt(). */
 #ifndef HL_ELEMENTARY_H
 #define HL_ELEMENTARY_H
 
@@ -22,16 +23,17 @@ double hl_ln(double x);
 /* Computes ln(1 + x), accurately for small x. */
 double hl_log1p(double x);
 double hl_log2(double x);
-/* Exact for powers of ten from 1e-22 to 1e22. */
+/* The logarithm to the base 10, which is exact for powers of ten from 1e-22 to 1e22. */
 double hl_log10(double x);
 
-/* Computes x^y. Exact for whole y from 0 to 32 if x^y has at most 53 bits. */
+/* Computes x^y. The result is exact for whole y from 0 to 32 if x^y has at most 53 bits. */
 double hl_pow(double x, double y);
 double hl_cbrt(double x);
-/* Computes sqrt(x^2 + y^2) without overflow between the steps. */
+/* Computes sqrt(x^2 + y^2) without overflow of intermediate results. */
 double hl_hypot(double x, double y);
 
-/* Angles in radians, with a magnitude of at most 1e6: greater ones give less accurate results. */
+/* The sine, cosine and tangent of an angle in radians. Results are less accurate for angles of a magnitude
+ * above 1e6. */
 double hl_sin(double x);
 double hl_cos(double x);
 double hl_tan(double x);
@@ -40,7 +42,7 @@ double hl_acos(double x);
 double hl_atan(double x);
 double hl_atan2(double y, double x);
 
-/* Computes the sine and the cosine of an angle in degrees. They are exact at multiples of 90.
+/* Computes the sine and the cosine of an angle in degrees. Both results are exact at multiples of 90 degrees.
  * angle_deg: its magnitude is at most 1e6. */
 void hl_sine_cosine(double angle_deg, double *sine, double *cosine);
 

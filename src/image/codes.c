@@ -1,21 +1,21 @@
 /* image/codes.c - converts pixels to sRGB codes of 8 or 16 bits, for files and for the caller's memory.
  *
- * In: linear premultiplied floats, a linear background. Out: RGB over the background or, with
- * background_transparent, unassociated RGBA.
+ * In: linear premultiplied floats, and a linear background. Out: codes of RGB over the background or, with
+ * background_transparent, codes of unassociated RGBA.
  *
- * Exposure, tone, compositing and alpha division are done in linear light; the curve is applied last
+ * Exposure, tone, compositing and alpha division are done in linear light; the sRGB curve is applied last
  * (srgb.h).
  *
- * Eight bits are too few for smooth dark gradients such as penumbras: rounding draws visible contours, which
- * are 10 pixels wide and more. Errors measured on a penumbra-like gradient of 0.004 to 0.034 linear over 256
- * x 256 pixels, after averaging 8 x 8 pixels as the eye does at a distance: rounding had an error of 0.070
- * codes (root mean square; 0.34 at worst); an 8 x 8 ordered dither had 0.020 (0.08 at worst), and showed no
- * contours even at raised contrast. White noise (0.050) and two low-discrepancy patterns (0.019 and 0.029)
- * looked no better, and the ordered dither gives the smallest files. Therefore 8-bit codes are dithered by
- * less than half a code. The dither depends on the position alone and is the same in all channels, so that
- * greys stay grey. Values that are exact codes stay unchanged, so that a PNG keeps its pixels when it is read
- * and written again. Pixels without any volume are rounded, so that a flat background stays flat. 16-bit
- * codes are rounded. */
+ * Codes of 8 bits are too few for smooth dark gradients such as penumbras: rounding to codes makes visible
+ * contours, 10 pixels wide or wider. Errors measured on a penumbra-like gradient of 0.004 to 0.034 linear
+ * over 256 x 256 pixels, after averaging 8 x 8 pixels as the eye does at a distance: rounding had an error of
+ * 0.070 codes (root mean square; 0.34 at worst). An 8 x 8 ordered dither had an error of 0.020 codes (0.08 at
+ * worst), and showed no contours even at raised contrast. Dithers by white noise (error 0.050) and by two
+ * low-discrepancy patterns (errors 0.019 and 0.029) looked no better, and the ordered dither gives the
+ * smallest files. Therefore 8-bit codes are dithered by less than half a code. The dither depends on the
+ * pixel's position alone and is the same in all channels, so that greys stay grey. Values that are exact
+ * codes stay unchanged, so that a PNG keeps its pixels when it is read and written again. Pixels without any
+ * volume are rounded, so that a flat background stays flat. 16-bit codes are rounded. */
 #include "image/codes.h"
 
 #include <float.h>
@@ -56,15 +56,15 @@ static bool is_empty(const float pixel[4]) {
 
 /* Maps light x that is brighter than the value s (SHOULDER). Derived: the hyperbola that continues the line
  * f(x) = x at s with slope 1, and approaches 1 for ever brighter light, is f(x) = 1 - d^2 / (x - s + d), d =
- * 1 - s: f(s) = s, f'(x) = d^2 / (x - s + d)^2. Light twice as bright as white (1) is mapped to 0.911, and
- * four times as bright to 0.958. */
+ * 1 - s: f(s) = s, f'(x) = d^2 / (x - s + d)^2. With f, light twice as bright as white (1) is mapped to
+ * 0.911, and four times as bright to 0.958. */
 static float shoulder(float x) {
   const float rest = 1 - SHOULDER;
   return x > SHOULDER ? 1 - rest * rest / (x - SHOULDER + rest) : x;
 }
 
-/* The factor by which tone mapping multiplies a light's red, green and blue. It is the same for all three, so
- * that the hue stays. light: linear, after the exposure. */
+/* The factor by which tone mapping multiplies a light's red, green and blue. The same factor for all three
+ * channels keeps the hue. light: linear, after the exposure. */
 static float tone_factor(hl_tone tone, const float light[3]) {
   if (tone != HL_TONE_FILMIC) return 1;
   float brightest = light[0] > light[1] ? light[0] : light[1];
@@ -87,8 +87,8 @@ static float factor_of(const hl_codes *codes, const float pixel[4]) {
  * is multiplied. */
 static float stored_value(const hl_codes *codes, const float pixel[4], float factor, int c) {
   if (!codes->transparent) return pixel[c] * factor + (1 - pixel[3]) * codes->background[c];
-  /* Unassociated colour is light divided by alpha, at most 1. Emission may give more light than alpha: the
-   * colour then saturates. */
+  /* Unassociated colour is light divided by alpha, at most 1. A pixel that emits may have more light than
+   * alpha, and its colour then saturates. */
   return pixel[3] > 0 ? pixel[c] / pixel[3] * factor : 0;
 }
 

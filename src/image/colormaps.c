@@ -3,8 +3,9 @@
  *
  * Sources: viridis, inferno, magma and plasma by N. Smith, S. van der Walt and E. Firing (released to the
  * public domain, CC0); cividis by J. Nunez, C. Anderton and R. Renslow (2018); coolwarm by K. Moreland
- * (2009); each is given here at 33 equally spaced entries. turbo is A. Mikhailov's polynomial (2019). bone,
- * hot and copper are the classic piecewise linear maps, given by their corners. */
+ * (2009); each of these colormaps is given here by 33 equally spaced entries. The colormap turbo is A.
+ * Mikhailov's polynomial (2019). The colormaps bone, hot and copper are the classic piecewise linear maps,
+ * given by their corners. */
 #include "image/colormaps.h"
 
 #include <math.h>

@@ -1,10 +1,10 @@
 /* image/compare.c - finds the differences of two pictures.
  *
- * In: two pictures of one size. Out: hl_image_difference. The first pass finds the sums and the greatest
- * difference. Two more passes find the percentile by counting the bits of the differences as floats, because
- * the bits of floats have the order of the numbers. The first of these passes counts the upper 16 bits, and
- * the second one the lower 16. So no buffer of the picture's size is needed, and the time does not depend on
- * the data. */
+ * In: two pictures of the same size. Out: hl_image_difference. The first pass over the pixels finds the sums
+ * and the greatest difference. Two more passes find the percentile by counting the bits of the differences as
+ * floats, because the bits of floats have the order of the numbers. One of these two passes counts the upper
+ * 16 bits of the differences, and the other the lower 16 bits. Thus no buffer of the picture's size is
+ * needed, and the time does not depend on the data. */
 #include <math.h>
 #include <string.h>
 
@@ -33,9 +33,9 @@ static uint32_t difference_bits(const float a[4], const float b[4]) {
   return bits;
 }
 
-/* Finds 16 bits of one difference, which has the number *rank in rising order. If `high` is negative, finds
- * the upper 16 bits among all pixels; otherwise finds the lower 16 bits among the pixels whose upper 16 bits
- * are `high`. *rank becomes the difference's rank among the pixels that have the found bits. */
+/* Finds 16 bits of the difference with the rank *rank in rising order. If `high` is negative, finds the upper
+ * 16 bits among all pixels; otherwise finds the lower 16 bits among the pixels whose upper 16 bits are
+ * `high`. *rank becomes the difference's rank among the pixels that have the found bits. */
 static uint32_t select_half(const hl_image *a, const hl_image *b, int64_t high, uint64_t *rank,
                             uint64_t *counts) {
   size_t pixels = (size_t)a->width * (size_t)a->height;
@@ -83,7 +83,7 @@ static void measure(const hl_image *a, const hl_image *b, hl_image_difference *d
     }
   double pixels = (double)a->width * (double)a->height;
   for (int c = 0; c < 4; c++) {
-    /* infinite differences of both signs add up to NaN */
+    /* the sum of infinite differences of opposite signs is NaN */
     difference->mean_signed[c] = isnan(sum[c]) ? INFINITY : sum[c] / pixels;
     difference->rmse_channel[c] = sqrt(square[c] / pixels);
   }

@@ -2,13 +2,13 @@
  *
  * In: the bytes of a file, which may be anything. Out: a picture of the first part's data window: channels R,
  * G, B (or Y for grey) and A (1 where it is missing), from half, float or integer samples. Out to a file:
- * named float channels (exr.h), or a picture with its layers; ZIP, 32-bit float; no bit of a value changes.
- * OpenEXRCore writes through on_write, so that a full disk is noticed here, and so that it writes to the
- * caller's temporary file.
+ * named channels (exr.h), or a picture with its layers, as 32-bit floats compressed by ZIP, whose bits are
+ * the bits of the values. OpenEXRCore writes through on_write, so that errors of writing such as a full disk
+ * are detected, and so that the bytes go to the caller's temporary file.
  *
- * Against hostile files: OpenEXRCore reads through on_read, bounded by the file's bytes; unneeded kinds of
- * file and compression are refused; sizes are limited before allocation and compared with the greatest size
- * that the file's bytes can expand to. */
+ * Against hostile files: OpenEXRCore reads through on_read, bounded by the file's bytes; kinds of files and
+ * compressions that are not needed are refused; sizes are limited before allocation and compared with the
+ * greatest size that the file's bytes can expand to. */
 #define _GNU_SOURCE
 #include "image/exr.h"
 
@@ -24,8 +24,8 @@
 
 /* ---- reading ---- */
 
-/* The greatest factor by which compressed bytes can expand: deflate's 1032 is the greatest of all accepted
- * compressions. */
+/* The greatest factor by which compressed bytes can expand: of all accepted compressions, deflate has the
+ * greatest factor, 1032. */
 enum { EXPANSION_MAX = 1032 };
 static const uint64_t chunk_bytes_max = (uint64_t)1 << 28;
 
@@ -133,7 +133,7 @@ static hl_status make_image(exr_reading *reading) {
   if (result != EXR_ERR_SUCCESS) return fail_exr(reading, result);
   int64_t width = (int64_t)reading->window.max.x - reading->window.min.x + 1;
   int64_t height = (int64_t)reading->window.max.y - reading->window.min.y + 1;
-  if (width < 1 || height < 1) width = height = 0; /* make_image() refuses a size of 0 later */
+  if (width < 1 || height < 1) width = height = 0; /* make_image() refuses a width or height of 0 later */
   if (width <= HL_IMAGE_SIDE_MAX && height <= HL_IMAGE_SIDE_MAX &&
       ((uint64_t)(width * height) * reading->pixel_bytes / EXPANSION_MAX > reading->length ||
        chunk_bytes > chunk_bytes_max))
@@ -193,7 +193,8 @@ static hl_status read_chunks(exr_reading *reading) {
   return result == EXR_ERR_SUCCESS ? HL_OK : fail_exr(reading, result);
 }
 
-/* Copies grey to all three colours, and sets alpha to 1 if the file has none. */
+/* Copies grey to red, green and blue if the file has no colours, and sets alpha to 1 if the file has no
+ * alpha. */
 static void fill_missing(const exr_reading *reading) {
   bool grey = (reading->present & COLOURS) == 0, opaque = (reading->present >> 3 & 1) == 0;
   size_t count = (size_t)reading->image->width * (size_t)reading->image->height;
@@ -214,8 +215,8 @@ static exr_result_t start_read(exr_reading *reading) {
   return exr_start_read(&reading->file, reading->name, &options);
 }
 
-/* Adds the name of a channel's layer to a list, unless the list ends with it: the channels of a layer follow
- * each other. OpenEXR sorts channels by their names. */
+/* Adds the name of a channel's layer to a list, unless it is the last name of the list. The channels of a
+ * layer are neighbours, because OpenEXR sorts channels by their names. */
 static void add_layer(const char *channel, char layers[HL_IMAGE_LAYERS_TEXT]) {
   const char *point = strrchr(channel, '.');
   const size_t length = point != NULL ? (size_t)(point - channel) : strlen(channel), used = strlen(layers);
@@ -230,8 +231,8 @@ static void add_layer(const char *channel, char layers[HL_IMAGE_LAYERS_TEXT]) {
   else snprintf(layers + used, HL_IMAGE_LAYERS_TEXT - used, "%s%.*s", separator, (int)length, channel);
 }
 
-/* The width, height and uncompressed bytes of one part; the bytes are 0 if the part's header does not state
- * them. */
+/* The width, the height and the number of uncompressed bytes of one part of a file. The number of bytes is 0
+ * if the part's header does not state it. */
 static hl_image_claim claim_of_part(exr_const_context_t file, int part) {
   const exr_attr_chlist_t *list = NULL;
   exr_attr_box2i_t window;
@@ -254,7 +255,7 @@ static hl_image_claim claim_of_part(exr_const_context_t file, int part) {
   return claim;
 }
 
-/* The size of the first part, and the uncompressed bytes of all parts. */
+/* The size in pixels of a file's first part, and the number of uncompressed bytes of all parts. */
 static hl_image_claim claim(const unsigned char *bytes, size_t length) {
   exr_reading reading = {.name = "a picture", .bytes = bytes, .length = length};
   hl_image_claim claimed = {0};
@@ -414,7 +415,7 @@ typedef struct layer_channel_name {
   char text[HL_IMAGE_LAYER_NAME + 3];
 } layer_channel_name; /* the name of a layer's channel in a file: "layer.C" */
 
-/* Lists R, G, B, A and the layers' channels. names: room for the layers' channel names. */
+/* Lists R, G, B, A and the layers' channels. names: memory for the names of the layers' channels. */
 static void list_channels(const hl_image *image, layer_channel_name *names, hl_exr_channel *channels) {
   static const char *const own[4] = {"R", "G", "B", "A"};
   for (int c = 0; c < 4; c++) *channels++ = (hl_exr_channel){own[c], image->pixels + c, 4};
@@ -430,7 +431,7 @@ static void list_channels(const hl_image *image, layer_channel_name *names, hl_e
 
 static hl_status encode(const hl_image *image, const hl_image_write_options *options, hl_output *output,
                         hl_error *error) {
-  (void)options; /* these options, depth and background, concern PNG only */
+  (void)options; /* depth and background have no effect on OpenEXR files */
   size_t count = 4;
   for (size_t i = 0; i < image->layer_count; i++) count += strlen(image->layers[i].channels);
   layer_channel_name *names = hl_allocate(output->context, count, sizeof *names);

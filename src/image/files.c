@@ -1,4 +1,4 @@
-/* image/files.c - finds a picture's format, reads and writes pictures of every format.
+/* image/files.c - finds the format of a picture's file, and reads and writes pictures in all formats.
  *
  * The name's extension decides the format of a written file; the first bytes decide the format of a read
  * file, so that a wrongly named picture is still read. */
@@ -20,8 +20,8 @@ static const hl_image_format *const formats[] = {&hl_png_format, &hl_exr_format,
 
 enum { FORMAT_COUNT = sizeof formats / sizeof formats[0] };
 
-/* The number of the first format, from number n on, whose title differs from the title of the format before
- * it. Formats with one title are one format for the user. */
+/* The number of the first format, from number n on, whose title differs from the title of the preceding
+ * format. For the user, formats with the same title are one format. */
 static size_t next_title(size_t n) {
   while (n > 0 && n < FORMAT_COUNT && strcmp(formats[n]->title, formats[n - 1]->title) == 0) n++;
   return n;
@@ -46,8 +46,8 @@ hl_status hl_image_get_format(size_t index, hl_file_format *format) {
   return HL_OK;
 }
 
-/* Two limits, in bytes. The first one limits everything in a file beside its pixels: texts, profiles,
- * thumbnails. The second one limits a file's header. */
+/* Limits in bytes. extra_bytes_max limits the data in a file beside its pixels: texts, profiles, thumbnails.
+ * header_bytes_max limits a file's header. */
 static const size_t extra_bytes_max = (size_t)64 << 20, header_bytes_max = (size_t)16 << 20;
 
 static const hl_image_format *format_by_name(const char *path) {
@@ -183,7 +183,7 @@ static hl_status fail_unknown(const char *path, hl_error *error) {
 }
 
 /* Limits the length of a file by the size in its header. The limit allows for compressed pixels one and a
- * half times the bytes of plain pixels, because they never take more. */
+ * half times the bytes of plain pixels, because compressed pixels never take more bytes. */
 static hl_status judge(const char *path, const unsigned char *bytes, size_t length, size_t *limit,
                        hl_error *error) {
   const hl_image_format *format = format_by_content(bytes, length);

@@ -1,7 +1,7 @@
 /* image/format.h - declares the interface by which hl_image_write() and hl_image_read() call the formats of
  * pictures, and the functions that encoders share.
  *
- * The registry of formats is in files.c. */
+ * The list of all formats is in files.c. */
 #ifndef HL_IMAGE_FORMAT_H
 #define HL_IMAGE_FORMAT_H
 
@@ -12,7 +12,7 @@
 
 /* The size that a picture's file claims in its first bytes. */
 typedef struct hl_image_claim {
-  bool known; /* whether the size was found; if not, more of the file's bytes are needed */
+  bool known; /* whether the size was found; if false, more bytes of the file are needed */
   uint64_t width, height;
   uint64_t bytes;                    /* number of bytes of the pixels, uncompressed */
   int channels, bits;                /* see hl_image_about */
@@ -27,7 +27,7 @@ typedef struct hl_image_format {
   size_t mark_length;
 
   /* Writes the whole picture to output->file. Null if the format can only be read. The caller commits or
-   * aborts the output. Failures to write are HL_ERROR_IO lines that name output->path. */
+   * aborts the output. If writing fails, the error is HL_ERROR_IO with a line that names output->path. */
   hl_status (*encode)(const hl_image *image, const hl_image_write_options *options, hl_output *output,
                       hl_error *error);
 
@@ -36,13 +36,13 @@ typedef struct hl_image_format {
   hl_status (*decode)(hl_context *context, const char *name, const unsigned char *bytes, size_t length,
                       hl_image **image, hl_error *error);
 
-  /* Reads the size of a picture from the header of its file. Leaves `known` false for a broken header;
-   * decode() then reports the error. */
+  /* Reads the size of a picture from the header of its file. If the header is broken, `known` of the result
+   * is false, and decode() reports the error later. */
   hl_image_claim (*claim)(const unsigned char *bytes, size_t length);
 
   bool holds_layers; /* whether `encode` also writes the layers of a picture */
 
-  /* Writes one layer of a picture as a file of its own. Null if the format cannot do this. */
+  /* Writes one layer of a picture as a file of its own. Null if the format cannot hold a single layer. */
   hl_status (*encode_layer)(const hl_image *image, const hl_image_layer *layer, hl_output *output,
                             hl_error *error);
 } hl_image_format;
@@ -56,7 +56,7 @@ bool hl_png_has_scene(const unsigned char *bytes, size_t length);
 /* Refuses impossible options for writing a picture. caller: the public function's name, for errors. */
 hl_status hl_image_check_options(const hl_image_write_options *options, const char *caller, hl_error *error);
 
-/* Reports progress; encoders call it before each row. Fails with HL_ERROR_CANCELLED once the call is
+/* Reports progress before an encoder writes row `row`. Fails with HL_ERROR_CANCELLED if the user has
  * cancelled. */
 hl_status hl_encode_step(hl_context *context, int row, int height, hl_error *error);
 

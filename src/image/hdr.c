@@ -1,13 +1,13 @@
 /* image/hdr.c - reads pictures in Radiance's format (.hdr, .pic). Most of these pictures are environments.
- * They are never written.
+ * Pictures are not written in this format.
  *
- * In: bytes. Out: hl_image; linear, alpha 1. Sources: Ward, "Real pixels", Graphics Gems II (1991), and
- * Radiance's refman/filefmts.pdf. A header of lines, "#?RADIANCE" first, ends with an empty line; a line with
- * the size follows, "-Y 512 +X 1024" for rows from the top with pixels from the left; then rows of RGBE
- * pixels: three mantissas and an exponent. Rows are plain, or have runs of whole pixels, or runs of each of
- * these four numbers separately.
+ * In: bytes. Out: a picture of linear light, with alpha 1. Sources: Ward, "Real pixels", Graphics Gems II
+ * (1991), and Radiance's refman/filefmts.pdf. The header consists of lines, of which the first is
+ * "#?RADIANCE" and the last is empty. Then a line states the size, such as "-Y 512 +X 1024" for rows from the
+ * top with pixels from the left. Rows of RGBE pixels follow, which have three mantissas and an exponent. A
+ * row is stored plainly, as runs of whole pixels, or as runs of each of the four numbers separately.
  *
- * The line EXPOSURE is not applied, as in most programs: the picture keeps its stored values. */
+ * As in most programs, the line EXPOSURE is ignored, and the picture has the stored values. */
 #include <inttypes.h>
 #include <math.h>
 #include <stdio.h>
@@ -29,8 +29,8 @@ typedef struct hdr_cursor {
 
 typedef struct hdr_header {
   uint64_t width, height;
-  bool from_below, from_right; /* whether rows go from the lowest to the highest, and whether a row's pixels
-                                * go from right to left */
+  bool from_below, from_right; /* whether the lowest row comes first, and whether the rightmost pixel of each
+                                * row comes first */
 } hdr_header;
 
 static hl_status fail_at(const hdr_cursor *cursor, hl_status status, const char *what) {
@@ -73,7 +73,7 @@ static hl_status skip_header(hdr_cursor *cursor) {
   }
 }
 
-/* Reads a size with its axis, such as "-Y 512" or "+X 1024", and moves *text behind it. */
+/* Reads a size with its axis, such as "-Y 512" or "+X 1024", and moves *text behind the size. */
 static bool take_extent(const char **text, char axis, char *sign, uint64_t *count) {
   const char *at = *text;
   *sign = *at;
@@ -108,7 +108,7 @@ static hl_status read_header(hdr_cursor *cursor, hdr_header *header) {
 
 /* ---- rows ---- */
 
-/* A row of RGBE pixels: four rows of bytes for red, green, blue and the exponents. */
+/* A row of RGBE pixels, as four rows of bytes: red, green, blue and exponents. */
 typedef struct hdr_row {
   unsigned char *bytes; /* [4][width]; the bytes of red, green, blue and the exponents */
   size_t width;
@@ -140,8 +140,8 @@ static hl_status take_runs(hdr_cursor *cursor, unsigned char *to, size_t width) 
   return HL_OK;
 }
 
-/* Reads a row of whole pixels. The code (1, 1, 1, n) repeats the last pixel n times; a second such code right
- * after it repeats n x 256 times, and so on. */
+/* Reads a row of whole pixels. The code (1, 1, 1, n) repeats the last pixel n times; a second such code
+ * directly after the first repeats the pixel n x 256 times, and so on. */
 static hl_status take_pixels(hdr_cursor *cursor, const hdr_row *row) {
   int shift = 0;
   for (size_t x = 0; x < row->width;) {
@@ -185,8 +185,8 @@ static void convert_row(const hdr_row *row, const float scale[EXPONENTS], bool f
 
 /* ---- the picture ---- */
 
-/* The least number of bytes that the rows can take in a file with this header. Both plain rows and rows with
- * runs of whole pixels have at least one pixel, at their beginning. */
+/* The least number of bytes that the rows can take in a file with this header. A plain row and a row with
+ * runs of whole pixels begin with at least one pixel of 4 bytes. */
 static uint64_t least_bytes(const hdr_cursor *cursor, const hdr_header *header) {
   uint64_t row = 4;
   if (in_runs(cursor, (size_t)header->width)) row += 8 * ((header->width + RUN_MAX - 1) / RUN_MAX);

@@ -1,7 +1,7 @@
 /* image/image.c - creates pictures, and gives access to their pixels.
  *
- * In: a size. Out: zeroed pixels, which the renderer or a reader (format.h) fills. Sizes are checked before
- * anything is allocated. */
+ * In: a size. Out: a picture of zeroed pixels, which the renderer or a reader (format.h) fills. Sizes are
+ * checked before memory is allocated. */
 #include "image/image.h"
 
 #include <inttypes.h>
@@ -13,9 +13,9 @@
 
 enum { ROWS_BETWEEN_QUESTIONS = 64 };
 
-/* Clears the pixels row by row. Returns false if the call was cancelled. A large picture takes long, because
- * the system provides memory only when the memory is first written, at one or two gigabytes a second.
- * Therefore the function asks the cancel callback. */
+/* Clears the pixels row by row. Returns false if the user has cancelled. The function polls the cancel
+ * callback, because clearing a large picture takes long: the system provides memory when the memory is first
+ * written, at one or two gigabytes a second. */
 static bool clear_rows(hl_context *context, float *rows, size_t row_floats, size_t count) {
   for (size_t y = 0; y < count; y++) {
     if (y % ROWS_BETWEEN_QUESTIONS == ROWS_BETWEEN_QUESTIONS - 1 && hl_cancelled(context)) return false;

@@ -1,8 +1,9 @@
 /* image/npy.c - reads and writes pictures as NumPy arrays (NPY format), float32, C order.
  *
- * In, out: hl_image and bytes. Written: version 1.0, '<f4', height x width x 4; a layer as height x width x
- * channels, or as height x width if it has one channel. Read: versions 1 to 3, '<f4' or '<f8', height x width
- * or height x width x 1, 3 or 4; grey fills R, G and B, and a missing alpha is 1. No bit of a value changes.
+ * Files are written in version 1.0 with elements '<f4'. A picture has the shape height x width x 4; a layer
+ * has the shape height x width x channels, or height x width if it has one channel. Files are read in
+ * versions 1 to 3, with elements '<f4' or '<f8' and the shapes height x width and height x width x 1, 3 or 4.
+ * Grey is copied to R, G and B, and a missing alpha is 1. Values of '<f4' keep all their bits.
  *
  * The header is a Python literal: {'descr': '<f4', 'fortran_order': False, 'shape': (2, 3, 4), } */
 #include <errno.h>
@@ -14,7 +15,8 @@
 #include "core/memory.h"
 #include "image/format.h"
 
-/* HEADER_BYTES is a multiple of 64, because the data start at a multiple of 64 in NumPy's own files, too. */
+/* HEADER_BYTES is a multiple of 64, because NumPy, too, lets the data of its files start at a multiple of
+ * 64. */
 enum { PREAMBLE_BYTES = 10, HEADER_BYTES = 128, HEADER_BYTES_MAX = 65536 };
 
 typedef struct npy_header {
@@ -41,7 +43,7 @@ static void put_float(unsigned char *to, float value) {
   for (int i = 0; i < 4; i++) to[i] = (unsigned char)(bits >> 8 * i);
 }
 
-/* The array to write: [height][width][channels], or [height][width] if there is one channel. */
+/* The array to write: [height][width][channels], or [height][width] if the number of channels is 1. */
 typedef struct npy_array {
   int height, width;
   size_t channels;
@@ -82,7 +84,7 @@ static hl_status encode_array(const npy_array *array, hl_output *output, hl_erro
 
 static hl_status encode(const hl_image *image, const hl_image_write_options *options, hl_output *output,
                         hl_error *error) {
-  (void)options; /* these options, depth and background, concern PNG only */
+  (void)options; /* depth and background have no effect on NPY files */
   const npy_array array = {image->height, image->width, 4, image->pixels};
   return encode_array(&array, output, error);
 }
@@ -133,7 +135,7 @@ static bool take_count(npy_cursor *cursor, uint64_t *count) {
   size_t start = cursor->at;
   *count = 0;
   while (cursor->at < cursor->end && cursor->bytes[cursor->at] >= '0' && cursor->bytes[cursor->at] <= '9') {
-    /* No file has a number of bytes that takes more digits than this. */
+    /* No size of a file has more than 18 digits. */
     if (cursor->at - start == 18) return false;
     *count = *count * 10 + (uint64_t)(cursor->bytes[cursor->at++] - '0');
   }
@@ -275,8 +277,8 @@ static hl_status decode(hl_context *context, const char *name, const unsigned ch
   size_t value_bytes = header.type[2] == '8' ? 8 : 4, data = cursor.end;
   uint64_t rest = length - data, row = header.shape[1] * header.shape[2] * value_bytes;
   bool right_size = header.shape[0] <= HL_IMAGE_SIDE_MAX && header.shape[1] <= HL_IMAGE_SIDE_MAX;
-  right_size = !right_size || header.shape[0] * row == rest; /* the checks below refuse sizes that are too
-                                                              * great */
+  right_size = !right_size || header.shape[0] * row == rest; /* the checks that follow refuse sizes that are
+                                                              * too great */
   if (!right_size)
     return hl_fail_offset(error, HL_ERROR_INPUT, (int64_t)data,
                           "%s: byte %zu: %" PRIu64 " bytes of data, expected %" PRIu64 " for %" PRIu64

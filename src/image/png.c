@@ -1,8 +1,8 @@
-/* image/png.c - reads PNG files of any kind and writes them with 8 or 16 bits, through libpng; finds the
- * scene that a picture carries.
+/* image/png.c - reads PNG files of any kind, and writes PNG files of 8 or 16 bits, by libpng; finds the scene
+ * that is stored in a picture.
  *
  * In: the bytes of a file, which may be anything. Out: a picture. Grey, palette, 1 to 16 bits, transparency
- * and interlacing are all expanded to RGBA; samples are taken as sRGB, and the chunks gAMA and iCCP are
+ * and interlacing are all expanded to RGBA; samples are interpreted as sRGB, and the chunks gAMA and iCCP are
  * ignored.
  *
  * Out to a file: sRGB codes, RGB over the background or, with background_transparent, unassociated RGBA
@@ -88,7 +88,7 @@ static void on_read(png_structp png, png_bytep to, size_t length) {
   reading->at += length;
 }
 
-/* Fails by png_error(), as libpng itself does, so that all failures are handled in one place. */
+/* Fails by png_error(), like libpng itself, so that the same code handles all failures. */
 static void stop(png_reading *reading, hl_status status) {
   reading->status = status;
   png_error(reading->png, "stopped");
@@ -111,8 +111,8 @@ static void read_header(png_reading *reading) {
   png_set_add_alpha(reading->png, 0xffff, PNG_FILLER_AFTER);
 }
 
-/* Reads the code of one sample. from: the sample, which has `depth` bits and begins with the byte of greater
- * weight. Returns the position after the sample. */
+/* Reads the code of one sample. from: the sample of `depth` bits, whose more significant byte comes first.
+ * Returns the position after the sample. */
 static const unsigned char *take_code(const unsigned char *from, int depth, int *code) {
   *code = depth == 16 ? from[0] << 8 | from[1] : from[0];
   return from + depth / 8;
@@ -148,8 +148,8 @@ static void allocate_pixels(png_reading *reading, int depth, size_t row_bytes, b
   for (size_t i = 0; i < codes; i++) reading->linear[i] = -1;
 }
 
-/* Makes all calls of libpng that may longjmp. `reading` outlives the jump, and no local variable is used
- * after the jump. */
+/* Contains all calls of libpng's reader that may longjmp. The struct `reading` stays valid after the jump,
+ * and no local variable is used after it. */
 static void read_png(png_reading *reading) {
   if (setjmp(png_jmpbuf(reading->png)) != 0) return;
   png_set_read_fn(reading->png, reading, on_read);
@@ -268,8 +268,8 @@ static void write_texts(png_writing *writing) {
   if (scene != NULL && field_errors != NULL) write_text(writing, field_errors_keyword, field_errors);
 }
 
-/* Makes all calls of libpng that may longjmp. `writing` outlives the jump, and no local variable is used
- * after the jump. */
+/* Contains all calls of libpng's writer that may longjmp. The struct `writing` stays valid after the jump,
+ * and no local variable is used after it. */
 static void write_png(png_writing *writing) {
   const hl_image *image = writing->image;
   if (setjmp(png_jmpbuf(writing->png)) != 0) return;
@@ -327,8 +327,8 @@ const hl_image_format hl_png_format = {
 /* ---- the scene ----
  *
  * Chunks are read without libpng, so that the picture itself need not be decoded. The chunks are tEXt, zTXt
- * and iTXt (PNG specification, sections 11.3.4.3 to 11.3.4.5). The texts of zTXt and iTXt are inflated within
- * a limit. */
+ * and iTXt (PNG specification, sections 11.3.4.3 to 11.3.4.5). The texts of zTXt and iTXt chunks are inflated
+ * to at most SCENE_BYTES_MOST bytes. */
 
 enum { SCENE_BYTES_MOST = 16 << 20, CHUNK_EXTRA_BYTES = 12 };
 
@@ -349,7 +349,8 @@ static hl_status copy_text(hl_context *context, const char *name, const unsigned
   return HL_OK;
 }
 
-/* Inflates into a buffer that doubles until the text ends or the limit is reached. */
+/* Inflates the text of a chunk into a buffer, whose size is doubled until the text ends or the limit is
+ * reached. */
 static hl_status inflate_text(hl_context *context, const char *name, const unsigned char *bytes,
                               size_t length, char **text, hl_error *error) {
   z_stream zlib = {.zalloc = zlib_allocate, .zfree = zlib_release, .opaque = context};
@@ -404,16 +405,16 @@ static hl_status take_text(hl_context *context, const char *name, const char *ty
                       : copy_text(context, name, start, (size_t)(end - start), text, error);
 }
 
-/* The place of a chunk in the file. */
+/* The position, type and content of a chunk in the file. */
 typedef struct png_chunk {
   size_t at;                 /* offset of the chunk's length */
-  const char *type;          /* [4] */
-  const unsigned char *body; /* [length] */
+  const char *type;          /* [4]; the chunk's type, such as "tEXt" */
+  const unsigned char *body; /* [length]; the chunk's content */
   size_t length;
 } png_chunk;
 
-/* Finds the text chunk with a keyword, which is `size` bytes long with its zero. Returns false if there is
- * none. */
+/* Finds the text chunk with the keyword `word`, which has `size` bytes including its zero. Returns false if
+ * no chunk has the keyword. */
 static bool find_chunk(const unsigned char *bytes, size_t byte_count, const char *word, size_t size,
                        png_chunk *chunk) {
   if (byte_count < MARK_BYTES || memcmp(bytes, hl_png_format.mark, MARK_BYTES) != 0) return false;
@@ -433,7 +434,7 @@ bool hl_png_has_scene(const unsigned char *bytes, size_t length) {
   return find_chunk(bytes, length, keyword, sizeof keyword, &chunk);
 }
 
-/* Reads the text of a chunk whose keyword is `size` bytes long with its zero. */
+/* Reads the text of a chunk. size: the number of bytes of the chunk's keyword including its zero. */
 static hl_status read_chunk(hl_context *context, const char *name, const png_chunk *chunk, size_t size,
                             char **text, hl_error *error) {
   if (crc32(crc32(0, NULL, 0), (const unsigned char *)chunk->type, (unsigned)(chunk->length + 4)) !=

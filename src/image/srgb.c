@@ -1,9 +1,8 @@
 /* image/srgb.c - computes the sRGB transfer curve (IEC 61966-2-1).
  *
- * In: linear floats or whole codes. Out: codes or linear floats. The PNG writer and reader use these
- * functions. Only + -
- * * / and comparisons are used: the C library's pow differs between machines in the last bit, but pictures
- * must be the same everywhere. */
+ * In: linear floats or whole codes. Out: codes or linear floats. The readers and writers of pictures use
+ * these functions. The functions use only the four basic operations, square roots and comparisons. The C
+ * library's pow() is not used, because its last bit differs between machines, and pictures must not. */
 #include "image/srgb.h"
 
 #include <math.h>
@@ -12,8 +11,8 @@
 #include "core/memory.h"
 #include "elementary/elementary.h"
 
-/* Finds the root of r^5 = value by seven steps of Newton's method. They reach double precision for values in
- * [0.008, 1.02]: the guess is at most 31 % off, and each step squares the error. */
+/* Finds the root of r^5 = value by seven steps of Newton's method. The root has double precision for values
+ * in [0.008, 1.02], because the guess is wrong by at most 31 %, and each step squares the relative error. */
 static double fifth_root(double value, double guess) {
   double r = guess;
   for (int step = 0; step < 7; step++) {
@@ -24,8 +23,8 @@ static double fifth_root(double value, double guess) {
 }
 
 /* Finds 2^stops by square roots. Derived: with the fraction's binary digits b1 b2 ..., 2^0.b1b2... is the
- * product of 2^(1/2) if b1 is 1, 2^(1/4) if b2 is 1, and so on. Square roots are correctly rounded on every
- * machine, powers are not. */
+ * product of 2^(1/2) if b1 is 1, 2^(1/4) if b2 is 1, and so on. Unlike powers, square roots are correctly
+ * rounded on every machine. */
 double hl_exposure_factor(double stops) {
   double whole = floor(stops), fraction = stops - whole, root = 2, factor = 1;
   for (int digit = 0; digit < 53 && fraction > 0; digit++) {
@@ -38,8 +37,8 @@ double hl_exposure_factor(double stops) {
   return ldexp(factor, (int)whole);
 }
 
-/* The sRGB curve of IEC 61966-2-1: a code c becomes c/12.92 up to 0.04045, and ((c + 0.055)/1.055)^2.4 above.
- * The power is u^2.4 = u^2 (u^2)^(1/5). */
+/* The sRGB curve of IEC 61966-2-1: a code c stands for the linear value c/12.92 if c is at most 0.04045, else
+ * for ((c + 0.055)/1.055)^2.4. The power is computed as u^2.4 = u^2 (u^2)^(1/5). */
 double hl_srgb_decode(double encoded) {
   if (encoded < 0) return -hl_srgb_decode(-encoded);
   if (encoded <= 0.04045) return encoded / 12.92;
@@ -51,7 +50,7 @@ double hl_srgb_encode_number(double linear) {
   return linear <= 0.0031308 ? 12.92 * linear : 1.055 * hl_pow(linear, 1 / 2.4) - 0.055;
 }
 
-/* The least float that is not below a double. */
+/* The least float that is at least as great as a double. */
 static float float_at_least(double value) {
   float rounded = (float)value;
   return rounded < value ? nextafterf(rounded, INFINITY) : rounded;
@@ -98,7 +97,7 @@ void hl_srgb_encoder_destroy(hl_srgb_encoder *encoder) {
 }
 
 int hl_srgb_encode(const hl_srgb_encoder *encoder, float linear) {
-  /* the comparison is false for a NaN, too, which becomes 0 */
+  /* for a NaN the comparison is false, too, so that the code of a NaN is 0 */
   if (!(linear >= encoder->threshold[1])) return 0;
   if (linear >= 1) return encoder->maximum;
   uint32_t bits;

@@ -1,5 +1,5 @@
-/* image/srgb.h - computes the sRGB transfer curve (IEC 61966-2-1). The results are exact, and the same on
- * every machine. */
+/* image/srgb.h - computes the sRGB transfer curve (IEC 61966-2-1). Codes are exact, and all results are the
+ * same on every machine. */
 #ifndef HL_IMAGE_SRGB_H
 #define HL_IMAGE_SRGB_H
 
@@ -10,13 +10,14 @@
 /* Returns 2^stops, for |stops| up to 32, the same on every machine. */
 double hl_exposure_factor(double stops);
 
-/* The linear value of a value encoded by the sRGB curve, for |encoded| up to a little above 1. The function
+/* The linear value of a value encoded by the sRGB curve, for |encoded| up to a little above 1. The function f
  * is odd: f(-c) = -f(c). */
 double hl_srgb_decode(double encoded);
-double hl_srgb_encode_number(double linear); /* the inverse of hl_srgb_decode(), for values of at least 0 */
+double hl_srgb_encode_number(double linear); /* the inverse of hl_srgb_decode(), for linear values of at least
+                                              * 0 */
 
-/* Converts linear values to codes 0..maximum by a search among the values at which the code changes. Nothing
- * is approximated: each float gets the code that its exact encoded value rounds to. */
+/* Converts linear values to codes 0..maximum by a search among the values at which the code changes. The
+ * result is exact: each float gets the code to which its exact encoded value is rounded. */
 typedef struct hl_srgb_encoder {
   hl_context *context;
   int maximum;      /* the greatest code: 255 or 65535 */

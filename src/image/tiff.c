@@ -1,11 +1,11 @@
 /* image/tiff.c - reads and writes TIFF files with 8 or 16 bits, through libtiff.
  *
- * Reading. In: the bytes of a file, which may be anything. Out: the picture of the first page: sRGB codes of
- * grey or RGB, with or without alpha, in strips.
+ * Reading. In: the bytes of a file, which may be damaged or hostile. Out: the picture of the first page,
+ * which must have sRGB codes of grey or RGB, with or without alpha, in strips.
  *
  * Writing. In: a picture. Out: one page of sRGB codes, RGB over the background or, with
- * background_transparent, unassociated RGBA (codes.c), packed by deflate; the resolution in pixels per inch
- * if one is given. */
+ * background_transparent, unassociated RGBA (codes.c), packed by deflate, with the resolution in pixels per
+ * inch if the caller gives a resolution. */
 #define _GNU_SOURCE
 #include <errno.h>
 #include <inttypes.h>
@@ -41,7 +41,7 @@ static toff_t on_size(thandle_t file) {
   return fseeko(file, here, SEEK_SET) == 0 ? (toff_t)size : 0;
 }
 
-/* Ignores libtiff's messages. The caller reports the failure, in the same words as for all outputs. */
+/* Ignores libtiff's messages. The caller reports failures of writing in the same way for all formats. */
 static int on_message(TIFF *tiff, void *data, const char *module, const char *format, va_list arguments) {
   (void)tiff, (void)data, (void)module, (void)format, (void)arguments;
   return 1;
@@ -76,8 +76,8 @@ static void set_fields(TIFF *tiff, const hl_image *image, const hl_image_write_o
   TIFFSetField(tiff, TIFFTAG_YRESOLUTION, options->pixels_per_inch);
 }
 
-/* Swaps the bytes of a row's 16-bit codes if needed. The codes have the greater byte first, but the samples
- * in the TIFF file have the machine's byte order. */
+/* Swaps the bytes of a row's 16-bit codes if needed. In the codes the more significant byte comes first, but
+ * the samples in the TIFF file have the machine's byte order. */
 static void order_bytes(unsigned char *row, size_t samples) {
   for (size_t i = 0; i < samples; i++) {
     uint16_t code = (uint16_t)(row[2 * i] << 8 | row[2 * i + 1]);
@@ -120,7 +120,8 @@ static hl_status encode(const hl_image *image, const hl_image_write_options *opt
 }
 /* ---- reading ---- */
 
-/* The greatest factor by which compressed bytes can expand. Deflate's is 1032, and LZW's is below 4096. */
+/* The greatest factor by which compressed bytes can expand. The factor of deflate is 1032, and the factor of
+ * LZW is below 4096. */
 enum { EXPANSION_MAX = 4096 };
 
 /* The bytes of a file, as libtiff reads them. */
@@ -158,7 +159,7 @@ static int close_nothing(thandle_t data) {
 
 static toff_t size_of_bytes(thandle_t data) { return ((tiff_bytes *)data)->length; }
 
-/* The place of the first page's header, which often is the end of the file. */
+/* The position of the first page's header, which often lies at the end of the file. */
 static uint64_t place_of_page(const unsigned char *bytes) {
   uint64_t place = 0;
   const bool little = bytes[0] == 'I';
@@ -166,7 +167,8 @@ static uint64_t place_of_page(const unsigned char *bytes) {
   return place;
 }
 
-/* Whether the first page's header has a credible number of tags. libtiff's time grows with its square. */
+/* Returns whether the first page's header has a credible number of tags. A great number is refused, because
+ * libtiff's time grows with the square of this number. */
 static bool has_few_tags(const unsigned char *bytes, size_t length) {
   enum { MOST_TAGS = 512 };
   if (length < 8 || place_of_page(bytes) + 2 > length) return false;
@@ -187,11 +189,12 @@ static TIFF *open_bytes(tiff_bytes *from) {
   return tiff;
 }
 
-/* What the first page of a file holds. */
+/* The size and the format of the samples of a file's first page. */
 typedef struct tiff_page {
   uint32_t width, height;
   uint16_t samples, bits, format, photometric, planar;
-  bool alpha, multiplied; /* whether the last sample is alpha, and whether colours are multiplied by it */
+  bool alpha, multiplied; /* whether the last sample of a pixel is alpha, and whether colours are multiplied
+                           * by alpha */
 } tiff_page;
 
 static tiff_page page_of(TIFF *tiff) {
@@ -297,7 +300,8 @@ static hl_status decode(hl_context *context, const char *name, const unsigned ch
   return status;
 }
 
-/* Until the page's header has been read, the claim is the part of the file before it. */
+/* Reads the size from the first page's header. If the bytes do not include this header yet, the claim is the
+ * number of bytes up to the header. */
 static hl_image_claim claim(const unsigned char *bytes, size_t length) {
   hl_image_claim claimed = {0};
   if (length < 8) return claimed;
@@ -319,7 +323,7 @@ static hl_image_claim claim(const unsigned char *bytes, size_t length) {
   return claimed;
 }
 
-/* The first bytes of a file tell the order of bytes in numbers. */
+/* The first bytes of a TIFF file, "II" or "MM", state the byte order of its numbers. */
 const hl_image_format hl_tif_format = {.extension = ".tif",
                                        .title = "TIFF",
                                        .mark = "II*",

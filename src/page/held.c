@@ -16,7 +16,7 @@
 
 /* ---- files ---- */
 
-/* Adds a file to the end of the list of held files. path: `held` owns it from now on. */
+/* Adds a file to the end of the list of held files. path: `held` takes over the text. */
 static hl_status hold(held_scene *held, const char *stem, const char *ending, char *path, hl_error *error) {
   if (path == NULL || held->count == held->room) {
     hl_release(held->context, path);
@@ -44,7 +44,7 @@ static hl_status make_folder(held_scene *held, hl_error *error) {
   return status;
 }
 
-/* Adds a file that will be written to the folder `held->folder`. The page will contain it, too. */
+/* Adds a file that will be written to the folder `held->folder`. The page will contain this file, too. */
 static hl_status hold_new(held_scene *held, const char *stem, const char *ending, hl_error *error) {
   char name[HELD_NAME_BYTES];
   hl_status status = make_folder(held, error);
@@ -181,7 +181,7 @@ static hl_status begin(held_scene *held, const hl_scene_description *d, hl_error
   return HL_OK;
 }
 
-/* Meshes are written into the text. */
+/* Makes the scene's text, which contains the scene's meshes. */
 static hl_status make_text(held_scene *held, hl_scene_description *d, hl_error *error) {
   hl_scene *scene = NULL;
   hl_scene_mesh *meshes = hl_allocate_zeroed(held->context, d->mesh_count, sizeof *meshes);

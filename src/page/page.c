@@ -96,7 +96,8 @@ static hl_status put_files(const held_scene *held, FILE *out, hl_error *error) {
 
 /* ---- the page ---- */
 
-/* In the page without a scene, finds the place of the title and the end of the head. */
+/* Finds the positions of the title and of the end of the head in the text of the viewer's page, which has no
+ * scene yet. */
 static hl_status find_places(const char *viewer, const char *text, const char **title, const char **end,
                              hl_error *error) {
   *title = strstr(text, own_title);

@@ -1,9 +1,9 @@
 /* page/seen.c - finds the box of a volume outside which nothing is visible.
  *
- * Along each axis, planes of voxels in which nothing shows are left out at both ends. A plane shows something
- * if any value is visible between the least and the greatest voxel of the plane and its neighbours. The field
- * between voxels has no other values, because all kernels except the interpolating one are means with
- * positive weights. In a label map, a voxel counts as 1 if its label shows, else as 0. */
+ * Planes of voxels without visible matter are left out at both ends of each axis. A plane has visible matter
+ * if any value between the least and the greatest value of the plane and its neighbouring planes is visible.
+ * The field between voxels has no other values, because all kernels except the interpolating one are means
+ * with positive weights. In a label map, a voxel counts as 1 if its label is visible, else as 0. */
 #include "page/seen.h"
 
 #include <math.h>
@@ -23,7 +23,8 @@ static bool has_opacity_at(const hl_transfer_function *function, double value) {
   while (n < count && point[n].value < value) n++;
   if (n == count) return count > 0 && point[count - 1].opacity > 0;
   if (n == 0 || point[n].value == value) return point[n].opacity > 0;
-  return point[n].opacity > 0 || point[n - 1].opacity > 0; /* within a straight piece */
+  return point[n].opacity > 0 || point[n - 1].opacity > 0; /* the opacity is a straight line between two
+                                                            * points */
 }
 
 static bool label_shows(const hl_scene_volume *volume, int64_t value) {
@@ -97,8 +98,8 @@ static bool plane_shows(const hl_scene_volume *volume, const plane_range *planes
   return shows(volume, range.low, range.high);
 }
 
-/* Finds the planes that are kept: from the first to the last plane that shows anything, and AROUND more
- * planes at either end. If no plane shows anything, all planes are kept. */
+/* Finds the planes that are kept: from the first to the last plane with visible matter, and AROUND more
+ * planes at each end. If no plane has visible matter, all planes are kept. */
 static void find_ends(const hl_scene_volume *volume, const plane_range *planes, size_t count, size_t *begin,
                       size_t *end) {
   size_t first = 0, last = count - 1;
@@ -113,7 +114,7 @@ static void find_ends(const hl_scene_volume *volume, const plane_range *planes, 
 
 static bool stays_whole(const hl_scene_description *d, const hl_scene_volume *volume) {
   if (d->render.kernel == HL_KERNEL_INTERPOLATING) return true;
-  /* A label map with isosurfaces also shows values, which are not tested here. */
+  /* A label map with isosurfaces also shows values, whose visibility is not tested here. */
   if (volume->label_count > 0 && volume->iso_count > 0) return true;
   for (size_t n = 0; n < d->volume_count; n++) {
     const char *other = d->volumes[n].transfer_function.plane.second == HL_SECOND_VOLUME

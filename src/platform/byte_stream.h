@@ -12,15 +12,15 @@ typedef struct hl_byte_stream {
   /* Reads or writes bytes at the stream's position, and moves the position. Returns false, with errno set, on
    * failure. */
   bool (*write)(void *data, const char *bytes, size_t length);
-  /* Moves the stream's position, as fseek() does. Returns the new position; -1 if it would lie before the
-   * beginning. */
+  /* Moves the stream's position, as fseek() does. Returns the new position; -1 if the position would lie
+   * before the stream's beginning. */
   int64_t (*seek)(void *data, int64_t offset, int whence);
 } hl_byte_stream;
 
-/* Opens a stream. The caller closes it with fclose(); null, with errno set, on failure. */
+/* Opens a stream, which the caller closes by fclose(). Returns null, with errno set, on failure. */
 FILE *hl_byte_stream_open(hl_byte_stream *stream);
 
-/* Makes sure that all bytes were given to the functions. Returns false if that failed. */
+/* Flushes the stream, so that write() has received all bytes. Returns false on failure. */
 bool hl_byte_stream_finish(hl_byte_stream *stream, FILE *file);
 
 #endif

@@ -5,7 +5,7 @@
 #include <stddef.h>
 #include <stdint.h>
 
-/* The number of bytes of the machine's memory; 0 if it is unknown. */
+/* The number of bytes of the machine's memory; 0 if the number is unknown. */
 uint64_t hl_machine_memory(void);
 
 /* Allocates memory whose address is a multiple of the alignment. bytes: a multiple of the alignment, which

@@ -3,8 +3,8 @@
 #ifndef HL_PLATFORM_NAMELESS_FILE_H
 #define HL_PLATFORM_NAMELESS_FILE_H
 
-/* Makes an empty file for reading and writing. path: a name in the file's folder that ends in "XXXXXX", which
- * are replaced. Returns a descriptor, or -1 with errno set. */
+/* Makes an empty file for reading and writing. path: a path in the file's folder that ends in "XXXXXX"; the
+ * function replaces these six letters. Returns a descriptor, or -1 with errno set. */
 int hl_nameless_file(char *path);
 
 #endif

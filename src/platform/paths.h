@@ -8,7 +8,7 @@
  * current folder. */
 bool hl_path_is_absolute(const char *path);
 
-/* The folder in which large temporary files are put if the user names no other. */
+/* The folder in which large temporary files are put if the user names no folder. */
 const char *hl_temporary_folder(void);
 
 #endif

@@ -6,12 +6,12 @@
 #include <stdbool.h>
 #include <stddef.h>
 
-/* Converts the arguments of main() to UTF-8, and makes the standard streams carry plain bytes, on systems
- * where this is not so already. */
+/* Converts the arguments of main() to UTF-8, and makes the standard streams carry bytes without conversion,
+ * on systems whose arguments and streams are different at first. */
 void hl_program_begin(int *count, char ***arguments);
 
 /* Writes the absolute path of the running program's file, in UTF-8 and with '/', after following links.
- * Returns false if the system does not tell it, or if it does not fit into `size` bytes. */
+ * Returns false if the system does not tell the path, or if the path does not fit into `size` bytes. */
 bool hl_program_path(char *path, size_t size);
 
 #endif

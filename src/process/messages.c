@@ -1,4 +1,4 @@
-/* process/messages.c - reads what a child process wrote to standard error. */
+/* process/messages.c - reads the messages that a child process has written to its standard error. */
 #include <string.h>
 
 #include "process.h"

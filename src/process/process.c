@@ -1,4 +1,4 @@
-/* process/process.c - starts, limits, awaits and ends a child. */
+/* process/process.c - starts, limits, awaits and ends a child process. */
 #define _GNU_SOURCE
 #include "process.h"
 
@@ -22,7 +22,7 @@ static void redirect(posix_spawn_file_actions_t *actions, const process *p, int 
   posix_spawn_file_actions_adddup2(actions, fileno(p->messages), STDERR_FILENO);
 }
 
-/* Starts the child. SIGPIPE, which this program may ignore, ends the child as it does by default. */
+/* Starts the child. The child gets the default effect of SIGPIPE, which this program may ignore. */
 static int spawn(process *p, const char *const *words, const posix_spawn_file_actions_t *actions) {
   posix_spawnattr_t attributes;
   sigset_t usual;

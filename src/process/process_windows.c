@@ -1,4 +1,4 @@
-/* process/process_windows.c - starts, limits, awaits and ends a child, on Windows. */
+/* process/process_windows.c - starts, limits, awaits and ends a child process on Windows. */
 #include <windows.h>
 
 #include <errno.h>
@@ -8,15 +8,15 @@
 
 #include "process.h"
 
-/* The handles of a child that is being started: its input, its output and its messages. It inherits no other
- * handles. */
+/* The handles of a child that is being started: its input, its output and its messages. The child inherits no
+ * other handles. */
 enum { STREAMS = 3 };
 
 /* ---- the command line ---- */
 
 /* Writes a word into the command line from `at` on, in quotes. When the child's C library splits the line
- * again, two backslashes before a quote stand for one. Returns the position after the word. text: if null,
- * the characters are only counted. */
+ * again, two backslashes before a quote stand for one backslash. Returns the position after the word. text:
+ * if null, the characters are only counted. */
 static size_t append_word(wchar_t *text, size_t at, const wchar_t *word) {
   size_t slashes = 0;
 #define PUT(c) (text != NULL ? (void)(text[at] = (c)) : (void)0, at++)
@@ -86,7 +86,7 @@ static int error_number(DWORD error) {
   return error == ERROR_ACCESS_DENIED ? EACCES : error == ERROR_NOT_ENOUGH_MEMORY ? ENOMEM : EIO;
 }
 
-/* The child inherits the three handles and no others. */
+/* Starts the child, which inherits only the three handles of its streams. */
 static int spawn(process *p, wchar_t *line, HANDLE streams[STREAMS]) {
   SIZE_T bytes = 0;
   InitializeProcThreadAttributeList(NULL, 1, 0, &bytes);
@@ -138,8 +138,8 @@ bool process_is_there(const char *name) {
 
 /* ---- a running child ---- */
 
-/* Limits the memory only, because the system has no limit for a file's length. The job exists as long as the
- * child. */
+/* Limits the child's memory by a job object, which exists as long as the child. The length of files is not
+ * limited, because Windows has no such limit. */
 void process_limit(const process *p, uint64_t memory, uint64_t file) {
   (void)file;
   HANDLE job = p->child != 0 ? CreateJobObjectW(NULL, NULL) : NULL;
@@ -151,7 +151,7 @@ void process_limit(const process *p, uint64_t memory, uint64_t file) {
   CloseHandle(job);
 }
 
-/* Waits for at most the given time. */
+/* Waits for the child's end, but no longer than the given time. */
 static bool await(process *p, DWORD milliseconds, bool *succeeded) {
   DWORD code = 1;
   *succeeded = false;

@@ -1,8 +1,8 @@
 /* text/color.c - reads colours from text.
  *
- * Numbers are linear RGB, as in scene files. #rgb, #rrggbb and the names of CSS (CSS Color Module Level 4,
- * section 6.1) are sRGB: they are decoded (IEC 61966-2-1), so that a .png file has exactly the colour that
- * was named. */
+ * Numbers are linear RGB, as in scene files. The forms #rgb and #rrggbb and the names of CSS (CSS Color
+ * Module Level 4, section 6.1) are sRGB. These sRGB colours are decoded to linear RGB (IEC 61966-2-1), so
+ * that a .png file has exactly the named colour. */
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>

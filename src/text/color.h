@@ -4,7 +4,7 @@
 
 #include <stdbool.h>
 
-/* Reads a colour as linear RGB. Numbers, which must lie between `low` and `high`, are linear already; #rgb,
+/* Reads a colour as linear RGB. Numbers, which must lie between `low` and `high`, are linear RGB; #rgb,
  * #rrggbb and CSS names are sRGB. Returns false if the text is no colour. */
 bool hl_parse_color(const char *text, double low, double high, double color[3]);
 

@@ -16,8 +16,8 @@ static bool differ(char a, char b) {
 
 static int least(int a, int b) { return a < b ? a : b; }
 
-/* The least number of edits between two names, by dynamic programming. Three rows of the table are kept at a
- * time. */
+/* The least number of edits between two names, by dynamic programming. Only three rows of the table of
+ * distances are in memory at a time. */
 int hl_edit_distance(const char *a, const char *b) {
   int rows[3][HL_EDIT_LONGEST + 1];
   int length_a = (int)strnlen(a, HL_EDIT_LONGEST), length_b = (int)strnlen(b, HL_EDIT_LONGEST);
@@ -44,7 +44,7 @@ int hl_edit_distance(const char *a, const char *b) {
 const char *hl_nearest_name(const char *name, const char *const *names) {
   const char *nearest = NULL;
   int length = (int)strnlen(name, HL_EDIT_LONGEST),
-      allowed = length * 2 / 5; /* a name is near enough if at most two in five of its letters are wrong */
+      allowed = length * 2 / 5; /* a name is suggested if at most two fifths of its letters are wrong */
   int best = 1 + (allowed < 2 && length > 2 ? 2 : allowed);
   for (size_t n = 0; names[n] != NULL; n++) {
     int distance = hl_edit_distance(name, names[n]);

@@ -24,7 +24,8 @@ size_t hl_utf8_length(const unsigned char *c) {
     if ((c[i] & 0xc0) != 0x80) return 0;
   if ((c[0] == 0xe0 || c[0] == 0xf0) && c[1] < least_second[length - 1]) return 0;
   if ((c[0] == 0xed && c[1] > 0x9f) || (c[0] == 0xf4 && c[1] > 0x8f))
-    return 0; /* a greater second byte stands for a surrogate (0xed) or for a code beyond Unicode (0xf4) */
+    return 0; /* a greater second byte would make a surrogate (after 0xed) or a code beyond Unicode (after
+               * 0xf4) */
   return length;
 }
 

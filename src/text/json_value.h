@@ -6,17 +6,17 @@
 
 enum { HL_JSON_NUMBER_BYTES = 64, HL_JSON_PIECE_BYTES = 8 };
 
-/* Writes a finite number with 15, 16 or 17 digits. The number of digits is the least one from which the same
- * number is read again. The decimal point is "." in every locale. */
+/* Writes a finite number with 15, 16 or 17 digits. The number of digits is the least number from which a
+ * reader gets the same number. The decimal point is "." in every locale. */
 void hl_json_number_text(double number, char text[HL_JSON_NUMBER_BYTES]);
 
-/* The length in bytes of the well-formed UTF-8 sequence that begins at c; 0 if there is no such sequence (RFC
- * 3629). */
+/* The length in bytes of the well-formed UTF-8 sequence that begins at c; 0 if no such sequence begins there
+ * (RFC 3629). */
 size_t hl_utf8_length(const unsigned char *c);
 
 /* Writes the character at *text in the form that it has within a string of JSON (some characters need an
- * escape), and moves *text behind the character. Returns the number of bytes that were written; 0 at the end.
- * Bytes that are not UTF-8, as file names may hold, become U+FFFD. */
+ * escape), and moves *text behind the character. Returns the number of bytes that were written; 0 at the
+ * text's end. Bytes that are not UTF-8, which occur in names of files, become U+FFFD. */
 size_t hl_json_piece(const char **text, char piece[HL_JSON_PIECE_BYTES]);
 
 #endif

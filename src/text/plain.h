@@ -1,6 +1,6 @@
 /* text/plain.h - reads and writes numbers and names in the locale "C", independently of the locale that the
- * host has set. Also tells which texts are URLs, or names of open streams. In that locale "1.5" is a number,
- * and 'I' and 'i' are the same letter. */
+ * host has set. Other functions find out whether a text is a URL or the name of an open stream. In the locale
+ * "C", "1.5" is a number, and 'I' and 'i' are the same letter. */
 #ifndef HL_TEXT_PLAIN_H
 #define HL_TEXT_PLAIN_H
 
@@ -21,7 +21,7 @@ bool hl_plain_equal_bytes(const char *a, const char *b, size_t length);
 
 /* Returns whether a text is a URL of a web server, "http://..." or "https://...". */
 bool hl_plain_is_url(const char *text);
-/* Returns whether a path is the name of an open stream, as "/dev/stdin" and "/dev/fd/3" are. */
+/* Returns whether a path is the name of an open stream, such as "/dev/stdin" or "/dev/fd/3". */
 bool hl_plain_is_stream(const char *path);
 
 /* Between hl_plain_begin() and hl_plain_end() the calling thread is in the locale "C", for calls of other

@@ -1,5 +1,5 @@
-/* text/plain_json.h - calls jansson's readers and writers in the locale "C". Without this, jansson uses the
- * decimal point of the host's locale, and cannot handle a decimal point that is longer than a byte. */
+/* text/plain_json.h - calls jansson's readers and writers in the locale "C". In the host's locale, jansson
+ * would use the locale's decimal point, and could not handle a decimal point that is longer than a byte. */
 #ifndef HL_TEXT_PLAIN_JSON_H
 #define HL_TEXT_PLAIN_JSON_H
 

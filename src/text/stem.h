@@ -1,4 +1,4 @@
-/* text/stem.h - finds the names that volumes and meshes have after their files. */
+/* text/stem.h - finds the name that a volume or a mesh gets from its file's name. */
 #ifndef HL_TEXT_STEM_H
 #define HL_TEXT_STEM_H
 

@@ -1,4 +1,4 @@
-/* text/units.h - units of length. */
+/* text/units.h - finds units of length by their names, converts lengths, and chooses units for lengths. */
 #ifndef HL_TEXT_UNITS_H
 #define HL_TEXT_UNITS_H
 
@@ -14,15 +14,16 @@ typedef struct hl_unit {
 /* The unit of length that has a given name; null if no known unit has this name. */
 const hl_unit *hl_unit_find(const char *name);
 
-/* metres / other_metres, where both are above 0. A whole number, or 1 over a whole number, is exact. */
+/* The ratio metres / other_metres of two lengths above 0. A ratio that is a whole number, or 1 over a whole
+ * number, is exact. */
 double hl_length_ratio(double metres, double other_metres);
 
-/* The factor by which lengths in one unit are multiplied to be lengths in another. It is 1 if the name of one
- * of the units is null or not known. */
+/* The factor by which lengths in one unit are multiplied to get lengths in another unit. The factor is 1 if
+ * one of the names is null or not the name of a known unit. */
 double hl_unit_ratio(const char *from, const char *to);
 
-/* Chooses the unit for a length: the unit in which the length is a number from 1 to 1000. If there is no such
- * unit, the result is the unit in which the number comes closest to that range. */
+/* Chooses the unit for a length: the unit in which the length is a number from 1 to 1000. If no unit has such
+ * a number, the result is the unit whose number is nearest to this range. */
 const hl_unit *hl_unit_for(double metres);
 
 /* The greatest number of the form 1, 2 or 5 times a power of ten that is at most `most`. */

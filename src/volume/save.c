@@ -438,8 +438,9 @@ static hl_status check_raw_name(const saving *s, const char *path, hl_error *err
                  path, n[0], n[1], n[2], hl_voxel_type_name(s->grid.type));
 }
 
-/* Returns whether a grid has an origin, directions or a space that differ from the defaults. spacing: whether
- * the lengths of its voxels' edges must also be 1. */
+/* Returns whether a grid has an origin or directions that differ from the defaults. If `spacing` is true,
+ * steps of other lengths than 1 count as different, too. If it is false, a stated anatomical space counts as
+ * different, too. */
 static bool has_place(const hl_volume_description *grid, bool spacing) {
   hl_volume_description plain;
   hl_volume_description_defaults(&plain);

@@ -21,8 +21,8 @@ static size_t digits_at(const char *text) {
   return count;
 }
 
-/* Compares names, and numbers within names as numbers. Numbers that begin with zeros count as fractions and
- * come before all other numbers: 000, 00, 01, 010, 09, 0, 1, 9, 10. */
+/* Compares names; numbers within names are compared by their values. Numbers that begin with zeros count as
+ * fractions and come before all other numbers: 000, 00, 01, 010, 09, 0, 1, 9, 10. */
 int strverscmp(const char *a, const char *b) {
   size_t same = 0, begin = 0; /* `same` is the index of the first character that differs, and `begin` is the
                                * index of the first digit of the number to which this character belongs */

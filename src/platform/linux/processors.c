@@ -1,6 +1,6 @@
-/* platform/linux/processors.c - finds the number of processors that this process may use. It is the number of
- * processors on which the process may run, limited by the processor time that its control groups (of
- * containers and batch jobs) allow. */
+/* platform/linux/processors.c - finds the number of processors that this process may use. The number is the
+ * number of processors on which the process may run, limited by the processor time that its control groups
+ * (of containers and batch jobs) allow. */
 #define _GNU_SOURCE /* sched_getaffinity */
 #include "platform/processors.h"
 
@@ -40,7 +40,7 @@ static bool take_number(const char **text, double *number) {
   return true;
 }
 
-/* Reads the first two numbers of a file; "max" counts as -1. Returns the number of numbers that were read. */
+/* Reads the first two numbers of a file; "max" counts as -1. Returns how many numbers were read. */
 static int read_numbers(const char *folder, const char *name, double number[2]) {
   char path[PATH_BYTES + 64], text[64] = "";
   snprintf(path, sizeof path, "%s/%s", folder, name);
@@ -59,7 +59,7 @@ static int read_numbers(const char *folder, const char *name, double number[2]) 
   return take_number(&rest, &number[1]) ? 2 : 1;
 }
 
-/* The processor time that one group may use, as a number of processors; infinite if the group has no
+/* The processor time that one control group may use, as a number of processors; infinite if the group has no
  * limit. */
 static double quota_of_group(const char *folder, bool unified) {
   double of_quota[2] = {-1, 100000}, of_period[2];
@@ -72,9 +72,10 @@ static double quota_of_group(const char *folder, bool unified) {
   return of_quota[0] > 0 && of_quota[1] > 0 ? of_quota[0] / of_quota[1] : INFINITY;
 }
 
-/* The least quota of a group and of all groups above it. path: the group's folder, "/...", below the folder
- * of the hierarchy. The folder may be missing. In a container, the system may report a path that exists only
- * outside the container. In the container, the process's own group is then the top of the hierarchy. */
+/* The least quota of processor time of a control group and of all groups above it. path: the group's folder,
+ * "/...", below the folder of the hierarchy. The folder may be missing: in a container, the system may report
+ * a path that exists only outside of the container. The process's own group is then the top of the
+ * container's hierarchy. */
 static double quota_of_path(const char *hierarchy, const char *path, bool unified) {
   char folder[PATH_BYTES];
   int length = snprintf(folder, sizeof folder, "%s%s", hierarchy, path);
@@ -89,7 +90,8 @@ static double quota_of_path(const char *hierarchy, const char *path, bool unifie
   }
 }
 
-/* Returns whether a list of controllers, such as "cpu,cpuacct", has the controller of processor time. */
+/* Returns whether a list of controllers, such as "cpu,cpuacct", contains "cpu", the controller of processor
+ * time. */
 static bool has_cpu(const char *controllers) {
   for (const char *at = controllers; at != NULL; at = strchr(at, ',')) {
     at += *at == ',';

@@ -1,4 +1,4 @@
-/* platform/macos/program.c - finds the program's own file, whose path the dynamic linker tells. */
+/* platform/macos/program.c - finds the program's own file, whose path the dynamic linker knows. */
 #include "platform/program.h"
 
 #include <limits.h>

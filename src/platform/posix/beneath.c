@@ -1,5 +1,5 @@
 /* platform/posix/beneath.c - opens files below a folder (beneath.h). Linux's openat2() resolves a whole name
- * below a folder in one step, so that nobody can put a link into the path while it is resolved. */
+ * below a folder in one step, so that no other process can put a link into the path meanwhile. */
 #define _GNU_SOURCE
 #include "platform/beneath.h"
 
@@ -50,7 +50,7 @@ int hl_beneath_open_by_components(int folder, const char *name, int flags) {
 
 int hl_beneath_open(int folder, const char *name, int flags) {
 #ifdef SYS_openat2
-  enum { ATTEMPTS = 100 }; /* EAGAIN: meanwhile a folder of the path was renamed */
+  enum { ATTEMPTS = 100 }; /* openat2() fails with EAGAIN if a folder of the path was renamed meanwhile */
   const struct open_how how = {.flags = (unsigned)(flags | O_CLOEXEC),
                                .resolve = RESOLVE_BENEATH | RESOLVE_NO_MAGICLINKS};
   for (int attempt = 0; attempt < ATTEMPTS; attempt++) {

@@ -1,5 +1,5 @@
-/* platform/posix/program.c - prepares the arguments and the standard streams. On POSIX systems nothing must
- * be done, because arguments and streams are bytes already. */
+/* platform/posix/program.c - prepares the program's arguments and its standard streams. On POSIX systems the
+ * preparation does nothing, because arguments and streams consist of bytes. */
 #include "platform/program.h"
 
 void hl_program_begin(int *count, char ***arguments) { (void)count, (void)arguments; }

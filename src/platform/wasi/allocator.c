@@ -1,12 +1,12 @@
 /* platform/wasi/allocator.c - defines the C library's allocator for several threads, because ziglang's own
- * one serves only one thread. The definitions of this file replace those of ziglang's C library, which are
- * weak ones, also for calls from within that library.
+ * allocator serves only one thread. The definitions of this file replace the weak definitions in ziglang's C
+ * library, also for calls from within that library.
  *
- * Memory is dealt out in slots. Slots that are smaller than a page of WebAssembly's memory (64 KiB) have
- * sizes that are powers of two, and divide a page among themselves. A released one is kept for later blocks
- * of the same class of sizes. A larger slot is a run of pages, which lie side by side. A run
- * that is released becomes one run with free runs beside it. Later slots of any number of pages are taken
- * from free runs. Memory never goes back to the system, because WebAssembly's memory does not shrink. */
+ * The allocator gives out memory in slots. Slots that are smaller than a page of WebAssembly's memory (64
+ * KiB) have sizes that are powers of two, and divide a page among themselves. A released small slot is kept
+ * for later blocks of the same class of sizes. A larger slot is a run of adjacent pages. A released run is
+ * joined with adjacent free runs. Later slots of any number of pages are taken from free runs. Memory is
+ * never returned to the system, because WebAssembly's memory does not shrink. */
 #define _GNU_SOURCE /* posix_memalign */
 #include <errno.h>
 #include <pthread.h>
@@ -20,10 +20,12 @@ enum { LEAST_CLASS = 5, PAGE_CLASS = 16, LEAST_ALIGNMENT = 16 };
 
 static const size_t PAGE_BYTES = (size_t)1 << PAGE_CLASS, PAGE_MASK = ((size_t)1 << PAGE_CLASS) - 1;
 
-/* Lies before each block. The slot begins at least LEAST_ALIGNMENT bytes before the block. */
+/* The head of a block lies directly before the block. The block's slot begins at least LEAST_ALIGNMENT bytes
+ * before the block. */
 typedef struct block_head {
   unsigned char *slot;
-  size_t bytes; /* of the slot: a power of two below PAGE_BYTES, or a multiple of PAGE_BYTES */
+  size_t bytes; /* number of bytes of the slot: a power of two below PAGE_BYTES, or a multiple of
+                 * PAGE_BYTES */
 } block_head;
 
 typedef struct free_slot {
@@ -32,14 +34,14 @@ typedef struct free_slot {
 
 /* Describes a run of free pages. The description is stored at the beginning of the first page. */
 typedef struct free_run {
-  struct free_run *next; /* the next run in memory; runs that touch are one run */
+  struct free_run *next; /* the next free run in memory; runs that touch are joined */
   size_t bytes;
 } free_run;
 
-static pthread_mutex_t mutex; /* 0, which is an open one (threads.c) */
+static pthread_mutex_t mutex; /* an open mutex, whose value is 0 (threads.c) */
 static free_slot *released[PAGE_CLASS];
-/* For each class, the first slot of its last page that was never used. There is no such slot if this is the
- * beginning of a page. */
+/* For each class, the first slot in the class's last page that was never used. If the address is the
+ * beginning of a page, the class has no unused slot. */
 static unsigned char *unused[PAGE_CLASS];
 static free_run *runs; /* the first free run in memory */
 
@@ -59,7 +61,8 @@ static void release_pages(unsigned char *pages, size_t bytes) {
   }
 }
 
-/* Returns the link to the smallest free run of so many bytes; null if there is none. */
+/* Returns the link to the smallest free run of at least `bytes` bytes; null if no free run is large
+ * enough. */
 static free_run **smallest_run(size_t bytes) {
   free_run **best = NULL;
   for (free_run **link = &runs; *link != NULL; link = &(*link)->next)
@@ -75,7 +78,8 @@ static size_t free_at_end(void) {
   return last != NULL && ((size_t)last + last->bytes) >> PAGE_CLASS == end ? last->bytes : 0;
 }
 
-/* Takes a run of pages. bytes: a multiple of PAGE_BYTES. */
+/* Takes a run of pages of `bytes` bytes from the free runs or from the system. bytes: a multiple of
+ * PAGE_BYTES. */
 static unsigned char *take_pages(size_t bytes) {
   free_run **link = smallest_run(bytes);
   if (link == NULL) {
@@ -95,14 +99,15 @@ static unsigned char *take_pages(size_t bytes) {
   return (unsigned char *)run;
 }
 
-/* Returns the class of the smallest slots for so many bytes. */
+/* Returns the class of the smallest slots with at least `bytes` bytes. */
 static int class_of(size_t bytes) {
   int class = LEAST_CLASS;
   while ((size_t)1 << class < bytes) class ++;
   return class;
 }
 
-/* Returns the number of bytes of the slot for so many bytes; 0 if no slot is so large. */
+/* Returns the size in bytes of the smallest slot with at least `bytes` bytes; 0 if no slot can be large
+ * enough. */
 static size_t slot_bytes(size_t bytes) {
   if (bytes > PTRDIFF_MAX - PAGE_BYTES) return 0;
   return bytes > PAGE_BYTES / 2 ? (bytes + PAGE_MASK) & ~PAGE_MASK : (size_t)1 << class_of(bytes);

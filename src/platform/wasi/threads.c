@@ -1,9 +1,10 @@
 /* platform/wasi/threads.c - implements POSIX threads by WebAssembly's atomic waits, because the C library's
  * functions neither start threads nor wait for them.
  *
- * A mutex is Drepper's second one ("Futexes are tricky", 2011): 0 is open, 1 held, 2 held while another
- * thread waits. A condition variable is a count of its signals: a waiting thread reads the count before it
- * opens the mutex, and sleeps until the count has changed. */
+ * Mutexes follow Drepper's second mutex ("Futexes are tricky", 2011): the value 0 means open, 1 means held,
+ * and 2 means held while another thread waits. A condition variable is a count of its signals: a thread that
+ * waits for the condition reads the count before it opens the mutex, and sleeps until the count has
+ * changed. */
 #include "platform/wasi/threads.h"
 
 #include <errno.h>
@@ -24,8 +25,8 @@ typedef struct helper {
 static helper helpers[MOST_HELPERS];
 static atomic_int allowed = 1;
 
-/* Sleeps as long as *number equals `expected`. Both have 32 bits, because WebAssembly's instruction requires
- * it. */
+/* Sleeps as long as *number equals `expected`. The numbers have 32 bits, because WebAssembly's instruction
+ * for waiting requires 32 bits. */
 static void wait_while(atomic_int *number, int expected) {
   __builtin_wasm_memory_atomic_wait32((int *)number, expected, -1);
 }
@@ -93,7 +94,7 @@ int pthread_create(pthread_t *thread, const pthread_attr_t *attributes, void *(*
 int pthread_join(pthread_t thread, void **result) {
   helper *one = (helper *)thread;
   for (int state; (state = atomic_load(&one->state)) != RETURNED;) wait_while(&one->state, state);
-  if (result != NULL) *result = NULL; /* no caller asks for a thread's result */
+  if (result != NULL) *result = NULL; /* the result is not stored, because no caller uses it */
   set_state(one, FREE);
   return 0;
 }

@@ -12,8 +12,8 @@
 
 #include "platform/processors.h"
 
-/* The tag of the exceptions that longjmp() throws. Code that clang makes refers to it, but clang does not
- * define it in any file. */
+/* The tag of the exceptions that longjmp() throws. Code that clang generates refers to this tag, but clang
+ * does not define the tag. */
 __asm__(".globl __c_longjmp\n.tagtype __c_longjmp i32\n__c_longjmp:\n");
 
 double hl_cpu_quota(const char *root) {

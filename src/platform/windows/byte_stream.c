@@ -1,6 +1,6 @@
 /* platform/windows/byte_stream.c - opens streams whose bytes go to functions of the caller. Windows' C
- * library can only make streams of files. Therefore the bytes lie in a file without a name until the stream
- * is finished. */
+ * library can only make streams of files. Therefore the bytes are written to a file without a name, and are
+ * given to the functions when the stream is finished. */
 #include "platform/byte_stream.h"
 
 FILE *hl_byte_stream_open(hl_byte_stream *stream) {

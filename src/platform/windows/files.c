@@ -40,8 +40,8 @@ static DWORD creation_of(int flags) {
   return (flags & O_TRUNC) != 0 ? TRUNCATE_EXISTING : OPEN_EXISTING;
 }
 
-/* Makes a descriptor for a handle, which the descriptor then owns. If the flags ask for it, links, or files
- * that are no folders, fail. */
+/* Makes a descriptor for a handle, which the descriptor then owns. Fails for links if the flags include
+ * O_NOFOLLOW, and for files that are no folders if they include O_DIRECTORY. */
 static int descriptor_of(HANDLE handle, int flags) {
   BY_HANDLE_FILE_INFORMATION about;
   int problem = 0;
@@ -135,7 +135,7 @@ int hl_nameless_file(char *path) {
 
 /* ---- reading and writing ---- */
 
-enum { MOST_AT_ONCE = 1 << 30 }; /* bytes; the system's calls take numbers of 32 bits */
+enum { MOST_AT_ONCE = 1 << 30 }; /* in bytes; the system's calls take numbers of 32 bits */
 
 static DWORD at_once(size_t count) { return count < MOST_AT_ONCE ? (DWORD)count : MOST_AT_ONCE; }
 
@@ -147,7 +147,7 @@ ssize_t hl_posix_write(int descriptor, const void *bytes, size_t count) {
   return _write(descriptor, bytes, at_once(count));
 }
 
-/* Reads or writes at an offset of the file, and leaves the descriptor's own position as it is. */
+/* Reads or writes at an offset of the file, and does not change the descriptor's own position. */
 static ssize_t transfer(int descriptor, void *into, const void *from, size_t count, off_t offset) {
   HANDLE handle = handle_of(descriptor);
   LARGE_INTEGER before, none = {.QuadPart = 0};
@@ -202,7 +202,9 @@ int hl_posix_isatty(int descriptor) {
 /* ---- the attributes of a file ---- */
 
 static struct timespec time_of(FILETIME time) {
-  static const long long TICKS_TO_1970 = 116444736000000000, TICKS = 10000000; /* ticks: 100 ns since 1601 */
+  static const long long TICKS_TO_1970 = 116444736000000000, TICKS = 10000000; /* a tick is 100 ns; the system
+                                                                                * counts ticks from the year
+                                                                                * 1601 */
   long long ticks = ((long long)time.dwHighDateTime << 32 | time.dwLowDateTime) - TICKS_TO_1970;
   return (struct timespec){.tv_sec = ticks / TICKS, .tv_nsec = (long)(ticks % TICKS * 100)};
 }
@@ -226,7 +228,7 @@ int hl_posix_fstat(int descriptor, struct stat *about) {
   return 0;
 }
 
-/* Closes the descriptor. */
+/* Describes the file of a descriptor, and closes the descriptor. */
 static int stat_opened(int descriptor, struct stat *about) {
   if (descriptor < 0) return -1;
   int result = hl_posix_fstat(descriptor, about);
@@ -239,8 +241,8 @@ int hl_posix_stat(const char *path, struct stat *about) {
 }
 
 /* Describes a file below a folder. If AT_SYMLINK_NOFOLLOW is set and the file is a link, describes the link
- * itself. The link is then opened, and descriptor_of() does not refuse it, because its flags do not have
- * O_NOFOLLOW. */
+ * itself. To describe a link, the function opens the link itself with flags without O_NOFOLLOW, so that
+ * descriptor_of() does not refuse it. */
 int hl_posix_fstatat(int folder, const char *path, struct stat *about, int flags) {
   wchar_t *name = strpbrk(path, ":\\") == NULL ? hl_wide_text(path) : NULL;
   if (name == NULL) return errno = ENOENT, -1;

@@ -3,8 +3,8 @@
 #include <stdlib.h>
 #include <string.h>
 
-/* The object that uselocale() returns. A later call with this object restores the locale that the thread had
- * before. */
+/* The object that uselocale() returns. A later call of uselocale() with this object restores the thread's
+ * previous locale. */
 typedef struct kept_locale {
   int mode; /* whether the thread had a locale of its own */
   char name[];

@@ -16,7 +16,7 @@ static void *map_file(HANDLE file, size_t bytes, DWORD protection, DWORD access)
   if (mapping == NULL) return NULL;
   void *view = MapViewOfFile(mapping, access, 0, 0, bytes);
   DWORD error = GetLastError();
-  CloseHandle(mapping); /* the view keeps the mapping open */
+  CloseHandle(mapping); /* the mapping stays open as long as its view */
   SetLastError(error);
   return view;
 }
@@ -40,7 +40,8 @@ int munmap(void *begin, size_t bytes) {
   return UnmapViewOfFile(begin) || VirtualFree(begin, 0, MEM_RELEASE) ? 0 : hl_system_error(GetLastError());
 }
 
-/* VirtualUnlock() of memory that is not locked removes the memory from the process's working set. */
+/* Gives memory back for MADV_DONTNEED: VirtualUnlock() of memory that is not locked removes the memory from
+ * the process's working set. */
 int madvise(void *begin, size_t bytes, int advice) {
   if (advice == MADV_DONTNEED) VirtualUnlock(begin, bytes);
   return 0;

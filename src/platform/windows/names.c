@@ -21,7 +21,8 @@ wchar_t *hl_wide_text(const char *text) {
   return wide;
 }
 
-/* Makes the absolute name, with its prefix, from a short name. The function frees the short name. */
+/* Makes the absolute name with the prefix that lifts the limit of 260 characters. The function frees the name
+ * `wide`. */
 static wchar_t *lift_limit(wchar_t *wide) {
   static const wchar_t prefix[] = L"\\\\?\\";
   DWORD most = GetFullPathNameW(wide, 0, NULL, NULL);

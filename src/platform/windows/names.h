@@ -1,5 +1,5 @@
-/* platform/windows/names.h - converts names between UTF-8, with '/', and the system's UTF-16, with '\'; and
- * converts the system's errors. */
+/* platform/windows/names.h - converts names of files between UTF-8 with '/' and the system's UTF-16 with '\',
+ * and converts the system's error numbers to errno. */
 #ifndef HL_PLATFORM_WINDOWS_NAMES_H
 #define HL_PLATFORM_WINDOWS_NAMES_H
 
@@ -7,9 +7,9 @@
 #include <stddef.h>
 #include <wchar.h>
 
-/* Converts a name for the system's calls. A long name gets the prefix that removes the system's limit of 260
- * characters. The caller frees the result. Null, with errno set, if the text is no UTF-8 or memory is
- * short. */
+/* Converts a file's name to UTF-16 for the system's calls. A long name gets the prefix that removes the
+ * system's limit of 260 characters. The caller frees the result. Returns null, with errno set, if the text is
+ * not UTF-8 or memory is short. */
 wchar_t *hl_wide_name(const char *path);
 
 /* Converts a text to UTF-16, with '\' for '/' and without a prefix. */

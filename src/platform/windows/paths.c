@@ -1,5 +1,5 @@
-/* platform/windows/paths.c - implements calls that take names of files: they open streams, rename and remove
- * files, and find the current folder. */
+/* platform/windows/paths.c - implements calls that take names of files: the calls open streams, rename and
+ * remove files, and find the current folder. */
 #include <windows.h>
 
 #include <direct.h>
@@ -16,8 +16,8 @@
 #include "platform/windows/names.h"
 
 /* Names of the network ("//server/share/file") do not count as absolute, because a scene with such a name
- * could make the system send the user's identity to that server. Such a name is appended to a folder's name,
- * and so leads to a place below the folder. */
+ * could make the system send the user's identity to that server. A name of the network is appended to a
+ * folder's name, and thus means a file below the folder. */
 bool hl_path_is_absolute(const char *path) {
   bool drive = ((path[0] | 0x20) >= 'a' && (path[0] | 0x20) <= 'z') && path[1] == ':';
   bool slash = path[0] == '/' || path[0] == '\\';
@@ -43,7 +43,7 @@ FILE *hl_posix_tmpfile(void) {
   return descriptor >= 0 ? _fdopen(descriptor, "w+b") : NULL;
 }
 
-/* Runs a call on a name. */
+/* Calls a function of the system with a file's name. */
 static int on_name(const char *path, BOOL (*call)(const wchar_t *)) {
   wchar_t *name = hl_wide_name(path);
   if (name == NULL) return -1;
@@ -62,7 +62,7 @@ static BOOL find_writable(const wchar_t *name) {
   DWORD attributes = GetFileAttributesW(name);
   bool folder = attributes != INVALID_FILE_ATTRIBUTES && (attributes & FILE_ATTRIBUTE_DIRECTORY) != 0;
   if (folder || (attributes & FILE_ATTRIBUTE_READONLY) == 0)
-    return TRUE; /* the mark "read only" has no meaning for folders */
+    return TRUE; /* for folders, the attribute "read only" has no meaning */
   if (attributes != INVALID_FILE_ATTRIBUTES) SetLastError(ERROR_ACCESS_DENIED);
   return FALSE;
 }

@@ -25,7 +25,8 @@ static const char *match_set(const char *set, char c, bool *fits) {
 
 static char lower(char c) { return c >= 'A' && c <= 'Z' ? (char)(c - 'A' + 'a') : c; }
 
-/* Names are compared as the system does, without the case of the letters A to Z. */
+/* Returns whether a name fits a pattern. The case of the letters A to Z is ignored, as in the system's own
+ * comparisons. */
 static bool matches(const char *pattern, const char *name) {
   for (; *pattern != '\0'; name++) {
     if (*pattern == '*') {
@@ -52,9 +53,9 @@ static int add(glob_t *found, const char *path) {
   return 0;
 }
 
-/* Finds the files of a folder that fit a pattern, and adds them. path: [PATH_MAX]; its first `length`
- * characters are the folder's name with a '/', or "" for the current folder; the function appends names to
- * it. */
+/* Finds the files of a folder that fit a pattern, and adds the files to `found`. path: [PATH_MAX]; its first
+ * `length` characters are the folder's name with a '/', or "" for the current folder; the function appends
+ * names to it. */
 static int find(char *path, size_t length, const char *pattern, glob_t *found);
 
 /* Continues a search at a file or folder `name` in the folder `path`. rest: the rest of the pattern, from the

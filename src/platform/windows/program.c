@@ -1,5 +1,5 @@
 /* platform/windows/program.c - prepares the arguments and the standard streams, and finds the program's own
- * file. Once prepared, the streams carry bytes, and the console's text is UTF-8. */
+ * file. Afterwards the standard streams carry bytes without conversion, and the console's text is UTF-8. */
 #include "platform/program.h"
 
 #include <windows.h>
@@ -14,7 +14,7 @@
 
 #include "names.h"
 
-/* A text of the system in UTF-8, which the caller frees. */
+/* Converts a text of the system to UTF-8. The caller frees the result. */
 static char *narrow_text(const wchar_t *wide) {
   int bytes = WideCharToMultiByte(CP_UTF8, 0, wide, -1, NULL, 0, NULL, NULL);
   char *text = bytes > 0 ? malloc((size_t)bytes) : NULL;
@@ -22,7 +22,7 @@ static char *narrow_text(const wchar_t *wide) {
   return text;
 }
 
-/* Users type '\' in names of files, but the program uses '/'. */
+/* Replaces '\', which users type in names of files, by '/', which the program uses. */
 static void turn_slashes(char *text) {
   for (char *c = text; *c != '\0'; c++)
     if (*c == '\\') *c = '/';

@@ -25,7 +25,7 @@
 int hl_cpu_count(void) {
   DWORD_PTR of_process = 0, of_system = 0;
   DWORD all = GetActiveProcessorCount(ALL_PROCESSOR_GROUPS);
-  if (GetActiveProcessorGroupCount() > 1) return (int)all; /* the mask covers one group alone */
+  if (GetActiveProcessorGroupCount() > 1) return (int)all; /* the mask covers only one group */
   if (!GetProcessAffinityMask(GetCurrentProcess(), &of_process, &of_system)) return all > 0 ? (int)all : 1;
   int count = __builtin_popcountll(of_process);
   return count > 0 ? count : 1;
@@ -69,14 +69,14 @@ ssize_t getrandom(void *bytes, size_t count, unsigned flags) {
 
 /* ---- the environment ---- */
 
-/* The value, in UTF-8, of an environment variable that a caller has asked for. Values are kept here, because
- * the C library has them only in the system's code page. */
+/* The value, in UTF-8, of an environment variable that a caller has asked for. The library keeps these
+ * values, because the C library has values only in the system's code page. */
 typedef struct kept_value {
   struct kept_value *next;
   char text[];
 } kept_value;
 
-/* Stores a value in the list of kept values, unless the list has it already. Returns null if memory is
+/* Stores a value in the list of kept values, unless the list already has the value. Returns null if memory is
  * short. */
 static char *keep(const wchar_t *wide) {
   static kept_value *first;

@@ -7,10 +7,10 @@
 #include <sys/types.h>
 
 #ifndef O_NOFOLLOW
-/* The system declares this name only if the program asks for no version of POSIX. */
+/* The header <fcntl.h> of macOS declares O_NOFOLLOW only if the program selects no version of POSIX. */
 #define O_NOFOLLOW 0x100
 #endif
-/* The value 0 opens a file for reading, because macOS has no descriptors that only name a file. */
+/* macOS has no descriptors that only name a file; O_PATH is 0, which opens a file for reading. */
 #define O_PATH 0
 
 /* Makes a file at least offset + bytes long, and reserves the space on its disk. Returns an error number or

@@ -4,7 +4,7 @@
 
 #include_next <unistd.h>
 
-/* macOS 27 has a pipe2() of its own. */
+/* The name hl_posix_pipe2 avoids a conflict with the pipe2() that macOS 27 has. */
 int hl_posix_pipe2(int ends[2], int flags);
 #define pipe2 hl_posix_pipe2
 

@@ -1,4 +1,4 @@
-/* platform/windows/include/alloca.h - memory of a function's frame, which Windows declares elsewhere. */
+/* platform/windows/include/alloca.h - declares alloca(), which Windows declares in another header. */
 #ifndef HL_PLATFORM_WINDOWS_ALLOCA_H
 #define HL_PLATFORM_WINDOWS_ALLOCA_H
 

@@ -6,7 +6,7 @@
 typedef struct hl_folder_listing DIR;
 
 struct dirent {
-  char d_name[768]; /* UTF-8 */
+  char d_name[768]; /* the file's name in UTF-8 */
 };
 
 DIR *opendir(const char *path);

@@ -5,7 +5,7 @@
 
 enum { RTLD_LOCAL = 0, RTLD_NOW = 2, RTLD_NOLOAD = 4, RTLD_GLOBAL = 8 };
 
-/* Loads a library of the system's folder. */
+/* Loads a library from the system's own folder. */
 void *dlopen(const char *name, int flags);
 void *dlsym(void *library, const char *name);
 int dlclose(void *library);

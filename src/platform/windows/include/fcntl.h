@@ -8,20 +8,20 @@
 #include <sys/types.h>
 
 #define O_CLOEXEC  _O_NOINHERIT
-#define O_NONBLOCK 0 /* ignored, because open() fails for a pipe without a writer, and never waits */
+#define O_NONBLOCK 0 /* has no effect, because open() never waits, and fails for a pipe without a writer */
 #define O_NOCTTY   0
 /* Flags of hl_posix_open() and hl_posix_openat() that the C library does not have. */
 /* O_PATH: the descriptor can only be used by fstat(), and to open files below the folder */
 #define O_PATH      0x10000000
 #define O_DIRECTORY 0x20000000
-#define O_NOFOLLOW  0x40000000 /* links, junctions and mounted folders fail with ELOOP */
+#define O_NOFOLLOW  0x40000000 /* opening links, junctions and mounted folders fails with ELOOP */
 
 #define AT_SYMLINK_NOFOLLOW 0x100
 #define F_GETFD             1
 
 int hl_posix_open(const char *path, int flags, ...);
-/* Opens a file below a folder. path: relative, with '/'. Names with a colon or a backslash do not exist.
- * Links fail as for O_NOFOLLOW. */
+/* Opens a file below a folder. path: a path relative to the folder, with '/'. Files with a colon or a
+ * backslash in their names are not found. Opening a link fails as with O_NOFOLLOW. */
 int hl_posix_openat(int folder, const char *path, int flags, ...);
 /* Makes a file at least offset + bytes long. Returns an error number or 0. */
 int posix_fallocate(int descriptor, off_t offset, off_t bytes);

@@ -9,7 +9,7 @@ struct pollfd {
   short events, revents;
 };
 
-/* Waits until a pipe has bytes or has ended. Other files are always ready. count: 1. */
+/* Waits until a pipe has bytes or has ended. Files other than pipes are always ready. count: must be 1. */
 int poll(struct pollfd *wanted, unsigned count, int milliseconds);
 
 #endif

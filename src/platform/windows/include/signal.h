@@ -22,12 +22,12 @@ struct sigaction {
 };
 int sigfillset(sigset_t *signals);
 int sigemptyset(sigset_t *signals);
-/* Sets the effect of a signal. Signals that the C library does not have fail. */
+/* Sets the effect of a signal. The function fails for signals that the C library does not have. */
 int sigaction(int number, const struct sigaction *action, struct sigaction *before);
 
 #undef pthread_sigmask
 int pthread_sigmask(int how, const sigset_t *signals, sigset_t *before);
-/* Ignoring a signal that this system does not have is no error. */
+/* Sets the effect of a signal. Ignoring a signal that Windows does not have is no error. */
 void (*hl_posix_signal(int number, void (*handler)(int)))(int);
 #define signal hl_posix_signal
 

@@ -1,5 +1,5 @@
-/* platform/windows/include/stdio.h - changes <stdio.h> so that names are in UTF-8, files are binary, and a
- * file can be renamed over another one. */
+/* platform/windows/include/stdio.h - changes <stdio.h> so that names of files are in UTF-8, files are binary,
+ * and rename() can replace an existing file. */
 #ifndef HL_PLATFORM_WINDOWS_STDIO_H
 #define HL_PLATFORM_WINDOWS_STDIO_H
 

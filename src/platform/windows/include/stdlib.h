@@ -4,7 +4,8 @@
 
 #include_next <stdlib.h>
 
-/* The absolute name, with '/'. resolved: [PATH_MAX], or null for a block of malloc(). */
+/* Finds the absolute name of a file, with '/' between folders. resolved: [PATH_MAX], or null for a block of
+ * malloc(). */
 char *realpath(const char *path, char *resolved);
 char *hl_posix_mkdtemp(char *path);
 /* The value of a variable of the environment in UTF-8. The text stays valid until the process ends. */

@@ -7,7 +7,7 @@
 
 #include <stddef.h>
 
-/* The functions read() and write() as POSIX has them. A call moves at most 1 GiB. */
+/* The functions read() and write() of POSIX. A call reads or writes at most 1 GiB. */
 ssize_t hl_posix_read(int descriptor, void *bytes, size_t count);
 ssize_t hl_posix_write(int descriptor, const void *bytes, size_t count);
 ssize_t pread(int descriptor, void *bytes, size_t count, off_t offset);
@@ -19,8 +19,8 @@ int hl_posix_access(const char *path, int mode);
 int hl_posix_chdir(const char *path);
 char *hl_posix_getcwd(char *path, size_t size);
 int hl_posix_isatty(int descriptor);
-unsigned geteuid(void); /* returns 0, because a process has no user's number on this system */
-int symlink(const char *path, const char *name); /* fails */
+unsigned geteuid(void);                          /* returns 0, because users have no numbers on Windows */
+int symlink(const char *path, const char *name); /* always fails */
 
 enum { _SC_PAGESIZE, _SC_NPROCESSORS_ONLN };
 long sysconf(int name);

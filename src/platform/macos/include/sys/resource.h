@@ -9,7 +9,7 @@
 
 int hl_posix_getrusage(int who, struct rusage *usage);
 #define getrusage hl_posix_getrusage
-/* This function always fails, because the limits of another process cannot be set. */
+/* The function prlimit() always fails on macOS, because the limits of another process cannot be set there. */
 int prlimit(pid_t process, int what, const struct rlimit *limit, struct rlimit *before);
 
 #endif

@@ -13,7 +13,8 @@ enum { MADV_RANDOM, MADV_WILLNEED, MADV_DONTNEED, MADV_NOHUGEPAGE };
 
 void *mmap(void *address, size_t bytes, int protection, int flags, int descriptor, off_t offset);
 int munmap(void *begin, size_t bytes);
-/* MADV_DONTNEED lets the system take back the memory of a mapped file. Other advice has no effect. */
+/* MADV_DONTNEED lets the system take back the memory of a mapped file. Advice other than MADV_DONTNEED has no
+ * effect. */
 int madvise(void *begin, size_t bytes, int advice);
 
 #endif

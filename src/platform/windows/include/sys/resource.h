@@ -4,7 +4,7 @@
 #define HL_PLATFORM_WINDOWS_SYS_RESOURCE_H
 
 struct rusage {
-  long ru_maxrss; /* KiB */
+  long ru_maxrss; /* greatest memory of the process in KiB */
 };
 enum { RUSAGE_SELF };
 int getrusage(int who, struct rusage *usage);

@@ -1,5 +1,5 @@
 /* platform/windows/include/sys/stat.h - declares the functions of POSIX's <sys/stat.h>, with names in UTF-8,
- * and with 64 bits for sizes and the numbers of files. It replaces the C library's header. */
+ * and with 64 bits for sizes and the numbers of files. This header replaces the C library's <sys/stat.h>. */
 #ifndef _INC_STAT
 #define _INC_STAT
 
@@ -7,13 +7,13 @@
 #include <io.h>
 #include <sys/types.h>
 #include <time.h>
-/* this header declares structs with members of these names, and so it is included before the names become
- * macros */
+/* this system header declares structs with members of the following names, and must be included before the
+ * names become macros */
 #include <wchar.h>
 
 struct stat {
   unsigned long long st_dev, st_ino;
-  unsigned st_mode, st_uid; /* st_uid: 0, as geteuid() */
+  unsigned st_mode, st_uid; /* st_uid: 0, like the result of geteuid() */
   long long st_size;
   struct timespec st_mtim;
 };

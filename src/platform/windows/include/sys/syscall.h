@@ -1,2 +1,2 @@
-/* platform/windows/include/sys/syscall.h - replaces Linux's <sys/syscall.h>. It defines no numbers, because
- * no system call can be made by its number. */
+/* platform/windows/include/sys/syscall.h - replaces Linux's <sys/syscall.h>. The header defines no numbers,
+ * because programs cannot make system calls by their numbers on Windows. */
