@@ -27,7 +27,7 @@ static hl_status fail_system(hl_error *error, const char *path, const char *verb
  * file, or if the system cannot open it. */
 static int open_allowed(const hl_context *context, const char *path, int flags) {
   flags |= O_CLOEXEC;
-  /* with these flags, open() waits neither for the writer of a pipe nor for a device */
+  /* with O_NONBLOCK and O_NOCTTY, open() waits neither for the writer of a pipe nor for a device */
   if ((flags & O_PATH) == 0) flags |= O_NONBLOCK | O_NOCTTY;
   if (!hl_is_confined(context)) return open(path[0] != 0 ? path : ".", flags);
   errno = EXDEV;

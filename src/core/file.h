@@ -11,9 +11,9 @@
 /* Opens a file for reading and calls the context's `reads` callback. The function does not wait for the
  * writer of a pipe. */
 hl_status hl_file_open(hl_context *context, const char *path, int *descriptor, hl_error *error);
-/* Opens a file like hl_file_open(), but does not call `reads`. Threads other than the caller's use this
- * function, because they may not call `reads`. The function is also used for files that were reported to
- * `reads` before. */
+/* Opens a file like hl_file_open(), but does not call `reads`. Threads other than the caller's use
+ * hl_file_open_again(), because such threads may not call `reads`. The function is also used for files that
+ * were reported to `reads` before. */
 hl_status hl_file_open_again(hl_context *context, const char *path, int *descriptor, hl_error *error);
 /* Opens a folder, for hl_beneath_open() and fdopendir(). path: "" stands for the current folder, or for the
  * folder of a confined context. */

@@ -17,7 +17,7 @@ typedef struct hl_key {
 void hl_key_add(hl_key *key, const void *bytes, size_t count);
 
 /* Adds numbers to a key in such a form that memcmp() sorts keys as the numbers are sorted: -2, -1, 0, 1, 2.
- * Multiplying all numbers by one positive factor does not change this order. */
+ * Multiplying all numbers by one positive factor does not change the order of keys. */
 void hl_key_add_numbers(hl_key *key, const double *numbers, size_t count);
 
 static inline void hl_key_add_whole(hl_key *key, int64_t number) { hl_key_add(key, &number, sizeof number); }

@@ -34,8 +34,8 @@
 
 enum { MAXIMUM_THREADS = 256, SPINS = 4000 };
 
-/* The time between two calls of the cancel callback while a job runs. This time is much less than a user
- * notices, and much more than a call takes. */
+/* The time between two calls of the cancel callback while a job runs. The time between two calls is much less
+ * than a user notices, and much more than a call takes. */
 static const int64_t NANOSECONDS_BETWEEN_QUESTIONS = 2000000;
 /* The clock is read again after MOST_UNREAD calls at most. The clock is read earlier if MOST_UNREAD calls
  * could take longer than NANOSECONDS_BETWEEN_READINGS. */

@@ -1,12 +1,13 @@
 /* core/pool.h - runs a team of threads, which runs a function for every index.
  *
- * The caller takes part in the work as worker 0. Any worker may get any index, so the function's results must
- * not depend on the worker, and no two indices may write to the same output.
+ * The caller takes part in the work as worker 0. Any worker may get any index, so the results of the function
+ * that a pool runs must not depend on the worker, and the calls for two indices must not write to the same
+ * output.
  *
  * Between two indices the caller polls the context's cancel callback, at most once every few milliseconds. If
- * the callback asks to stop, the pool skips all indices that have not begun, in this run and in all later
- * runs. The results of such a run are incomplete: callers check hl_pool_cancelled() before they use
- * results. */
+ * the cancel callback asks to stop, the pool skips all indices that have not begun, in this run and in all
+ * later runs. The results of a cancelled run are incomplete: callers check hl_pool_cancelled() before they
+ * use results. */
 #ifndef HL_CORE_POOL_H
 #define HL_CORE_POOL_H
 
@@ -36,7 +37,7 @@ void hl_pool_run(hl_pool *pool, size_t count, void (*function)(void *data, size_
                  void *data);
 
 /* Offers the calls that hl_pool_run() would make, and returns at once. A pool of one thread makes all calls
- * itself before it returns. During later runs, threads without work in these runs make the offered calls.
+ * itself before it returns. During later runs, threads without work make the offered calls.
  * hl_pool_finish_offer() makes the remaining calls, and waits until other threads have finished their offered
  * calls. Before hl_pool_finish_offer() has returned, the memory that the calls read must not be written, and
  * nothing else may be offered. */

@@ -20,7 +20,7 @@
 /* ---- the sheets ---- */
 
 /* The greatest number of sheets of a sweep; a sweep of more sheets is refused. A cube of 14,000 voxels a side
- * has this number of sheets if the sheets are a quarter of a voxel apart. With this number of sheets, a
+ * has GREATEST_SHEETS sheets if the sheets are a quarter of a voxel apart. With GREATEST_SHEETS sheets, a
  * picture of 32 x 32 pixels takes about ten seconds, and the rounding of a sheet's height to a float is a
  * hundredth of the distance of sheets. */
 #define GREATEST_SHEETS 100000
@@ -59,8 +59,8 @@
 /* The optical depth below which the gradient has hardly any effect on the light that a slab absorbs. */
 #define THIN_DEPTH (1.0f / 64)
 
-/* The alpha from which on a pixel counts as opaque. Matter behind such a pixel would change it by less than
- * half a step of 10 bits. */
+/* The alpha from which on a pixel counts as opaque. Matter behind an opaque pixel would change the pixel by
+ * less than half a step of 10 bits. */
 #define PIXEL_OPAQUE (1.0f - 1.0f / 2048)
 
 /* ---- the shadow buffer ---- */
@@ -73,9 +73,9 @@
  * the dark (shadow/attenuate.h, "Marks of surfaces in the dark"). */
 #define DARK_AT_START (1.0f / 256)
 
-/* OUTWARDS_POWER sets how soon a surface has ended for light that leaves it again (shadow/attenuate.h). When
- * the depth h has fallen by a tenth, the fraction .19 of the absorbed light still lights the surface. When h
- * has fallen by a third, only the fraction .0015 of the absorbed light does. */
+/* OUTWARDS_POWER sets how soon a surface ends for light that leaves the surface again (shadow/attenuate.h).
+ * When the depth h has fallen by a tenth, the fraction .19 of the absorbed light still lights the surface.
+ * When h has fallen by a third, only the fraction .0015 of the absorbed light does. */
 #define OUTWARDS_POWER 16
 
 /* The number of voxels of even matter over which the kept light k falls by the factor e. Matter that is even
@@ -85,8 +85,8 @@
 #define EVEN_VOXELS 1
 
 /* A slab's end, times this factor, is a height just beyond the end: one or two steps of a float further. A
- * ray that no cut ends leaves the slab at this height, which distinguishes the ray from a ray that ends at
- * the slab's end.
+ * ray that no cut ends leaves the slab at the height just beyond the slab's end, which distinguishes the ray
+ * from a ray that ends at the slab's end.
  */
 #define BEYOND_SLAB 1.00000012f
 
@@ -102,24 +102,24 @@
 
 /* ---- the matter between a face of a box and the slab ---- */
 
-/* The number of pixels of the shadow buffer that lie around a position. A look-up between pixels uses these
+/* The number of pixels of the shadow buffer that lie around a position. A look-up between pixels uses the
  * four near pixels.
  */
 #define NEAR_PIXELS 4
 
 /* A limit for faces that are nearly parallel to the light. The distance to such a face changes much from one
- * near pixel to the next. The face counts fully while this change is below ALONG_FACE times the length of the
- * light's way through the box. From twice this value on, the face does not count, because light on both sides
- * of the face enters the box through another face, far away. */
+ * near pixel to the next. The face counts fully while the change of the distance is below ALONG_FACE times
+ * the length of the light's way through the box. From twice the value ALONG_FACE on, the face does not count,
+ * because light on both sides of the face enters the box through another face, far away. */
 #define ALONG_FACE 0.5f
 
-/* The greatest optical depth that is used. Behind this depth hardly any light is left, but exp(-depth) is
- * still above 0 as a float. */
+/* The greatest optical depth that is used. Behind the depth DEEPEST hardly any light is left, but exp(-depth)
+ * is still above 0 as a float. */
 #define DEEPEST 80.0f
 
-/* Each near pixel has an optical depth, from the face to the slab. If these depths differ by less than
- * EVEN_LIGHT, the buffer is read as if there were no face. If the depths differ by at least twice EVEN_LIGHT,
- * the face counts fully. */
+/* Each near pixel has an optical depth, from the face to the slab. If the near pixels' depths differ by less
+ * than EVEN_LIGHT, the buffer is read as if there were no face. If the depths differ by at least twice
+ * EVEN_LIGHT, the face counts fully. */
 #define EVEN_LIGHT 0.1f
 
 /* ---- the cascade ---- */
@@ -148,8 +148,8 @@
 #define LEAST_ABSORBED 1e-5f
 
 /* The number of pixels around a block of the slab that count as part of the block. A value at a half pixel
- * depends on two pixels on either side, so the block's values affect a sub-light's pixels up to this
- * distance. */
+ * depends on two pixels on either side, so the block's values affect a sub-light's pixels up to BLOCK_SPARE
+ * pixels away. */
 #define BLOCK_SPARE 2
 
 /* The distance, in pixels, of the four look-ups that stand for the pixels that a sub-light reads between
@@ -192,9 +192,9 @@
 
 /* The sky's field holds the light that reaches a cell, before the cell itself absorbs light. On its way to a
  * medium's sample, light crosses half of the cell. For a direction with the slopes u and v
- * (field/sky_lanes.h), half of the cell is half of sqrt(1 + u^2 + v^2) edges of a cell. The mean of this
- * length over all directions is 3 / (4 pi) times the integral of 1 / (1 + u^2 + v^2) over -1 < u, v < 1
- * (derived). */
+ * (field/sky_lanes.h), half of the cell is half of sqrt(1 + u^2 + v^2) edges of a cell. The mean length of
+ * the way through half a cell, over all directions, is 3 / (4 pi) times the integral of 1 / (1 + u^2 + v^2)
+ * over -1 < u, v < 1 (derived). */
 #define HALF_CELL 0.6107f
 
 /* The greatest distance, in voxels, by which a sample is moved to the outside of its surface. */

@@ -42,8 +42,8 @@ double hl_acos(double x);
 double hl_atan(double x);
 double hl_atan2(double y, double x);
 
-/* Computes the sine and the cosine of an angle in degrees. Both results are exact at multiples of 90 degrees.
- * angle_deg: its magnitude is at most 1e6. */
+/* Computes the sine and the cosine of an angle in degrees. The sine and the cosine are exact at multiples of
+ * 90 degrees. angle_deg: its magnitude is at most 1e6. */
 void hl_sine_cosine(double angle_deg, double *sine, double *cosine);
 
 /* The error function, 2 / sqrt(pi) times the integral of exp(-t^2) from 0 to x. */

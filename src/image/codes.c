@@ -63,8 +63,8 @@ static float shoulder(float x) {
   return x > SHOULDER ? 1 - rest * rest / (x - SHOULDER + rest) : x;
 }
 
-/* The factor by which tone mapping multiplies a light's red, green and blue. The same factor for all three
- * channels keeps the hue. light: linear, after the exposure. */
+/* The factor by which tone mapping multiplies a light's red, green and blue. Red, green and blue have the
+ * same factor, so that the hue does not change. light: linear, after the exposure. */
 static float tone_factor(hl_tone tone, const float light[3]) {
   if (tone != HL_TONE_FILMIC) return 1;
   float brightest = light[0] > light[1] ? light[0] : light[1];

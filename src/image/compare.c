@@ -2,9 +2,9 @@
  *
  * In: two pictures of the same size. Out: hl_image_difference. The first pass over the pixels finds the sums
  * and the greatest difference. Two more passes find the percentile by counting the bits of the differences as
- * floats, because the bits of floats have the order of the numbers. One of these two passes counts the upper
- * 16 bits of the differences, and the other the lower 16 bits. Thus no buffer of the picture's size is
- * needed, and the time does not depend on the data. */
+ * floats, because the bits of floats have the order of the numbers. The first pass for the percentile counts
+ * the upper 16 bits of the differences, and the second pass counts the lower 16 bits. The comparison
+ * therefore needs no buffer of the picture's size, and its time does not depend on the data. */
 #include <math.h>
 #include <string.h>
 

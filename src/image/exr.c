@@ -215,8 +215,8 @@ static exr_result_t start_read(exr_reading *reading) {
   return exr_start_read(&reading->file, reading->name, &options);
 }
 
-/* Adds the name of a channel's layer to a list, unless it is the last name of the list. The channels of a
- * layer are neighbours, because OpenEXR sorts channels by their names. */
+/* Adds the name of a channel's layer to a list, unless the layer's name is already the last name of the list.
+ * The channels of a layer are neighbours, because OpenEXR sorts channels by their names. */
 static void add_layer(const char *channel, char layers[HL_IMAGE_LAYERS_TEXT]) {
   const char *point = strrchr(channel, '.');
   const size_t length = point != NULL ? (size_t)(point - channel) : strlen(channel), used = strlen(layers);

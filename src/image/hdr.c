@@ -3,9 +3,10 @@
  *
  * In: bytes. Out: a picture of linear light, with alpha 1. Sources: Ward, "Real pixels", Graphics Gems II
  * (1991), and Radiance's refman/filefmts.pdf. The header consists of lines, of which the first is
- * "#?RADIANCE" and the last is empty. Then a line states the size, such as "-Y 512 +X 1024" for rows from the
- * top with pixels from the left. Rows of RGBE pixels follow, which have three mantissas and an exponent. A
- * row is stored plainly, as runs of whole pixels, or as runs of each of the four numbers separately.
+ * "#?RADIANCE" and the last is empty. After the header, a line states the picture's size, such as "-Y 512 +X
+ * 1024" for rows from the top with pixels from the left. Rows of RGBE pixels follow, which have three
+ * mantissas and an exponent. A row is stored plainly, as runs of whole pixels, or as runs of each of the four
+ * numbers separately.
  *
  * As in most programs, the line EXPOSURE is ignored, and the picture has the stored values. */
 #include <inttypes.h>
@@ -19,7 +20,7 @@
 
 enum { LINE_MAX_BYTES = 2048, RUN_WIDTH_MIN = 8, RUN_WIDTH_MAX = 32767, RUN_MAX = 127, EXPONENTS = 256 };
 
-/* The position at which a file is read. Errors name the byte at this position. */
+/* The position at which a file is read. Errors name the byte at the read position. */
 typedef struct hdr_cursor {
   const char *name;
   const unsigned char *bytes; /* borrowed; [length]; the bytes of the file */

@@ -27,7 +27,7 @@ typedef struct npy_header {
   bool has_type, has_order, has_shape;
 } npy_header;
 
-/* The position at which the header's text is read. Errors name the byte in the file at this position. */
+/* The position at which the header's text is read. Errors name the byte in the file at the read position. */
 typedef struct npy_cursor {
   const char *name;
   const unsigned char *bytes; /* borrowed; the first bytes of the file */
@@ -106,7 +106,7 @@ static void skip_spaces(npy_cursor *cursor) {
   while (cursor->at < cursor->end && memchr(" \t\r\n", cursor->bytes[cursor->at], 4) != NULL) cursor->at++;
 }
 
-/* Reads a given text of the header if this text comes next. */
+/* Moves behind a given text of the header if this text comes next in the header. */
 static bool take(npy_cursor *cursor, const char *text) {
   skip_spaces(cursor);
   size_t length = strlen(text);

@@ -300,8 +300,8 @@ static hl_status decode(hl_context *context, const char *name, const unsigned ch
   return status;
 }
 
-/* Reads the size from the first page's header. If the bytes do not include this header yet, the claim is the
- * number of bytes up to the header. */
+/* Reads the size from the first page's header. If the bytes do not include the page's header yet, the claim
+ * is the number of bytes up to the header. */
 static hl_image_claim claim(const unsigned char *bytes, size_t length) {
   hl_image_claim claimed = {0};
   if (length < 8) return claimed;

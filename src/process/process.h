@@ -29,8 +29,8 @@ void process_limit(const process *p, uint64_t memory, uint64_t file);
 /* Waits until the child ends by itself. Returns whether the child succeeded. */
 bool process_wait(process *p);
 
-/* Finds out, without waiting, whether the child has ended. If the child has ended, *succeeded says whether it
- * succeeded. */
+/* Finds out, without waiting, whether the child has ended. If the child has ended, *succeeded is set to
+ * whether the child succeeded. */
 bool process_has_ended(process *p, bool *succeeded);
 
 /* Copies the first line that the child wrote to standard error, or "NAME has failed" if the child wrote

@@ -59,8 +59,8 @@ const char *hl_nearest_candidate(const char *text, const char *(*candidate)(cons
                                  const void *data) {
   size_t length = strlen(text);
   const char *best = NULL, *name;
-  size_t best_distance = 2 + length / 4; /* names at greater distances are not suggested, because they would
-                                          * only confuse */
+  size_t best_distance = 2 + length / 4; /* names at greater distances are not suggested, because such
+                                          * suggestions would only confuse users */
   if (length > HL_EDIT_LONGEST) return NULL;
   for (size_t i = 0; (name = candidate(data, i)) != NULL; i++) {
     bool part_of_it = length >= 3 && strstr(name, text) != NULL;

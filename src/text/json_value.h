@@ -14,8 +14,8 @@ void hl_json_number_text(double number, char text[HL_JSON_NUMBER_BYTES]);
  * (RFC 3629). */
 size_t hl_utf8_length(const unsigned char *c);
 
-/* Writes the character at *text in the form that it has within a string of JSON (some characters need an
- * escape), and moves *text behind the character. Returns the number of bytes that were written; 0 at the
+/* Writes the character at *text in the form in which a string of JSON contains the character (with an escape
+ * if needed), and moves *text behind the character. Returns the number of bytes that were written; 0 at the
  * text's end. Bytes that are not UTF-8, which occur in names of files, become U+FFFD. */
 size_t hl_json_piece(const char **text, char piece[HL_JSON_PIECE_BYTES]);
 

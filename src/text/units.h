@@ -22,8 +22,8 @@ double hl_length_ratio(double metres, double other_metres);
  * one of the names is null or not the name of a known unit. */
 double hl_unit_ratio(const char *from, const char *to);
 
-/* Chooses the unit for a length: the unit in which the length is a number from 1 to 1000. If no unit has such
- * a number, the result is the unit whose number is nearest to this range. */
+/* Chooses the unit for a length: the unit in which the length is a number from 1 to 1000. If no unit gives
+ * such a number, the result is the unit whose number is nearest to the range from 1 to 1000. */
 const hl_unit *hl_unit_for(double metres);
 
 /* The greatest number of the form 1, 2 or 5 times a power of ten that is at most `most`. */

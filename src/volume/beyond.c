@@ -64,8 +64,8 @@ bool hl_beyond_is_seen(const hl_beyond *beyond, const uint64_t begin[3], const u
   return false;
 }
 
-/* The scratch memory of hl_beyond_row() holds two rows of the coarser volume: one of stored values, and one
- * of data values. */
+/* The scratch memory of hl_beyond_row() holds two rows of the coarser volume: a row of stored values, and a
+ * row of data values. */
 size_t hl_beyond_room(const hl_beyond *beyond) {
   return beyond->coarse != NULL ? 2 * beyond->coarse->dimension[0] : 0;
 }

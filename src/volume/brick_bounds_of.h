@@ -50,7 +50,7 @@ static void BOUNDS_NAME(bound_slice)(const hl_brick_bounds *b, const BOUNDS_TYPE
   }
 }
 
-/* Widens the bounds of a layer of bricks so that they hold the bounds that were found in a slice. */
+/* Widens the bounds of a layer of bricks so that the bounds include the bounds that were found in a slice. */
 static void BOUNDS_NAME(widen)(BOUNDS_TYPE *restrict bounds, const BOUNDS_TYPE *restrict low,
                                const BOUNDS_TYPE *restrict high, size_t bricks) {
   for (size_t n = 0; n < bricks; n++) {

@@ -1,8 +1,8 @@
 /* volume/convert.h - converts the types of files and callers to the three storage types.
  *
  * Signed integers of 8 and 16 bits: the sign bit is flipped, so that stored = value + 2^(bits - 1). The
- * volume's value_offset subtracts this number again. Types of 32 and 64 bits: the stored value is the nearest
- * f32. Doubles beyond the range of f32 become infinite, and such voxels are transparent. */
+ * volume's value_offset subtracts the added number again. Types of 32 and 64 bits: the stored value is the
+ * nearest f32. Doubles beyond the range of f32 become infinite, and such voxels are transparent. */
 #ifndef HL_VOLUME_CONVERT_H
 #define HL_VOLUME_CONVERT_H
 

@@ -76,12 +76,12 @@ static hl_status check_size(const hl_volume_description *description, const char
   return HL_OK;
 }
 
-/* The greatest magnitude of a vector's coordinates. Checks of lengths use it, because unlike a length it
- * cannot overflow. */
+/* The greatest magnitude of a vector's coordinates. Checks of lengths use the greatest magnitude, which
+ * unlike a length cannot overflow. */
 static double greatest_part(const double v[3]) { return fmax(fmax(fabs(v[0]), fabs(v[1])), fabs(v[2])); }
 
-/* The least and the greatest allowed length of a step. Squares and cubes of lengths between these bounds stay
- * in the range of doubles. */
+/* The least and the greatest allowed length of a step. Squares and cubes of lengths between SHORTEST_STEP and
+ * LONGEST_STEP stay in the range of doubles. */
 static const double SHORTEST_STEP = 1e-100, LONGEST_STEP = 1e100;
 
 static hl_status check_step(const double axis[3], int number, const char *subject, hl_error *error) {
@@ -240,8 +240,8 @@ size_t hl_volume_row_room(const hl_volume *volume) {
   return width * (in_file ? hl_voxel_type_bytes(volume->type) + stored : stored);
 }
 
-/* Reads a row of the file's own numbers of a volume with pages. These numbers lie in a second scratch file.
- * Returns null if that file cannot be read. */
+/* Reads a row of the file's own numbers of a volume with pages. The file's own numbers lie in a second
+ * scratch file. Returns null if that file cannot be read. */
 static const void *numbers_in(const hl_volume *volume, size_t j, size_t k, unsigned char *buffer) {
   size_t width = volume->dimension[0], first = (k * volume->dimension[1] + j) * width;
   float *stored = (float *)(void *)(buffer + width * hl_voxel_type_bytes(volume->type));
@@ -318,8 +318,8 @@ static void choose_strides(const hl_volume_description *description, ptrdiff_t s
  * few slices in 32 bits. */
 #define LARGEST_GAP ((ptrdiff_t)1 << 26)
 
-/* Returns whether the caller's voxels can be borrowed without a copy. Their type must be a storage type, they
- * must be aligned for vector loads, the voxels of a row must be adjacent, and neither rows nor slices may
+/* Returns whether the caller's voxels can be borrowed without a copy. Borrowed voxels must have a storage
+ * type and be aligned for vector loads. The voxels of a row must be adjacent, and neither rows nor slices may
  * overlap. */
 static bool can_borrow(const hl_volume_description *description, const ptrdiff_t stride[3]) {
   hl_voxel_type type = description->type;

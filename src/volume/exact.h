@@ -7,7 +7,7 @@
  * several ranks share the volume, each rank keeps the numbers of its own voxels.
  *
  * In: voxels as a file or a caller gives them, in pieces of any size and order, from several threads at once.
- * Out: the numbers of all voxels, or null if floats hold all of them. */
+ * Out: the numbers of all voxels, or null if floats hold all numbers exactly. */
 #ifndef HL_VOLUME_EXACT_H
 #define HL_VOLUME_EXACT_H
 
@@ -22,16 +22,18 @@ typedef enum hl_exact_place {
 typedef struct hl_exact {
   hl_context *context;
   hl_voxel_type type;
-  size_t first, count; /* the voxels whose numbers are kept. first: the number of the first one, which is 0
-                        * unless several ranks share the volume. count: the number of these voxels */
+  size_t first, count; /* the voxels whose numbers are kept. first: the number of the first of these voxels,
+                        * which is 0 unless several ranks share the volume. count: the number of these
+                        * voxels */
   hl_exact_place place;
   atomic_bool rounds;      /* whether floats round any of the recorded numbers */
   atomic_int failure;      /* the system's error number if memory or disk had no room for the numbers, else
                             * 0 */
   _Atomic(void *) numbers; /* owned; [count], of the file's type; a number is 0 until it is recorded. Null
                             * until a number is recorded that a float rounds */
-  atomic_int file; /* owned; the file that holds the numbers, if they are not in memory; -1 if there is none.
-                    * Numbers that were not recorded are holes of the file, which read as zeros */
+  atomic_int file; /* owned; the scratch file that holds the numbers; -1 if the numbers are in memory, or no
+                    * number was recorded. Numbers that were not recorded are holes of the file, which read as
+                    * zeros */
 } hl_exact;
 
 void hl_exact_begin(hl_context *context, hl_voxel_type type, size_t count, hl_exact_place place,

@@ -182,8 +182,8 @@ static bool keeps_numbers(const saving *s) {
          volume->value_scale == 1 && volume->value_offset == 0;
 }
 
-/* The bits that identify a label. They are the bits of the file's own number if keeps_numbers() is true, else
- * the bits of the data value. Equal labels have equal bits. */
+/* The bits that identify a label. A label is identified by the bits of the file's own number if
+ * keeps_numbers() is true, else by the bits of the data value. Equal labels have equal bits. */
 static uint64_t bits_of(const saving *s, hl_number_row row, size_t i, double value) {
   uint64_t bits = 0;
   const size_t bytes = hl_voxel_type_bytes(row.type);
@@ -268,8 +268,8 @@ static uint16_t half_of(double value) {
                            * bits of a half is therefore worth 2^(exponent - 11) */
   int last = exponent - 11 > -24 ? exponent - 11 : -24;
   double units = nearbyint(ldexp(size, -last)); /* from 1024 to 2048, or less for subnormal halves */
-  /* The exponent field of the half, less 1. This field is used if `units` is at least 1024, so that the half
-   * is not subnormal. */
+  /* The exponent field of the half, less 1. The exponent field is used only if `units` is at least 1024, so
+   * that the half is not subnormal. */
   int biased = last + 24;
   return (uint16_t)(sign | (units < 1024 ? (unsigned)units
                                          : ((unsigned)(biased + 1) << 10) + (unsigned)(units - 1024)));
@@ -439,8 +439,8 @@ static hl_status check_raw_name(const saving *s, const char *path, hl_error *err
 }
 
 /* Returns whether a grid has an origin or directions that differ from the defaults. If `spacing` is true,
- * steps of other lengths than 1 count as different, too. If it is false, a stated anatomical space counts as
- * different, too. */
+ * steps of other lengths than 1 count as different, too. If `spacing` is false, a stated anatomical space
+ * counts as different, too. */
 static bool has_place(const hl_volume_description *grid, bool spacing) {
   hl_volume_description plain;
   hl_volume_description_defaults(&plain);

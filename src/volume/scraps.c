@@ -18,7 +18,8 @@ enum { UNSEEN = 0, FAINT = 1, FIRM = 2, KEPT = 3 };
 
 typedef struct run {
   uint32_t first, end; /* the run's voxels in its row: first .. end - 1 */
-  uint32_t body;       /* the index of a run of the same body; a body's first run has its own index */
+  uint32_t body;       /* the index of another run of the same body; in a body's first run, the run's own
+                        * index */
   uint64_t voxels;     /* number of voxels of the whole body; set only in the body's first run */
 } run;
 

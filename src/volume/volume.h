@@ -33,7 +33,7 @@ typedef struct hl_selection {
   int aim; /* the resolution that would be read if a first picture did not need only a coarser resolution */
 } hl_selection;
 
-/* The resolutions of the file from which a volume was loaded at one of the resolutions. */
+/* The resolutions of the file from which a volume was loaded. */
 enum { HL_RESOLUTIONS_MOST = 32 };
 typedef struct hl_resolutions {
   bool is_chosen;                      /* whether the caller has named the resolution that is read */
@@ -158,8 +158,8 @@ struct hl_volume {
                                  * are 1/2; else 0 */
   _Atomic(struct hl_data_analysis *) analysis; /* owned, in one block; the results of guess/analysis.h; null
                                                 * until the results are needed */
-  /* Data that other parts of the library keep with the volume. The volume owns the data, and releases
-   * them. */
+  /* Data that other parts of the library keep with the volume. The volume owns the data of its shelf, and
+   * releases the data. */
   atomic_flag shelf_lock; /* held while `scraps` and the shelf are accessed */
   void *shelf;
   void (*release_shelf)(hl_context *context, void *shelf);
@@ -280,8 +280,8 @@ hl_status hl_volume_adopt_pages(hl_context *context, const hl_volume_description
 /* Releases a list of arrays. */
 void hl_arrays_release(hl_context *context, hl_array_entry *arrays, size_t count);
 
-/* Checks type, dimensions, the volume's size in bytes, axes, scale and offset. Fails if any of them is
- * impossible. */
+/* Checks type, dimensions, the volume's size in bytes, axes, scale and offset. Fails if any of these
+ * properties is impossible. */
 hl_status hl_volume_check_grid(const hl_volume_description *description, const char *subject,
                                hl_error *error);
 

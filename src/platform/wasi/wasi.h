@@ -2,8 +2,9 @@
  * build for WebAssembly includes this header before each source.
  *
  * A web page has one user, no signals, no libraries that are loaded later, and no disk for scratch files. The
- * functions for signals, libraries and scratch files fail, as on a system that has run out of them. This
- * header includes no other header, because each source chooses which names the system's headers declare. */
+ * functions for signals, libraries and scratch files fail, as on a system that has no more signals, libraries
+ * or disk space. This header includes no other header, because each source chooses which names the system's
+ * headers declare. */
 #ifndef HL_PLATFORM_WASI_WASI_H
 #define HL_PLATFORM_WASI_WASI_H
 

@@ -41,7 +41,7 @@ static DWORD creation_of(int flags) {
 }
 
 /* Makes a descriptor for a handle, which the descriptor then owns. Fails for links if the flags include
- * O_NOFOLLOW, and for files that are no folders if they include O_DIRECTORY. */
+ * O_NOFOLLOW, and for files that are no folders if the flags include O_DIRECTORY. */
 static int descriptor_of(HANDLE handle, int flags) {
   BY_HANDLE_FILE_INFORMATION about;
   int problem = 0;

@@ -11,8 +11,8 @@ typedef struct kept_locale {
 } kept_locale;
 
 static char the_locale; /* the address of this variable stands for the locale "C" */
-/* uselocale() returns the address of this variable if it changed nothing, because the thread had the locale
- * "C" already, or because memory was short. */
+/* The function uselocale() returns the address of this variable if the call changed nothing, because the
+ * thread had the locale "C" already, or because memory was short. */
 static char no_change;
 
 locale_t newlocale(int mask, const char *name, locale_t base) {

@@ -1,4 +1,4 @@
-/* volume/formats/format.c - functions that the readers of all formats share: they choose an array and a
+/* volume/formats/format.c - functions that the readers of all formats share, which choose an array and a
  * component, and find types by their names. */
 #include "volume/formats/format.h"
 
@@ -102,8 +102,8 @@ hl_status hl_arrays_choose(hl_load_request *request, const char *path, int activ
   return HL_OK;
 }
 
-/* Chooses one of `count` times, channels or levels. The choice is the wanted one, or the first one if none is
- * wanted. */
+/* Chooses one of `count` times, channels or levels. The choice is the wanted time, channel or level, or the
+ * first if the caller wants none. */
 static hl_status choose_step(const char *path, const char *kind, int wanted, size_t count, int *chosen,
                              hl_error *error) {
   if (wanted >= 0 && (size_t)wanted >= count && count <= 1)
@@ -313,8 +313,8 @@ static hl_status check_steps(const hl_load_request *request, const char *path, h
                          : status;
 }
 
-/* Chooses the default component, and writes a warning that names it. If the component is the colours, no
- * warning is written. */
+/* Chooses the default component, and writes a warning that names the component. If the component is the
+ * colours, no warning is written. */
 static int default_component(hl_load_request *request, const char *path, bool is_series,
                              const hl_payload *payload) {
   size_t components = payload->components;

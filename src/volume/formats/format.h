@@ -17,15 +17,15 @@ enum { HL_ARRAYS_MOST = 256 }; /* greatest number of arrays that are listed for 
  * finds in the file. */
 typedef struct hl_load_request {
   hl_context *context;
-  const char *array;        /* null if the reader may choose */
-  int component;            /* HL_COMPONENT_DEFAULT, HL_COMPONENT_MAGNITUDE, or an index */
-  double spacing[3];        /* world units; all 0 if the file's own spacing is used */
-  int time, channel, level; /* HL_INDEX_DEFAULT, or an index */
-  const char *channel_name; /* the name or the number of the wanted channel, as text, until it is found in the
-                             * file; null if there is none */
-  int pixels;               /* pixels of the picture's longer side; 0 if unknown */
-  int preview_pixels;       /* pixels of the longer side of a first picture; 0 if there is none */
-  const hl_volume *coarse;  /* the coarser volume in hl_volume_load_options; null if all voxels are read */
+  const char *array;          /* null if the reader may choose */
+  int component;              /* HL_COMPONENT_DEFAULT, HL_COMPONENT_MAGNITUDE, or an index */
+  double spacing[3];          /* world units; all 0 if the file's own spacing is used */
+  int time, channel, level;   /* HL_INDEX_DEFAULT, or an index */
+  const char *channel_name;   /* the name or the number of the wanted channel, as text; null after the channel
+                               * was found in the file, and if the caller names no channel */
+  int pixels;                 /* pixels of the picture's longer side; 0 if unknown */
+  int preview_pixels;         /* pixels of the longer side of a first picture; 0 if there is none */
+  const hl_volume *coarse;    /* the coarser volume in hl_volume_load_options; null if all voxels are read */
   const double (*seen)[4][4]; /* [seen_count]; the planes in hl_volume_load_options */
   size_t seen_count;
   double window[2];       /* set by readers: the data values that are shown black and white; both equal if
@@ -48,7 +48,7 @@ typedef struct hl_load_request {
   size_t series_count, chosen_series;
   bool more;                  /* whether the file has more than HL_ARRAYS_MOST arrays */
   hl_selection selection;     /* the numbers of times, channels and levels in the file, which are 1 until the
-                               * reader sets them; also the time, channel and level that are read */
+                               * reader sets the numbers; also the time, channel and level to read */
   hl_resolutions resolutions; /* set by hl_level_choose() */
   char array_told[1000], component_told[400],
       selection_told[600]; /* warnings that name the array, the component, and the time and channel that were
@@ -66,13 +66,13 @@ hl_status hl_arrays_add(hl_load_request *request, const char *name, size_t compo
  * cells are chosen only if the file has no other arrays. The list must not be empty. */
 hl_status hl_arrays_choose(hl_load_request *request, const char *path, int active, hl_error *error);
 
-/* Chooses the component to read, and stores it in the payload, whose `components` and `block` must be set.
- * The choice is the wanted component. If the caller wants none, the choice is the only component, or the
+/* Chooses the component to read, and stores its index in the payload, whose `components` and `block` must be
+ * set. The choice is the wanted component. If the caller wants none, the choice is the only component, or the
  * magnitude of vectors of two or three components, or the first component. is_series: whether components are
  * time steps and channels. In such a series the time steps of a channel are adjacent components.
- * request->selection has the numbers of times and channels; if it does not have them, all components are
- * times. By default the first time step of the first channel is read. Refuses a time, a channel or a level
- * that request->selection does not have. */
+ * request->selection has the numbers of times and channels; if request->selection has no such numbers, all
+ * components are times. By default the first time step of the first channel is read. Refuses a time, a
+ * channel or a level that request->selection does not have. */
 hl_status hl_component_choose(hl_load_request *request, const char *path, bool is_series, hl_payload *payload,
                               hl_error *error);
 
@@ -84,8 +84,8 @@ hl_status hl_steps_choose(hl_load_request *request, const char *path, size_t tim
 /* Allocates request->channels, with empty descriptions. The number of channels must be known. */
 hl_status hl_channels_make(hl_load_request *request, hl_error *error);
 
-/* Selects the channel that the caller has named. Readers call this function when request->channels has the
- * names, before they read voxels. The error for an unknown name lists the names of the channels. */
+/* Selects the channel that the caller has named. Readers call hl_channel_find() when request->channels has
+ * the names, and before reading voxels. The error for an unknown name lists the names of the channels. */
 hl_status hl_channel_find(hl_load_request *request, const char *path, hl_error *error);
 
 /* Fails if the caller has named a channel, but the reader has not found the channel in the file. */
@@ -140,17 +140,17 @@ typedef struct hl_format {
    * has_content() of all formats is false. May replace *stream by the file that holds the header. */
   hl_status (*claim_name)(hl_stream **stream, bool *claimed, hl_error *error);
 
-  /* Reads *stream from its current position. May replace *stream or push decoders on it. The caller closes
-   * it. */
+  /* Reads *stream from its current position. The function may replace *stream, or push decoders on *stream.
+   * The caller closes it. */
   hl_status (*load)(hl_stream **stream, hl_load_request *request, hl_volume **volume, hl_error *error);
 
   /* Reads a folder or a zip archive. *claimed: set to false if the folder or archive contains nothing of the
-   * format. Then load_bundle() of the next format is called. */
+   * format. If *claimed is false, load_bundle() of the next format is called. */
   hl_status (*load_bundle)(hl_bundle *bundle, hl_load_request *request, bool *claimed, hl_volume **volume,
                            hl_error *error);
 
-  /* This flag says whether load_bundle opens files by their names, without a list of all files. Only formats
-   * with this flag can be read from servers. */
+  /* finds_by_name: whether load_bundle() opens files by their names, without a list of all files. Only such
+   * formats can be read from servers. */
   bool finds_by_name;
 } hl_format;
 

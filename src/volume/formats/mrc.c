@@ -2,9 +2,10 @@
  * .ccp4, .rec, .st.
  *
  * Source of the fields: the MRC2014 format (Cheng et al., Journal of Structural Biology 192, 2015, and the
- * CCP-EM project's page of it). The header has 1024 bytes of 4-byte words. The byte order is the order in
- * which the header's sizes and mode are possible numbers. World coordinates are the cell's X, Y, Z in
- * Angstroms. MAPC, MAPR and MAPS say along which of these axes the file's columns, rows and sections run. */
+ * CCP-EM project's page about the format). The header has 1024 bytes of 4-byte words. The byte order is the
+ * order in which the header's sizes and mode are possible numbers. World coordinates are the cell's X, Y, Z
+ * in Angstroms. The header's MAPC, MAPR and MAPS say along which of the cell's axes the file's columns, rows
+ * and sections run. */
 #include <math.h>
 #include <string.h>
 
@@ -77,7 +78,7 @@ static hl_status read_header(hl_stream *stream, mrc_header *header, hl_error *er
   hl_status status = hl_stream_read_all(stream, header->bytes, HEADER_BYTES, error);
   if (status != HL_OK) return status;
   bool little = is_possible(header->bytes, false), big = is_possible(header->bytes, true);
-  /* both byte orders are possible if sizes are numbers like 16777216; then the machine stamp decides, where
+  /* both byte orders are possible if sizes are numbers like 16777216; in this case the machine stamp decides:
    * 0x11 means big-endian */
   header->big_endian = big && (!little || header->bytes[AT_MARK + 4] == 0x11);
   if (!little && !big) {

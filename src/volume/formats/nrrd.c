@@ -25,8 +25,8 @@ static bool is_component_axis(const nrrd_header *header, const nrrd_axis *axis) 
 }
 
 /* Returns whether the samples along the first axis are assumed to be components, although the file does not
- * say so. This is the case if the axis has at most four samples, the file states neither directions nor kinds
- * of axes, and at least four axes have several samples. */
+ * say so. Such an assumption is made if the axis has at most four samples, the file states neither directions
+ * nor kinds of axes, and at least four axes have several samples. */
 static bool is_first_of_components(const nrrd_header *header) {
   bool unsaid = header->axis[0].size <= 4 && !header->space.has_directions;
   int thick = 0;
@@ -38,7 +38,7 @@ static bool is_first_of_components(const nrrd_header *header) {
 }
 
 /* Reduces the axes of voxels to at most three. Axes of one sample are dropped first, beginning with the last
- * such axis. Then all axes after the third are dropped, and become a series. */
+ * such axis. If more than three axes are left, all axes after the third are dropped, and become a series. */
 static int drop_thin_axes(int axes[NRRD_MOST_AXES], const nrrd_header *header, int count) {
   for (int n = count - 1; n >= 0 && count > 3; n--)
     if (header->axis[axes[n]].size == 1) {
@@ -141,8 +141,8 @@ static hl_status place_grid(const nrrd_header *header, hl_payload *payload, bool
 
 /* ---- the voxels ---- */
 
-/* Moves the stream to the last `bytes` bytes of packed data. Unpacks all data once to find where these bytes
- * begin, and then unpacks once more up to this place. */
+/* Moves the stream to the last `bytes` bytes of packed data. The function unpacks all data once to find the
+ * position of these bytes, and then unpacks the data a second time up to this position. */
 static hl_status skip_to_last_unpacked(hl_stream **stream, const nrrd_header *header, uint64_t bytes,
                                        hl_error *error) {
   unsigned char piece[8192];

@@ -50,8 +50,8 @@ typedef struct nrrd_header {
   size_t segment_count;
 } nrrd_header;
 
-/* Reads the header from a stream's beginning, and stops at the voxels if they follow it. The header's lists
- * must be empty and have their context; the caller owns them, also on failure. */
+/* Reads the header from a stream's beginning, and stops at the first voxel if voxels follow the header. The
+ * header's lists must be empty and have their context; the caller owns the lists, also on failure. */
 hl_status hl_nrrd_read_header(hl_stream *stream, nrrd_header *header, hl_error *error);
 
 #endif

@@ -18,7 +18,7 @@ typedef struct hl_raw_slice {
 } hl_raw_slice;
 
 /* Finds the size and type that a name of `length` characters states. Returns false if the name does not state
- * them. */
+ * size and type. */
 bool hl_raw_slice_name(const char *name, size_t length, hl_raw_slice *slice);
 
 #endif

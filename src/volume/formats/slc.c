@@ -101,8 +101,8 @@ static hl_status read_header(hl_stream *stream, slc_header *header, hl_error *er
 /* ---- packed slices ---- */
 
 /* A stream that unpacks slices. The packed data are runs. The first byte of a run holds a count of 1 to 127
- * in its lower seven bits. If the highest bit of this byte is set, `count` bytes follow. If it is not set,
- * one byte follows, which is repeated `count` times. A count of 0 ends the slice. */
+ * in its lower seven bits. If the highest bit of this byte is set, `count` bytes follow. If the highest bit
+ * is not set, one byte follows, which is repeated `count` times. A count of 0 ends the slice. */
 typedef struct run_stream {
   hl_stream base;
   size_t slice_bytes, slices; /* number of bytes of an unpacked slice; number of slices that have not begun */

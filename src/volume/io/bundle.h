@@ -47,7 +47,7 @@ hl_status hl_bundle_open_folder(hl_context *context, const char *path, hl_bundle
 hl_status hl_bundle_of_file(hl_context *context, const char *path, hl_bundle *bundle, hl_error *error);
 void hl_bundle_close(hl_bundle *bundle);
 
-/* Finds the files of a folder. The caller calls this function once. Archives do not need the call, because
+/* Finds the files of a folder. The caller calls hl_bundle_list() once. Archives do not need the call, because
  * their files are known already. */
 hl_status hl_bundle_list(hl_bundle *bundle, hl_error *error);
 
@@ -55,8 +55,8 @@ hl_status hl_bundle_list(hl_bundle *bundle, hl_error *error);
 hl_status hl_bundle_add(hl_bundle *bundle, hl_bundle_entry entry, hl_error *error);
 void hl_bundle_sort(hl_bundle *bundle);
 
-/* Opens the file of an entry. quiet: as for hl_source_open(). Several threads may call this function at the
- * same time. */
+/* Opens the file of an entry. quiet: as for hl_source_open(). Several threads may call hl_bundle_entry_open()
+ * at the same time. */
 hl_status hl_bundle_entry_open(const hl_bundle *bundle, const hl_bundle_entry *entry, bool quiet,
                                hl_source **source, hl_error *error);
 
@@ -68,13 +68,13 @@ static inline bool hl_bundle_is_on_server(const hl_bundle *bundle) { return bund
  * need the server. */
 bool hl_bundle_has_brought(const hl_bundle *bundle, const char *name);
 /* Fetches files of a server in one request. Files that were fetched before are left out. most: the greatest
- * length of a file in bytes. Only the caller's thread may call this function. */
+ * length of a file in bytes. Only the caller's thread may call hl_bundle_bring(). */
 hl_status hl_bundle_bring(const hl_bundle *bundle, const char *const *names, size_t count, uint64_t most,
                           hl_error *error);
 /* Fetches parts of files in one request: of file names[n] the bytes of ranges[n]. A source of such a file
  * (hl_bundle_find()) knows all parts that were fetched. A server may send whole files instead, of at most
- * `most` bytes. Fails if a file has changed between two parts. Only the caller's thread may call this
- * function. */
+ * `most` bytes. Fails if a file has changed between two parts. Only the caller's thread may call
+ * hl_bundle_bring_parts(). */
 hl_status hl_bundle_bring_parts(const hl_bundle *bundle, const char *const *names,
                                 const hl_fetch_range *ranges, size_t count, uint64_t most, hl_error *error);
 /* Returns whether the server has this file, and only parts of the file were fetched. */
@@ -87,7 +87,7 @@ void hl_bundle_forget(const hl_bundle *bundle, size_t count);
 hl_status hl_brought_find(const hl_bundle *bundle, const char *name, hl_source **source, hl_error *error);
 void hl_brought_release(hl_bundle *bundle);
 
-/* Prepares hl_bundle_find(). Afterwards several threads may call that function at the same time. */
+/* Prepares hl_bundle_find(). Afterwards several threads may call hl_bundle_find() at the same time. */
 hl_status hl_bundle_find_ready(hl_bundle *bundle, hl_error *error);
 
 /* Opens a file by its path relative to the folder, with '/' between folders. The file need not be listed. A

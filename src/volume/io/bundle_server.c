@@ -88,8 +88,8 @@ static hl_status check_state(const hl_bundle *bundle, const char *name, const hl
                  bundle->path, name);
 }
 
-/* Adds fetched files to the list of known files, which then owns them. If memory for the list is short, files
- * that do not fit are closed. */
+/* Adds fetched files to the list of known files, which takes over the files. If memory for the list is short,
+ * files that do not fit are closed. */
 static hl_status take(const hl_bundle *bundle, const char *const *names, size_t count,
                       const hl_fetched_file *files, hl_error *error) {
   hl_brought *brought = bundle->brought;

@@ -91,7 +91,8 @@ static hl_status inflate_step(hl_stream *stream, z_stream *zlib, uint64_t input_
   return HL_OK;
 }
 
-/* Prepares the next gzip member, if one follows the member that has ended. Any other bytes end the stream. */
+/* Prepares the next gzip member, if the member that has ended is followed by another member. Any other bytes
+ * end the stream. */
 static hl_status next_member(inflate_stream *stream, hl_error *error) {
   const unsigned char *bytes;
   size_t available;
@@ -271,7 +272,7 @@ static hl_status read_integers(hl_stream *stream, size_t header_bytes, bool big_
 }
 
 /* Reads the header, which states the sizes of the blocks. The sum of the blocks' sizes must be the size of
- * the array, which the file states elsewhere. This check also limits the number of blocks. */
+ * the array, which the file states elsewhere. The check of the sum also limits the number of blocks. */
 static hl_status read_block_header(blocks_stream *stream, size_t header_bytes, bool big_endian,
                                    uint64_t promised, hl_error *error) {
   hl_stream *below = stream->base.below;

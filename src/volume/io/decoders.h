@@ -23,8 +23,8 @@ typedef enum hl_vtk_packing { HL_VTK_PLAIN, HL_VTK_ZLIB, HL_VTK_LZ4, HL_VTK_XZ }
 hl_status hl_stream_push_vtk_blocks(hl_stream **stream, hl_vtk_packing packing, size_t header_bytes,
                                     bool big_endian, uint64_t promised, hl_error *error);
 
-/* These functions push a decoder of bytes that are written as text, in base64 or hexadecimal. The text ends
- * at the first character that is neither a digit of the coding nor white space. */
+/* hl_stream_push_base64() and hl_stream_push_hex() push a decoder of bytes that are written as text. The text
+ * ends at the first character that is neither a digit of the coding nor white space. */
 hl_status hl_stream_push_base64(hl_stream **stream, hl_error *error);
 hl_status hl_stream_push_hex(hl_stream **stream, hl_error *error);
 

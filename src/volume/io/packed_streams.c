@@ -65,8 +65,8 @@ static hl_status bzip2_start(bzip2_stream *stream, hl_error *error) {
   return stream->started ? HL_OK : hl_fail_memory(error, 100000, stream->base.path);
 }
 
-/* Prepares the next packed stream, if one follows the stream that has ended. Programs that pack in parallel
- * write several streams. */
+/* Prepares the next bzip2 stream, if the stream that has ended is followed by another stream. Programs that
+ * pack in parallel write several streams. */
 static hl_status bzip2_next(bzip2_stream *stream, hl_error *error) {
   const unsigned char *bytes;
   size_t available;

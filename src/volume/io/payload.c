@@ -142,8 +142,8 @@ static hl_status read_into_pages(void *data, size_t index, int worker, hl_error 
 }
 
 /* The number of voxels that a thread reads at once. Storing is fastest for whole slices. Therefore a piece is
- * a number of whole slices, if the pieces of all threads take at most an eighth of the memory limit.
- * Otherwise a piece has about PIECE_BYTES: whole rows, or a part of a row. */
+ * a number of whole slices, if the pieces of all threads take at most an eighth of the memory limit. Pieces
+ * that are smaller than a slice have about PIECE_BYTES: whole rows, or a part of a row. */
 static size_t piece_for_pages(const hl_context *context, const hl_payload *payload, int threads,
                               size_t voxel_bytes) {
   enum { SLICES = 8, MOST_BYTES = 1 << 27 };
@@ -214,8 +214,8 @@ static bool fits_type(hl_voxel_type type, double value) {
   return value >= low[type] && value <= high[type] && value == floor(value);
 }
 
-/* The type of values directly after reading. This type is the payload's type, except that numbers in a text
- * are read as floats instead of halves. */
+/* The type of values directly after reading. The read type is the payload's type, except that numbers in a
+ * text are read as floats instead of halves. */
 static hl_voxel_type read_type(const hl_payload *payload) {
   return payload->text && payload->grid.type == HL_VOXEL_F16 ? HL_VOXEL_F32 : payload->grid.type;
 }

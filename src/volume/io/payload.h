@@ -30,7 +30,7 @@ typedef struct hl_payload {
   hl_payload_colors colors;
   bool big_endian;
   bool text;             /* whether the voxels are written as decimal numbers, separated by white space or
-                          * commas; otherwise they are binary */
+                          * commas; otherwise the voxels are binary numbers */
   bool text_is_fraction; /* whether the text's numbers are fractions from 0 to 1, which stand for the values 0
                           * to 255 of u8 */
   hl_trailing trailing;
@@ -49,9 +49,9 @@ uint64_t hl_payload_bytes(const hl_payload *payload);
  * lengths unless all are 0. */
 hl_volume_description hl_payload_grid(const hl_payload *payload, const double spacing[3]);
 
-/* Checks the grid and, before any allocation, whether the stream can hold the voxels. Then reads and converts
- * the voxels, and makes the volume. The function reports progress and can be cancelled. spacing: as for
- * hl_payload_grid(). */
+/* Checks the grid and, before any allocation, whether the stream can hold the voxels. If the checks pass,
+ * reads and converts the voxels, and makes the volume. hl_payload_read() reports progress and can be
+ * cancelled. spacing: as for hl_payload_grid(). */
 hl_status hl_payload_read(hl_stream *stream, const hl_payload *payload, const double spacing[3],
                           hl_volume **volume, hl_error *error);
 

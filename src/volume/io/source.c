@@ -28,7 +28,7 @@ struct hl_source {
   uint64_t window_begin;
   size_t window_length, window_most; /* number of bytes in the window; number of bytes that the last call read
                                       * from the file */
-  /* These members are set if the data are a part of another source, and may be deflated. */
+  /* The following members are set for a source that is a part of another source, or that inflates a part. */
   hl_source *below;  /* owned; may be null */
   uint64_t below_at; /* position of the next byte to read from `below` */
   struct {

@@ -1,5 +1,5 @@
 /* volume/io/stream.c - functions that all streams share, which fill the buffer, read lines, and skip bytes.
- * This file also implements streams of files and of memory. */
+ * The file stream.c also implements streams of files and of memory. */
 #define _GNU_SOURCE
 #include "volume/io/stream.h"
 

@@ -1,7 +1,7 @@
 /* volume/io/text.c - reads words and numbers of text headers.
  *
- * These functions do not depend on the program's locale. The conversions of the C library depend on the
- * locale, and in some locales do not accept "1.5" as a number. */
+ * The functions of text.c do not depend on the program's locale. The conversions of the C library depend on
+ * the locale, and in some locales do not accept "1.5" as a number. */
 #include "volume/io/text.h"
 
 #include <math.h>

@@ -39,8 +39,8 @@ bool hl_text_is_one_of(const char *text, const char *alternatives);
 /* Removes white space from both ends of a text, in place; returns the new start of the text. */
 char *hl_text_trim(char *text);
 
-/* Takes the next word (up to white space) at *cursor, and moves *cursor past it. Returns false if no word
- * follows, or if the word is too long. */
+/* Takes the next word (up to white space) at *cursor, and moves *cursor past the word. Returns false if no
+ * word follows, or if the word is too long. */
 bool hl_text_word(const char **cursor, char *word, size_t capacity);
 
 /* Copies a text from a file or a caller for use in an error line. The copy is cut to the buffer's size, and

@@ -21,7 +21,7 @@ hl_status hl_unpack_deflate(hl_context *context, const unsigned char *packed, si
 hl_status hl_unpack_blosc(const char *path, const unsigned char *packed, size_t length, void *bytes,
                           size_t count, bool *sound, hl_error *error);
 
-/* These functions unpack a block of LZ4 (without a header), or a stream of bzip2 or xz. In builds without the
+/* Unpack a block of LZ4 (without a header), a stream of bzip2, or a stream of xz. In builds without the
  * library of a packing, its function fails. The functions first check whether the data can unpack to `count`
  * bytes. */
 hl_status hl_unpack_lz4(const char *path, const unsigned char *packed, size_t length, void *bytes,

@@ -39,7 +39,7 @@ static void pack_numbers(const gathering *g, const hl_box *slice, unsigned char 
 
 /* Packs a slice of this rank's block for the other ranks. If `exact`, all ranks send the file's own numbers.
  * A rank whose floats round none of its numbers has not kept the file's own numbers, and converts its floats
- * to them. */
+ * to the file's type. */
 static void pack(const gathering *g, const hl_box *slice) {
   const size_t count = slice->count[0] * slice->count[1];
   if (g->exact && has_numbers(g->own)) {
@@ -100,7 +100,7 @@ static hl_status finish(gathering *g, hl_volume **whole, hl_error *error) {
   return hl_fail_memory(error, count * sizeof *voxels, "a label map, which each process holds whole");
 }
 
-/* Returns whether `own` is true on at least one rank. All ranks must call this function. */
+/* Returns whether `own` is true on at least one rank. All ranks must call any_rank(). */
 static bool any_rank(hl_ranks *ranks, bool own) {
   uint64_t count = own;
   hl_ranks_sum_counts(ranks, &count, 1);

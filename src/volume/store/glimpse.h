@@ -2,7 +2,8 @@
  * choices (guess/) need.
  *
  * The glimpse has few voxels, which lie far apart, on lattices. Reading these voxels from a scratch file
- * would take a pass over the whole file. Therefore they are copied to memory when the volume is stored. */
+ * would take a pass over the whole file. Therefore the voxels of the glimpse are copied to memory when the
+ * volume is stored. */
 #ifndef HL_VOLUME_GLIMPSE_H
 #define HL_VOLUME_GLIMPSE_H
 
@@ -17,8 +18,8 @@
 #define HL_CELL_PLACES 1e6
 #define HL_ROW_VOXELS  6e6
 
-/* The distance between a lattice's voxels along each axis, at least 1. With this distance the lattice has at
- * most `most` voxels. */
+/* The distance between a lattice's voxels along each axis, at least 1. With the returned distance, a lattice
+ * has at most `most` voxels. */
 size_t hl_lattice_step(const size_t dimension[3], double most);
 
 /* The distance between the voxels of lattices on the grid's faces. All faces have the same distance, which is

@@ -2,8 +2,8 @@
  * (pages.h).
  *
  * Whole slices, and whole rows of a slice, are written to the file page by page, in as few pieces as
- * possible. If they were copied into the mapping, the system would first have to map each unit of memory, and
- * to read or clear it. Only incomplete rows are copied into the mapping. */
+ * possible. If whole slices were copied into the mapping, the system would first have to map each unit of
+ * memory, and to read or clear it. Only incomplete rows are copied into the mapping. */
 #define _GNU_SOURCE
 #include <string.h>
 
@@ -86,9 +86,9 @@ static page_part part_in(const hl_pages *pages, const size_t page[3], const row_
   return p;
 }
 
-/* Writes slices k0 to k1 - 1 of a page's part of a block. In the page, these slices are a single run of
- * bytes. Slices of zeros are not written, because parts of the sparse file that were not written are zeros.
- * Returns false if the system has refused the write. */
+/* Writes slices k0 to k1 - 1 of a page's part of a block. In the page, the slices of a part are a single run
+ * of bytes. Slices of zeros are not written, because parts of the sparse file that were not written are
+ * zeros. Returns false if the system has refused the write. */
 static bool write_part(const hl_pages *pages, const page_part *p, size_t k0, size_t k1,
                        const row_block *block) {
   unsigned char part[SLICES_AT_ONCE * PAGE_SLICE_BYTES], *to = part;
@@ -134,8 +134,8 @@ static bool write_block(const hl_pages *pages, const row_block *block) {
 }
 
 /* Writes the first of `count` voxels, which begin with number `first`. If the voxels begin at the start of a
- * slice and contain at least one whole slice, all whole slices are written. Otherwise the whole rows in the
- * first slice are written. Returns the number of voxels that were written, which may be 0. */
+ * slice and contain at least one whole slice, all whole slices are written. In all other cases the whole rows
+ * in the first slice are written. Returns the number of voxels that were written, which may be 0. */
 static size_t write_rows(hl_pages *pages, size_t first, size_t count, const unsigned char *values) {
   const size_t *n = pages->dimension;
   size_t row = first / n[0], j = row % n[1], k = row / n[1], rows = count / n[0];

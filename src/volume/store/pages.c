@@ -349,8 +349,8 @@ void hl_pages_finish(hl_pages *pages) {
                                                                * that fetch() requests */
 }
 
-/* Asks the system to read a whole page at once. Otherwise the system would read each small part of the page
- * when the part is first accessed. */
+/* Asks the system to read a whole page at once. Without this request, the system would read each small part
+ * of the page when the part is first accessed. */
 static void fetch(const hl_pages *pages, size_t number) {
   uintptr_t first = (uintptr_t)pages->first + number * pages->page_bytes, begin = first / UNIT * UNIT;
   madvise((void *)begin, first + pages->page_bytes - begin, MADV_WILLNEED);

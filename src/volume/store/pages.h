@@ -6,7 +6,8 @@
  * side + PAGE_OVERLAP - 1, and fewer voxels at the grid's end. Therefore any 4x4x4 neighbouring voxels lie
  * completely in the page of their first voxel. The file is mapped into memory, and the system reads a page
  * when a voxel of the page is needed. A renderer's sheet crosses few pages, and neighbouring sheets cross
- * mostly the same pages. The file has no name, so that it vanishes with the volume or the process.
+ * mostly the same pages. The scratch file has no name, so that the file vanishes with the volume or the
+ * process.
  *
  * Pages and the context's blocks together stay below the context's memory limit, except that LEAST_PAGES
  * pages are always allowed. If a further page is needed, pages that were not needed for the longest time are
@@ -90,7 +91,7 @@ hl_status hl_pages_create(hl_context *context, const char *folder, const hl_volu
 void hl_pages_release(hl_pages *pages); /* null is allowed */
 
 /* Makes the pages of a volume over ranks. A page gets its voxels from the ranks when the page is needed. own:
- * the pages take over the block, also on failure. All ranks must call this function, and
+ * the pages take over the block, also on failure. All ranks must call hl_pages_create_over_ranks() and
  * hl_pages_release(). */
 hl_status hl_pages_create_over_ranks(hl_ranks *ranks, hl_own_voxels *own, const hl_volume_description *grid,
                                      int shift, hl_pages **pages, hl_error *error);
@@ -104,8 +105,8 @@ static inline bool hl_pages_are_sparse(const hl_pages *pages) { return pages->pl
 /* The fraction of all sparse pages in which voxels were stored, 0 to 1. */
 double hl_pages_share(const hl_pages *pages);
 
-/* Allocates the memory of a sparse page, unless the page has memory already. Several threads may call this
- * function. */
+/* Allocates the memory of a sparse page, unless the page has memory already. Several threads may call
+ * hl_pages_own() at the same time. */
 void hl_pages_own(hl_pages *pages, size_t number);
 
 /* Stores a box of voxels in sparse pages. values: [count[2]][count[1]][count[0]]; stored values. Several
@@ -133,8 +134,8 @@ void hl_pages_store(hl_pages *pages, size_t first, size_t count, const void *val
  * was stored once. */
 bool hl_pages_take_counts(hl_pages *pages, uint64_t *counts);
 
-/* Must be called after the last voxel was stored. After this call, a needed page is read as a whole, and
- * without neighbouring pages. Without this call, the system would read farther than the page, and would map
+/* Must be called after the last voxel was stored. After hl_pages_finish(), a needed page is read as a whole,
+ * and without neighbouring pages. Before hl_pages_finish(), the system reads farther than the page, and maps
  * more memory than is counted. */
 void hl_pages_finish(hl_pages *pages);
 
@@ -146,12 +147,13 @@ hl_status hl_volume_over_ranks(hl_ranks *ranks, const hl_volume_description *who
 /* Copies the voxels of a row. row: [dimension[0]] stored values. */
 void hl_pages_load_row(const hl_pages *pages, size_t j, size_t k, void *row);
 
-/* Forgets all pages. Callers call this function after a pass over all voxels, before they allocate other
- * memory. Other threads may read pages at the same time. */
+/* Forgets all pages. Callers call hl_pages_forget() after a pass over all voxels, before they allocate other
+ * memory. Other threads may read pages during the call. */
 void hl_pages_forget(const hl_pages *pages);
 
-/* Forgets pages until `bytes` bytes can be allocated within the limit. Without this call, the limit would be
- * exceeded until the next page is needed. Other threads may read pages at the same time. */
+/* Forgets pages until `bytes` bytes can be allocated within the limit. Without hl_pages_leave_room(), the
+ * memory limit would be exceeded until the next page is needed. Other threads may read pages during the
+ * call. */
 void hl_pages_leave_room(const hl_pages *pages, uint64_t bytes);
 
 /* Makes sure that a page is in memory, and marks the page as needed. Forgets other pages if the memory limit

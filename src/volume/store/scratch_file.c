@@ -33,9 +33,10 @@ int hl_scratch_open_empty(hl_context *context, const char *folder) {
   return file;
 }
 
-/* Reserves space on the disk for the whole file before anything is written. Otherwise the system would end
- * the process when a write into the mapped file found no space. The function first asks how much space is
- * free, because a failed attempt would fill the disk for a moment. Returns an error number, or 0. */
+/* Reserves space on the disk for the whole file before anything is written. Without reserved space, the
+ * system would end the process when a write into the mapped file finds no space. The function first asks how
+ * much space is free, because a failed attempt would fill the disk for a moment. Returns an error number, or
+ * 0. */
 static int take_space(int file, size_t bytes) {
   struct statvfs disk;
   if (fstatvfs(file, &disk) == 0 && bytes / disk.f_frsize >= disk.f_bavail) return ENOSPC;

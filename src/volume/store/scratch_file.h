@@ -1,5 +1,5 @@
-/* volume/store/scratch_file.h - makes files without a name for data that do not fit into memory. Such a file
- * vanishes when it is closed, or when the process ends. */
+/* volume/store/scratch_file.h - makes files without a name for data that do not fit into memory. A file
+ * without a name vanishes when it is closed, or when the process ends. */
 #ifndef HL_VOLUME_SCRATCH_FILE_H
 #define HL_VOLUME_SCRATCH_FILE_H
 

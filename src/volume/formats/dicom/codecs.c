@@ -1,5 +1,5 @@
 /* volume/formats/dicom/codecs.c - functions that the decoders of compressed frames share. One function
- * compares a frame's own header with the file's header. The other function reports a damaged frame. */
+ * compares a frame's own header with the file's header. A second function reports damaged frames. */
 #include "volume/formats/dicom/codecs.h"
 
 hl_status hl_dicom_fail_packed(const hl_dicom_packed *packed, const char *codec, const char *why,

@@ -5,8 +5,8 @@
 
 #include "volume/io/bundle.h"
 
-/* Reads a DICOMDIR, and adds to the bundle's entries the files that it names and that exist. Adds nothing if
- * the source is another kind of DICOM file. */
+/* Reads a DICOMDIR, and adds to the bundle's entries the existing files that the DICOMDIR names. Adds nothing
+ * if the source is another kind of DICOM file. */
 hl_status hl_dicom_directory_read(hl_source **source, hl_bundle *bundle, hl_error *error);
 
 #endif

@@ -40,8 +40,8 @@ static bool is_long(uint16_t vr) {
 }
 
 /* Returns whether an element is a sequence whose items are read. In files without value representations,
- * nothing marks a sequence whose length is stated. Therefore this function lists the tags of all sequences
- * that readers need. */
+ * nothing marks a sequence whose length is stated. Therefore is_wanted_sequence() lists the tags of all
+ * sequences that readers need. */
 static bool is_wanted_sequence(uint32_t tag) {
   static const uint32_t tags[] = {
       0x52009229, 0x52009230, /* functional groups: shared, per frame */
@@ -210,7 +210,7 @@ static bool is_utf8(const char *text) {
   return length > 0;
 }
 
-/* Cuts off the last character of a UTF-8 text if it is incomplete. */
+/* Removes an incomplete last character from a UTF-8 text. */
 static void cut_part_of_character(char *text) {
   size_t count = strlen(text), begin = count;
   while (begin > 0 && ((unsigned char)text[begin - 1] & 0xc0) == 0x80) begin--;

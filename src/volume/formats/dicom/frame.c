@@ -91,9 +91,9 @@ static hl_status begins_picture(hl_source *source, const hl_dicom_pixels *p, uin
   return status;
 }
 
-/* Finds where each frame begins. The table of offsets is not used, because it may be wrong. If the number of
- * fragments equals the number of frames, each fragment is a frame. Otherwise a frame begins at each fragment
- * for which begins_picture() is true. */
+/* Finds where each frame begins. The file's table of offsets is not used, because the table may be wrong. If
+ * the number of fragments equals the number of frames, each fragment is a frame. If the numbers differ, a
+ * frame begins at each fragment for which begins_picture() is true. */
 static hl_status place_frames(hl_source *source, hl_dicom_file *file, uint64_t begin, size_t fragments,
                               uint64_t end, hl_error *error) {
   size_t found = 0;
@@ -214,7 +214,7 @@ static hl_status read_native(hl_source *source, const hl_dicom_file *file, uint3
   uint64_t bytes = (uint64_t)count * size, at = p->offset;
   bool halved = p->is_halved && p->samples == 3 && size == 1;
   if (halved) bytes = 2 * (uint64_t)pixels;
-  if (p->encapsulated) { /* these pixels are not compressed, but they are stored in fragments */
+  if (p->encapsulated) { /* pixels that are not compressed may also be stored in fragments */
     hl_status status = read_fragments(source, file, index, space, &got, error);
     if (status == HL_OK && got < bytes) status = fail_short(source, at, error);
     if (status != HL_OK) return status;
@@ -244,7 +244,8 @@ static hl_status read_native(hl_source *source, const hl_dicom_file *file, uint3
 
 /* ---- stored bits, signs, colours ---- */
 
-/* Shifts the stored bits down to bit 0, inverts them if needed, and extends the sign of signed values. */
+/* Shifts the stored bits of each value down to bit 0, inverts the value if needed, and extends the sign of
+ * signed values. */
 static void place_bits(const hl_dicom_pixels *p, size_t count, hl_dicom_workspace *space) {
   int shift = p->high + 1 - p->stored, bits = (int)space->value_bytes * 8;
   int spare = bits - p->stored;

@@ -224,7 +224,7 @@ static bool all_at_one_place(const sorting *s) {
 }
 
 /* Sorts the frames by their positions. If positions are missing or all equal, sorts the frames by their
- * stated locations; if locations are missing too, sorts them by their numbers. */
+ * stated locations; if locations are missing too, sorts the frames by their numbers. */
 static void sort(sorting *s) {
   bool known;
   if (s->has_positions && !(all_at_one_place(s) && have_locations(s))) {
@@ -400,8 +400,8 @@ static bool is_even(const sorting *s, double step, size_t *slices) {
   return true;
 }
 
-/* Slices that lie between two positions are interpolated only if the distance of these positions is at most
- * this many steps. Otherwise they are empty. */
+/* A slice between two positions is interpolated only if the distance of the two positions is at most
+ * WIDEST_FILLED steps. Otherwise they are empty. */
 #define WIDEST_FILLED 3.5
 
 /* Places slices at even distances from the first to the last position. In segmentations, slices between
@@ -468,7 +468,7 @@ static hl_status space_evenly(sorting *s, hl_dicom_stack *stack, hl_error *error
 
 static void put(vec3 v, double to[3]) { to[0] = v.x, to[1] = v.y, to[2] = v.z; }
 
-/* The first frame at a position. The position of this frame is used for all frames there. */
+/* The first frame at a position. The first frame's position is used for all frames at the position. */
 static const hl_dicom_frame *frame_of_place(const hl_dicom_stack *stack, size_t place) {
   const hl_dicom_frame **frames = stack->frames + place * stack->times;
   size_t n = 0;
@@ -476,7 +476,7 @@ static const hl_dicom_frame *frame_of_place(const hl_dicom_stack *stack, size_t 
   return frames[n];
 }
 
-/* Warns if positions do not lie on a straight line from the first to the last one. */
+/* Warns if positions do not lie on a straight line from the first to the last position. */
 static void check_line(const sorting *s, const hl_dicom_stack *stack) {
   size_t last = s->place_count - 1;
   double span = s->places[last] - s->places[0], worst = 0;

@@ -10,7 +10,7 @@
 
 /* A slice of the grid. A slice lies at a position that has frames, or between two such positions. */
 typedef struct hl_dicom_slice {
-  size_t place;  /* index of the position at the slice, or else of the last position before it */
+  size_t place;  /* index of the position at the slice, or else of the last position before the slice */
   double weight; /* weight of the frame at the next position; 0 if the slice lies at the position `place` */
   bool empty;    /* whether the slice lies between two positions and is not interpolated */
 } hl_dicom_slice;
@@ -27,7 +27,7 @@ typedef struct hl_dicom_stack {
   hl_volume_description grid;        /* dimensions, origin, axes, space */
 } hl_dicom_stack;
 
-/* Makes the stack. Release it also after a failure. */
+/* Makes the stack. The caller must release the stack also after a failure. */
 hl_status hl_dicom_stack_make(const hl_dicom_set *set, size_t series, hl_dicom_stack *stack, hl_error *error);
 void hl_dicom_stack_release(hl_dicom_stack *stack);
 

@@ -252,8 +252,8 @@ static hl_status make_threads(reading *r, size_t voxels, hl_error *error) {
 }
 
 /* Looks for padding in the middle slice. If the slice has padding, the volume is read as floats from the
- * start. Otherwise all integers would be converted to floats later, which needs memory for integers and
- * floats at the same time. */
+ * start. Finding padding later would mean to convert all integers to floats, which needs memory for integers
+ * and floats at the same time. */
 static hl_status find_padding(reading *r, hl_error *error) {
   if (r->as_floats || r->as_colors || isnan(r->scale.padding[0])) return HL_OK;
   size_t middle = r->stack->place_count / 2, bytes = r->slice_voxels * r->voxel_bytes;

@@ -1,9 +1,9 @@
 /* volume/formats/particles/particle_columns.h - collects particles that are rows of a text. The readers of
  * tables, dumps of LAMMPS and XYZ files use these functions.
  *
- * The name of a column tells whether it is a coordinate, the mass, the smoothing length, or a quantity.
- * Columns whose first entry is not a number are left out. The arrays that can be loaded are "log density",
- * "density", and one for each quantity: the quantity's mean weighted by mass. */
+ * The name of a column tells whether the column is a coordinate, the mass, the smoothing length, or a
+ * quantity. Columns whose first entry is not a number are left out. The arrays that can be loaded are "log
+ * density", "density", and for each quantity an array of the quantity's mean weighted by mass. */
 #ifndef HL_VOLUME_PARTICLE_COLUMNS_H
 #define HL_VOLUME_PARTICLE_COLUMNS_H
 

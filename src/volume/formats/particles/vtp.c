@@ -48,7 +48,7 @@ int hl_volume_reads_particles(hl_context *context, const char *path) {
 
 /* Makes a column of each array of the first piece. No array becomes a coordinate, because the points have
  * coordinates of their own. names: [HL_PARTICLE_COLUMNS_MOST]; set to the arrays' names in the file. The
- * columns' own names may differ, because they are printable. */
+ * names of the columns may differ from the arrays' names, because names of columns are printable. */
 static void name_columns(const hl_vtk_pieces *pieces, hl_particle_columns *columns, const char **names) {
   for (size_t n = 0; n < pieces->pieces[0].array_count; n++) {
     const hl_vtk_piece_array *array = &pieces->arrays[pieces->pieces[0].first_array + n];

@@ -2,8 +2,8 @@
  * picture or bare voxels. The numbers in the names give the order.
  *
  * The names of a series differ only in their last number, as in "scan_007.tif". If a folder has several
- * series, the longest series is read. If the files are TIFF files that are volumes of their own (several
- * pages, OME-TIFF), they are time steps instead of slices. */
+ * series, the longest series is read. TIFF files that are volumes of their own (several pages, OME-TIFF) are
+ * time steps instead of slices. */
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>

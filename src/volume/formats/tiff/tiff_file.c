@@ -505,9 +505,9 @@ static hl_status read_chunks(page_reading *r, hl_error *error) {
   return status;
 }
 
-/* A tile may be larger than its page, but it is refused if it is more than TILE_IN_PAGES times as wide and
- * larger than a megabyte. Without this limit a small file could have hundreds of tiny pages, whose tiles
- * would take seconds to decode. */
+/* A tile may be larger than its page, but a tile is refused if it is more than TILE_IN_PAGES times as wide as
+ * the page and larger than a megabyte. Without this limit a small file could have hundreds of tiny pages,
+ * whose tiles would take seconds to decode. */
 enum { TILE_IN_PAGES = 1024, SMALL_TILE_BYTES = 1 << 20 };
 
 /* Finds the sizes of the page's chunks. If a chunk reaches beyond the page, only the chunk's rows within the

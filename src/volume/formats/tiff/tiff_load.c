@@ -41,8 +41,8 @@ typedef struct stack_reading {
   stack_file *files; /* owned; [plan.file_count] */
   int level;
   uint64_t plain, plain_bytes; /* if all slices are uncompressed and follow each other: position of the first
-                                * slice's pixels, and bytes of a slice. Both are 0 if libtiff is to decode
-                                * each slice from a page */
+                                * slice's pixels, and bytes of a slice. plain and plain_bytes are 0 if libtiff
+                                * is to decode each slice from a page */
   tiff_shape shape;            /* shape of each slice at the chosen level */
   uint32_t width, height;      /* size at level 0 */
   int component;
@@ -65,8 +65,8 @@ static void read_resolution(tiff_file *file, double resolution[2]) {
   resolution[1] = isfinite((double)y) && y > 0 ? (double)y : 0;
 }
 
-/* Removes from the list of pages those whose shape differs from the first page's shape, and those that are
- * reduced copies of other pages. */
+/* Removes from the list pages whose shape differs from the first page's shape, and pages that are reduced
+ * copies of other pages. */
 static hl_status drop_other_pages(tiff_file *file, const tiff_shape *first, stack_file *stack,
                                   hl_error *error) {
   size_t kept = 0, others = 0;
@@ -129,9 +129,9 @@ static hl_status check_size(const stack_reading *r, tiff_file *file, hl_error *e
 }
 
 /* Finds out whether the pixels of all slices follow the first page's pixels, although the file has a
- * directory for the first page only. ImageJ writes files of more than 4 GB in this way; tifffile can do so,
- * too. The slices of a page with several slices also follow each other, unless the page is tiled. *pages: set
- * to the number of all slices. */
+ * directory for the first page only. ImageJ writes files of more than 4 GB with a directory for the first
+ * page only, and tifffile can do so, too. The slices of a page with several slices also follow each other,
+ * unless the page is tiled. *pages: set to the number of all slices. */
 static hl_status find_plain(stack_reading *r, tiff_file *file, const tiff_shape *shape,
                             const char *description, const stack_file *stack, size_t *pages,
                             hl_error *error) {

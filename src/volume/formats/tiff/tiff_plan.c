@@ -135,7 +135,8 @@ static hl_status read_pixels(ome_reader *ome, const hl_xml_tag *tag, hl_error *e
   if (order != NULL && strlen(order) == 5 && strchr(order + 2, 'Z') != NULL &&
       strchr(order + 2, 'C') != NULL && strchr(order + 2, 'T') != NULL)
     memcpy(ome->order, order + 2, 3);
-  /* the file counts the samples of a pixel, which are colours, as channels; here they count as one channel */
+  /* the file counts the samples of a pixel, which are colours, as channels; the plan counts all samples of a
+   * pixel as one channel */
   if (ome->components > 1 && ome->size[1] % ome->components == 0) ome->size[1] /= ome->components;
   read_lengths(ome, tag);
   ome->in_pixels = true;
@@ -201,8 +202,8 @@ static hl_status begin_planes(ome_reader *ome, const hl_xml_tag *tag, hl_error *
   return tag->is_end ? place_planes(ome, error) : HL_OK;
 }
 
-/* Reads the name of a further file, which must lie beside the first one. Names with a path are refused,
- * because they could name any file of the machine. */
+/* Reads the name of a further file, which must lie in the folder of the first file. Names with a path are
+ * refused, because they could name any file of the machine. */
 static hl_status read_file(ome_reader *ome, const hl_xml_tag *tag, hl_error *error) {
   const char *name = hl_xml_attribute(tag, "FileName"), *slash = strrchr(ome->path, '/');
   if (name == NULL) return HL_OK;
@@ -433,7 +434,7 @@ static hl_status plan_sizes(hl_load_request *request, const char *path, const se
 }
 
 /* Returns whether channels of a single slice are slices. tifffile.imwrite(..., imagej=True) writes the first
- * of three axes as channels, even if it is not an axis of channels. The channels count as slices if a picture
+ * of three axes as channels, even if the array has no channels. The channels count as slices if a picture
  * cannot show so great a number of channels, and the caller names no channel. */
 static bool are_slices(const hl_load_request *request, size_t channels, size_t slices) {
   return slices == 1 && channels > HL_CHANNELS_MOST && request->channel < 0 && request->channel_name == NULL;

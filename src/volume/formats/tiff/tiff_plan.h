@@ -1,5 +1,5 @@
 /* volume/formats/tiff/tiff_plan.h - finds which pages of which files make up the volume. The order follows
- * OME-XML or a description by ImageJ or tifffile; without a description it is the order of pages. */
+ * OME-XML or a description by ImageJ or tifffile; without a description, slices have the order of pages. */
 #ifndef HL_VOLUME_TIFF_PLAN_H
 #define HL_VOLUME_TIFF_PLAN_H
 

@@ -419,8 +419,8 @@ static bool put_lower(const walk *w, pnanovdb_lower_handle_t lower, const int64_
   return sound;
 }
 
-/* Stores the 128^3 voxels from `begin` on. These voxels all lie in the same tile of the root, or in no
- * tile. */
+/* Stores the 128^3 voxels from `begin` on. All voxels of such a region lie in the same tile of the root, or
+ * in no tile. */
 static bool put_region(const walk *w, const int64_t begin[3]) {
   uint32_t kind = w->grid->kind;
   const pnanovdb_coord_t place = {(int32_t)begin[0], (int32_t)begin[1], (int32_t)begin[2]};

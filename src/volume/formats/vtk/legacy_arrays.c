@@ -83,7 +83,7 @@ static hl_status skip_values(hl_legacy_vtk *file, size_t count, size_t value_byt
 /* The greatest number of values of an array. */
 static const size_t VALUES_MOST = SIZE_MAX / 8;
 
-/* Checks the type and the size of an array, and passes it to the file's `meet` function. */
+/* Checks the type and the size of an array, and calls the file's `meet` function for the array. */
 static hl_status meet(hl_legacy_vtk *file, hl_legacy_array array, const char *type_name, hl_error *error) {
   size_t values;
   hl_status status = hl_legacy_vtk_type(file, type_name, &array.type, error);

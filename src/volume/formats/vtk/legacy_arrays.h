@@ -33,8 +33,8 @@ struct hl_legacy_vtk {
                                     * CELL_DATA */
   bool found;                      /* set by `meet` to end reading; the stream then stands at the values of
                                     * the array */
-  /* The reader calls meet() for each array, when the stream stands at the array's values. The function reads
-   * the values, skips them by hl_legacy_vtk_skip(), or sets file->found. */
+  /* The reader calls meet() for each array, when the stream stands at the array's values. meet() reads the
+   * values, skips the values by hl_legacy_vtk_skip(), or sets file->found. */
   hl_status (*meet)(hl_legacy_vtk *file, const hl_legacy_array *array, hl_error *error);
   /* The reader calls keyword() for all keywords that do not begin arrays, such as keywords of a data set's
    * geometry. */

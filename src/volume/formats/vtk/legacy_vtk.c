@@ -29,7 +29,7 @@ typedef struct vtk_header {
   hl_load_request *request;
   bool of_cells; /* whether the volume's array has values for cells instead of points */
   bool lists;    /* whether this is the first pass, in which arrays are listed */
-  bool once;     /* whether the file can be read only once. Then the first pass already stops at the first
+  bool once;     /* whether the file can be read only once. If so, the first pass already stops at the first
                   * suitable array */
   size_t arrays; /* number of arrays met so far in this pass that can hold the volume */
 } vtk_header;
@@ -159,8 +159,8 @@ static bool is_enough(const hl_load_request *request, hl_status status) {
   return false;
 }
 
-/* Finds the chosen array, and moves the stream to its values. Errors in the file after these values are
- * ignored. */
+/* Finds the chosen array, and moves the stream to its values. Errors in the file after the chosen array's
+ * values are ignored. */
 static hl_status find_volume(hl_stream **stream, hl_load_request *request, vtk_header *header,
                              hl_error *error) {
   *header = begin(*stream, request, true);

@@ -207,8 +207,8 @@ static void make_grid(const vti_header *header, const double extent[6], bool cel
 }
 
 /* The index of the array that is read by default. The result is the active scalars at points. If the file
- * marks none, the result is the active scalars at cells, unless the file has an array of one component at
- * points. In all other cases the result is -1. */
+ * marks no active scalars at points, the result is the active scalars at cells, unless the file has an array
+ * of one component at points. In all other cases the result is -1. */
 static int active_array(const vti_header *header) {
   if (header->active_points >= 0) return header->active_points;
   for (size_t n = 0; n < header->request->array_count; n++)

@@ -1,7 +1,7 @@
 /* volume/formats/zarr/voxels.c - reads chunks on all threads, and stores their voxels in the volume.
  *
- * The work is divided into parts. Each part is one chunk, whose file may be a shard with several chunks. The
- * parts of a shard have consecutive numbers. A missing chunk holds the fill value. */
+ * The work is divided into parts. A part of the work is one chunk, whose file may be a shard with several
+ * chunks. The parts of a shard have consecutive numbers. A missing chunk holds the fill value. */
 #define _GNU_SOURCE
 #include "volume/formats/zarr/voxels.h"
 
