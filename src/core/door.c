@@ -1,7 +1,7 @@
 /* core/door.c - sets and restores the floating-point environment (door.h). Reading and writing the whole
  * environment takes about a hundred nanoseconds, which is too long in functions that hosts call for each
- * voxel. On x86, two control words tell in a few nanoseconds whether anything must be changed. On x86, MXCSR,
- * one of the two words, also holds the exception flags. */
+ * voxel. On x86, reading two control words takes a few nanoseconds and shows whether the environment must be
+ * changed. On x86, MXCSR, one of the two words, also holds the exception flags. */
 #include "core/door.h"
 
 #if defined(__x86_64__)

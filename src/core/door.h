@@ -1,14 +1,14 @@
 /* core/door.h - sets the floating-point environment of public functions: such functions compute in C's
- * default environment, and restore the host's environment when they return. A door is the entry to such a
- * function.
+ * default environment, and restore the host's environment when they return. A door is the entry to a public
+ * function that sets C's default floating-point environment.
  *
  * A host may round upwards, flush small numbers to zero for speed, or let a division by zero send a signal.
- * Such settings of the host must not change a picture or end a call. Each public function that computes, and
- * each thread of the library, begins with HL_DOOR. The default environment holds until the function returns;
- * then the host's environment is restored, including the exception flags. The compiler might move
- * computations that use only arguments passed as numbers across the door. The compiler does not move loads
- * and stores through pointers across the door, because it does not know which memory the door's functions
- * access. tests/checks/doors.py looks for missing doors. */
+ * The host's floating-point settings must not change a picture or end a call. Each public function that
+ * computes, and each thread of the library, begins with HL_DOOR. The default environment holds until the
+ * function returns; then the host's environment is restored, including the exception flags. The compiler
+ * might move computations that use only arguments passed as numbers across the door. The compiler does not
+ * move loads and stores through pointers across the door, because it does not know which memory the door's
+ * functions access. tests/checks/doors.py looks for missing doors. */
 #ifndef HL_CORE_DOOR_H
 #define HL_CORE_DOOR_H
 

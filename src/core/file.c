@@ -188,8 +188,9 @@ static char *temporary_path(hl_context *context, const char *path) {
 }
 
 /* Creates a file under a free name; the last letters of `path` are replaced. The file's mode follows from the
- * process's umask. The function mkstemp() is not used, because it makes private files. The mode of such a
- * file could not be corrected afterwards, because the umask cannot be read without changing it. */
+ * process's umask. The function mkstemp() is not used, because it makes private files. The mode of a file
+ * that mkstemp() has made could not be corrected afterwards, because the umask cannot be read without
+ * changing it. */
 static int create_temporary(char *path) {
   /* five random bits choose one of the 32 letters */
   static const char letters[] = "abcdefghijklmnopqrstuvwxyz234567";

@@ -31,8 +31,8 @@ static inline void hl_key_add_affine(hl_key *key, const affine3 *map) {
  * is one in 2^64. */
 uint64_t hl_key_mark(const void *bytes, size_t count);
 
-/* The type of a function that adds to a key all data on which a result depends. Such a function must add the
- * same bytes in each call for the same data. */
+/* The type of a function that adds to a key all data on which a result depends. A function of this type must
+ * add the same bytes in each call for the same data. */
 typedef void hl_key_write(const void *data, hl_key *key);
 
 /* Finds out whether the kept key equals the key of the data, so that the kept result is still valid. If the

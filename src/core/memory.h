@@ -69,17 +69,17 @@ void hl_reserve_release(hl_reserve *reserve);
 
 /* ---- Memory that is planned once ----
  *
- * The function that lays out a thing takes each of the thing's arrays from a layout. With a layout of zeros,
- * the function counts bytes and gets null pointers; with `base` set to a block of the counted size, it gets
- * the arrays. An estimate of the size runs the same function, and only counts.
+ * The function that lays out an object takes each of the object's arrays from a layout. With a layout of
+ * zeros, the function counts bytes and gets null pointers; with `base` set to a block of the counted size, it
+ * gets the arrays. An estimate of the size runs the same function, and only counts.
  *
  *     hl_layout layout = {0};
  *     while (hl_layout_pass(&layout, context)) lay_out(thing, &layout);
  *     if (layout.base == NULL) return hl_fail_memory(error, layout.bytes, "the thing");
  *     thing->memory = layout.base;
  *
- * An estimate takes the arrays of many things from one layout. Arrays that are released before further arrays
- * are allocated are given back (hl_layout_give_back), so that `most` is the peak. */
+ * An estimate takes the arrays of many objects from one layout. Arrays that are released before further
+ * arrays are allocated are given back (hl_layout_give_back), so that `most` is the peak. */
 
 typedef struct hl_layout {
   unsigned char *base; /* the block from which arrays are taken, aligned to 64 bytes; if null, bytes are only

@@ -6,16 +6,16 @@
  * has the same run, so that the thread uses the same memory in each job. A share is one 64-bit word on its
  * own cache line: generation, end, next index. The owner claims indices from one end by compare-and-swap. A
  * thread whose own share is empty claims indices from the other end of another thread's share. Every second
- * thread begins with the last index of its share. Two threads with neighbouring shares then meet near the
- * border of their shares, and a thread mostly takes the same indices of the other share as in the job before.
- * No thread waits for a worker that the system has not woken yet, so that on a busy machine the caller does
- * all the work. Jobs alternate between two slots, by the parity of their generation. A job's description
- * stays in its slot until all workers have reported the indices that they claimed; only then can a later job
- * of the same parity start.
+ * thread begins with the last index of its share. Therefore two threads with neighbouring shares meet near
+ * the border of their shares, and a thread mostly claims the same indices of the other thread's share as in
+ * the previous job. No thread waits for a worker that the system has not woken yet, so that on a busy machine
+ * the caller does all the work. Jobs alternate between two slots, by the parity of their generation. A job's
+ * description stays in its slot until all workers have reported the indices that they claimed; only then can
+ * a later job of the same parity start.
  *
  * An offer is a second job with shares of its own (hl_pool_offer()). When the current job has no index left,
- * a worker claims one of the offer's indices, and then looks for a new job. The caller has further jobs to
- * begin, and so claims none of the offer's indices before it finishes the offer. */
+ * a worker claims one of the offer's indices, and then looks for a new job. Since the caller has further jobs
+ * to begin, the caller claims none of the offer's indices before it finishes the offer. */
 #define _GNU_SOURCE
 #include "core/pool.h"
 
@@ -91,7 +91,7 @@ struct hl_pool {
   atomic_int sleepers;
   pthread_mutex_t mutex;
   pthread_cond_t wake; /* signalled when `generation` or `stop` has changed */
-  /* Only the calling thread uses the members from here on. */
+  /* Only the calling thread uses the following members. */
   _Alignas(64) int64_t asked, read; /* the times, in nanoseconds, at which the cancel callback was last called
                                      * and the clock was last read */
   uint64_t waits; /* number of times that the caller waited for other threads, at the end of an offer or of a

@@ -32,7 +32,7 @@ int hl_pool_threads(const hl_pool *pool);
 uint64_t hl_pool_waits(const hl_pool *pool);
 
 /* Calls function(data, index, worker) for each index in [0, count), worker in [0, threads). Returns when all
- * calls are done. hl_pool_run() must not be called from inside such a function. */
+ * calls are done. The function that a pool runs must not call hl_pool_run() itself. */
 void hl_pool_run(hl_pool *pool, size_t count, void (*function)(void *data, size_t index, int worker),
                  void *data);
 

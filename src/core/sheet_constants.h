@@ -50,8 +50,8 @@
 #define CLASSIFIER_LEAST_BENDING (1.0f / 256)
 
 /* The colour of a slab comes from differences of the integral T at two coordinates, T(f2) - T(f1).
- * LEAST_PART_OF_SHOWN is the least such difference that is used, as a fraction of T. A smaller difference of
- * two floats has too few exact digits. */
+ * LEAST_PART_OF_SHOWN is the least difference of two values of T that is used, as a fraction of T. A smaller
+ * difference of two floats has too few exact digits. */
 #define LEAST_PART_OF_SHOWN (1.0f / 4096)
 
 /* ---- the picture ---- */
@@ -107,10 +107,11 @@
  */
 #define NEAR_PIXELS 4
 
-/* A limit for faces that are nearly parallel to the light. The distance to such a face changes much from one
- * near pixel to the next. The face counts fully while the change of the distance is below ALONG_FACE times
- * the length of the light's way through the box. From twice the value ALONG_FACE on, the face does not count,
- * because light on both sides of the face enters the box through another face, far away. */
+/* A limit for faces that are nearly parallel to the light. The distance to a face that is nearly parallel to
+ * the light changes much from one near pixel to the next. The face counts fully while the change of the
+ * distance is below ALONG_FACE times the length of the light's way through the box. From twice the value
+ * ALONG_FACE on, the face does not count, because light on both sides of the face enters the box through
+ * another face, far away. */
 #define ALONG_FACE 0.5f
 
 /* The greatest optical depth that is used. Behind the depth DEEPEST hardly any light is left, but exp(-depth)

@@ -2,11 +2,11 @@
  *
  * The functions of C libraries differ between systems, and between processors of one system, in their last
  * bits. A picture changes if the last bit of a number of its camera, lights or tables changes. The functions
- * here use additions, multiplications, divisions and square roots alone, which every machine rounds alike, so
- * that pictures have the same bytes everywhere. The table in tests/unit/elementary.c has the greatest errors
- * of the functions, one to four units in the last place. Results for special values follow the C standard
- * (annex F), but floating-point exceptions do not. Of the C library, the functions use only functions whose
- * results are exact or correctly rounded, such as floor() and sqrt(). */
+ * of elementary.h use additions, multiplications, divisions and square roots alone, which every machine
+ * rounds alike, so that pictures have the same bytes everywhere. The table in tests/unit/elementary.c has the
+ * greatest errors of the functions, one to four units in the last place. Results for special values follow
+ * the C standard (annex F), but floating-point exceptions do not. Of the C library, the functions use only
+ * functions whose results are exact or correctly rounded, such as floor() and sqrt(). */
 #ifndef HL_ELEMENTARY_H
 #define HL_ELEMENTARY_H
 

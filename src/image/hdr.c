@@ -186,8 +186,8 @@ static void convert_row(const hdr_row *row, const float scale[EXPONENTS], bool f
 
 /* ---- the picture ---- */
 
-/* The least number of bytes that the rows can take in a file with this header. A plain row and a row with
- * runs of whole pixels begin with at least one pixel of 4 bytes. */
+/* The least number of bytes of the rows of a picture of the size that the header states. A plain row and a
+ * row with runs of whole pixels begin with at least one pixel of 4 bytes. */
 static uint64_t least_bytes(const hdr_cursor *cursor, const hdr_header *header) {
   uint64_t row = 4;
   if (in_runs(cursor, (size_t)header->width)) row += 8 * ((header->width + RUN_MAX - 1) / RUN_MAX);

@@ -114,7 +114,7 @@ static void find_ends(const hl_scene_volume *volume, const plane_range *planes, 
 
 static bool stays_whole(const hl_scene_description *d, const hl_scene_volume *volume) {
   if (d->render.kernel == HL_KERNEL_INTERPOLATING) return true;
-  /* A label map with isosurfaces also shows values, whose visibility is not tested here. */
+  /* A label map with isosurfaces also shows values, whose visibility this file does not test. */
   if (volume->label_count > 0 && volume->iso_count > 0) return true;
   for (size_t n = 0; n < d->volume_count; n++) {
     const char *other = d->volumes[n].transfer_function.plane.second == HL_SECOND_VOLUME

@@ -70,7 +70,7 @@ void process_limit(const process *p, uint64_t memory, uint64_t file) {
   prlimit((pid_t)p->child, RLIMIT_FSIZE, &of_file, NULL);
 }
 
-/* Waits for the child with the given flags of waitpid(), and notes whether the child has ended. */
+/* Waits for the child with the given flags of waitpid(), and stores whether the child has ended. */
 static bool await(process *p, int flags, bool *succeeded) {
   int how = 0;
   pid_t ended;

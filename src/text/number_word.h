@@ -16,8 +16,8 @@ typedef struct hl_number_word {
 } hl_number_word;
 
 /* Reads the word for a number with which a text begins. letters: the letters that may end the word, such as
- * "d". Returns false if the text does not begin with such a word, or if the word asks for a width of more
- * than 20 characters. */
+ * "d". Returns false if the text does not begin with a word for a number, or if the word asks for a width of
+ * more than 20 characters. */
 bool hl_number_word_read(const char *text, const char *letters, hl_number_word *word);
 
 /* Writes a number in the form that the word describes. Returns the length of the written text. */

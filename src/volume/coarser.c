@@ -59,7 +59,7 @@ static void read_row(const hl_volume *volume, size_t j, size_t k, void *stored, 
   }
 }
 
-/* The mean of the values that are merged in one voxel; NAN if there are no values. */
+/* The mean of the values that are merged in one voxel, or NAN without values. */
 static double mean_of(const float *values, size_t count) {
   double sum = 0;
   for (size_t n = 0; n < count; n++) sum += (double)values[n];
@@ -119,8 +119,8 @@ static void make_slice(void *data, size_t k, int worker) {
 }
 
 /* Sets the origin and the axes of the coarser grid. Each voxel of the coarser grid lies in the middle of the
- * voxels that are merged in it. At the volume's end some of these voxels may be missing; the merged voxel is
- * placed as if no voxel were missing. */
+ * voxels that are merged in it. At the volume's end some of the merged voxels may be missing; the merged
+ * voxel is placed as if no voxel were missing. */
 static void place(const coarsening *c, hl_volume_description *d) {
   static const hl_voxel_type types[] = {
       [HL_STORAGE_U8] = HL_VOXEL_U8, [HL_STORAGE_U16] = HL_VOXEL_U16, [HL_STORAGE_F32] = HL_VOXEL_F32};

@@ -3,7 +3,7 @@
 
 static void count_u8(const uint8_t *voxels, size_t count, uint64_t *counts) {
   uint64_t lanes[4][256] = {{0}}; /* four tables are used in turn, so that in a run of equal values an
-                                   * addition does not have to wait for the addition before it */
+                                   * addition does not have to wait for the previous addition */
   size_t n = 0;
   for (; n + 4 <= count; n += 4)
     for (int lane = 0; lane < 4; lane++) lanes[lane][voxels[n + (size_t)lane]]++;

@@ -348,8 +348,8 @@ hl_status hl_volume_create(hl_context *context, const hl_volume_description *des
   hl_status status = hl_volume_check_grid(description, subject, error);
   if (status != HL_OK) {
     if (error != NULL)
-      error->code = HL_ERROR_ARGUMENT; /* the grid comes from the caller, not from a file, so the error is
-                                        * HL_ERROR_ARGUMENT */
+      error->code = HL_ERROR_ARGUMENT; /* the error is HL_ERROR_ARGUMENT, because the grid comes from the
+                                        * caller and not from a file */
     return HL_ERROR_ARGUMENT;
   }
   ptrdiff_t stride[3];

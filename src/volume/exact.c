@@ -48,8 +48,8 @@ static bool rounds_double(double value) {
 /* The magnitude of a signed number. */
 static uint64_t magnitude_of(int64_t value) { return value < 0 ? 0 - (uint64_t)value : (uint64_t)value; }
 
-/* Returns whether any number may lie beyond 2^24 or -2^24. Most files have no such number. For such files,
- * this quick test, whose loop compilers vectorise, saves slower tests. */
+/* Returns whether any number may lie beyond 2^24 or -2^24. Most files have no number beyond these bounds. For
+ * most files, this quick test, whose loop compilers vectorise, makes slower tests unnecessary. */
 static bool any_great_32(bool is_signed, bool swap, const unsigned char *from, size_t count) {
   uint32_t bits = 0;
   for (size_t n = 0; n < count; n++) {

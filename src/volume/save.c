@@ -152,8 +152,8 @@ static hl_status find_unit(saving *s, const char *asked, const char *path, hl_er
 }
 
 /* Sets the origin and the axes of the grid that is written. A written voxel lies in the middle of the voxels
- * that are merged in it. At the box's end some of these voxels may be missing; the written voxel is placed as
- * if no voxel were missing. */
+ * that are merged in it. At the box's end some of the merged voxels may be missing; the written voxel is
+ * placed as if no voxel were missing. */
 static void place_box(saving *s) {
   const hl_volume *volume = s->volume;
   vec3 origin = volume->index_to_world.offset;

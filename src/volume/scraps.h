@@ -16,7 +16,7 @@ typedef struct hl_scraps_rule {
                        * hidden */
 } hl_scraps_rule;
 
-/* The matter that a rule hides. */
+/* The result of hiding scraps: the number and the share of the hidden bodies, and the volume without them. */
 typedef struct hl_scraps {
   size_t bodies;     /* the number of hidden bodies */
   double share;      /* the number of the hidden bodies' voxels, as a fraction of the voxels of all bodies */

@@ -33,7 +33,7 @@ DIR *opendir(const char *path) {
   return folder;
 }
 
-/* Reads the next entries. Returns false if there are no more entries. */
+/* Reads the next entries of a folder. Returns false if the folder has no further entries. */
 static bool fetch(DIR *folder) {
   HANDLE handle = (HANDLE)_get_osfhandle(folder->descriptor);
   FILE_INFO_BY_HANDLE_CLASS how = folder->begun ? FileIdBothDirectoryInfo : FileIdBothDirectoryRestartInfo;

@@ -1,4 +1,5 @@
-/* volume/formats/spm_mat.c - reads the file in which SPM keeps the place of an ANALYZE volume.
+/* volume/formats/spm_mat.c - reads the file in which SPM stores the map from indices to the world of an
+ * ANALYZE volume.
  *
  * The file is a MAT-file of version 4: a sequence of variables, each of which has five integers, a name and
  * the numbers of a matrix, column by column. The variable "mat" is the matrix from voxel indices, which SPM
@@ -64,7 +65,7 @@ static bool read_variable(mat_file *file, matrix *mat, matrix *older) {
 }
 
 /* Sets the grid's axes and origin from the matrix. The matrix counts voxels from 1, the grid from 0. Returns
- * false if no grid can have such axes. */
+ * false if no grid can have the matrix's axes. */
 static bool put(const matrix *from, const char *path, hl_volume_description *grid) {
   hl_volume_description placed = *grid;
   for (int row = 0; row < 3; row++) {

@@ -71,9 +71,9 @@ bool hl_bundle_has_brought(const hl_bundle *bundle, const char *name);
  * length of a file in bytes. Only the caller's thread may call hl_bundle_bring(). */
 hl_status hl_bundle_bring(const hl_bundle *bundle, const char *const *names, size_t count, uint64_t most,
                           hl_error *error);
-/* Fetches parts of files in one request: of file names[n] the bytes of ranges[n]. A source of such a file
- * (hl_bundle_find()) knows all parts that were fetched. A server may send whole files instead, of at most
- * `most` bytes. Fails if a file has changed between two parts. Only the caller's thread may call
+/* Fetches parts of files in one request: of file names[n] the bytes of ranges[n]. The source of a file
+ * (hl_bundle_find()) contains all parts of the file that were fetched. A server may send whole files instead,
+ * of at most `most` bytes. Fails if a file has changed between two parts. Only the caller's thread may call
  * hl_bundle_bring_parts(). */
 hl_status hl_bundle_bring_parts(const hl_bundle *bundle, const char *const *names,
                                 const hl_fetch_range *ranges, size_t count, uint64_t most, hl_error *error);

@@ -28,8 +28,8 @@ typedef enum hl_destination_kind {
   HL_DESTINATION_COLORS  /* voxels are colours (colors.h), and are always stored in memory */
 } hl_destination_kind;
 
-/* Opens a destination. grid: the volume's grid, which the caller has checked. Close the destination also
- * after a failure. */
+/* Opens a destination. grid: the volume's grid, which the caller has checked. The caller must close the
+ * destination also after a failure. */
 hl_status hl_destination_open(hl_context *context, const hl_volume_description *grid,
                               hl_destination_kind kind, const char *path, hl_destination *destination,
                               hl_error *error);
@@ -46,12 +46,12 @@ static inline bool hl_destination_is_sparse(const hl_destination *destination) {
 /* Returns whether the sparse pages hold too many voxels, so that one array should hold the volume instead. */
 bool hl_destination_is_crowded(const hl_destination *destination);
 /* Moves the voxels of sparse pages into one array, which also holds the value of voxels that are not stored.
- * No other thread may use the destination meanwhile. */
+ * No other thread may use the destination during the call of hl_destination_spread(). */
 hl_status hl_destination_spread(hl_destination *destination, hl_error *error);
 
 /* Gives memory into which the caller writes `count` voxels, of which the first is number `first`. The memory
  * is either the volume's own memory for these voxels, or a separate block. Afterwards the caller must call
- * hl_destination_put(), which stores the voxels of such a block and releases it. */
+ * hl_destination_put(), which stores the voxels of a separate block and releases the block. */
 hl_status hl_destination_take(hl_destination *destination, size_t first, size_t count, void **place,
                               hl_error *error);
 void hl_destination_put(hl_destination *destination, size_t first, size_t count, void *place);

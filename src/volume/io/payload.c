@@ -141,9 +141,9 @@ static hl_status read_into_pages(void *data, size_t index, int worker, hl_error 
   return status;
 }
 
-/* The number of voxels that a thread reads at once. Storing is fastest for whole slices. Therefore a piece is
- * a number of whole slices, if the pieces of all threads take at most an eighth of the memory limit. Pieces
- * that are smaller than a slice have about PIECE_BYTES: whole rows, or a part of a row. */
+/* The number of voxels that a thread reads at once. Storing is fastest for whole slices. Therefore a thread
+ * reads a number of whole slices at once, if the pieces of all threads take at most an eighth of the memory
+ * limit. Pieces that are smaller than a slice have about PIECE_BYTES: whole rows, or a part of a row. */
 static size_t piece_for_pages(const hl_context *context, const hl_payload *payload, int threads,
                               size_t voxel_bytes) {
   enum { SLICES = 8, MOST_BYTES = 1 << 27 };

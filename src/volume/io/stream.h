@@ -71,8 +71,9 @@ void hl_stream_take(hl_stream *stream, size_t count);
 hl_status hl_stream_read(hl_stream *stream, void *bytes, size_t wanted, size_t *count, hl_error *error);
 /* Reads exactly the requested bytes, or fails. */
 hl_status hl_stream_read_all(hl_stream *stream, void *bytes, size_t wanted, hl_error *error);
-/* Reads all bytes that are left. Callers use this function for pipes, and for compressed data whose parts are
- * needed in any order. *bytes must be null before the call; the caller owns *bytes, also on failure. */
+/* Reads all bytes that are left. Callers use hl_stream_read_rest() for pipes, and for compressed data whose
+ * parts are needed in any order. *bytes must be null before the call; the caller owns *bytes, also on
+ * failure. */
 hl_status hl_stream_read_rest(hl_stream *stream, unsigned char **bytes, size_t *length, hl_error *error);
 hl_status hl_stream_skip(hl_stream *stream, uint64_t count, hl_error *error);
 /* Reads one line, without its line end. A line ends with LF or CR LF; if the first line ends with CR alone,

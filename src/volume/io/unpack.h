@@ -7,9 +7,9 @@
 
 #include "core/error.h"
 
-/* Returns whether packed data of `length` bytes can unpack to `count` bytes. Callers call these functions
- * before they allocate memory. For deflate data, the greatest possible ratio decides. For Blosc data, the
- * size in the block's header decides. */
+/* Returns whether packed data of `length` bytes can unpack to `count` bytes. Callers call
+ * hl_deflate_can_hold() or hl_blosc_can_hold() before they allocate memory. For deflate data, the greatest
+ * possible ratio decides. For Blosc data, the size in the block's header decides. */
 bool hl_deflate_can_hold(size_t length, size_t count);
 bool hl_blosc_can_hold(const unsigned char *packed, size_t length, size_t count);
 

@@ -402,8 +402,8 @@ static void put_directory(const hl_volume_description *grid, const char *descrip
 }
 
 /* Writes the number of pixels in a length of 1 as a fraction of whole numbers of 32 bits. Derived: the larger
- * of the two numbers is near 2^31, so that the fraction's relative error is below 2^-31. Returns false if no
- * such fraction exists. */
+ * of the two numbers is near 2^31, so that the fraction's relative error is below 2^-31. Returns false if a
+ * number of the fraction does not fit into 32 bits. */
 static bool put_resolution(double spacing, unsigned char *bytes) {
   const double most = 0x1p31, pixels = 1 / spacing, below = pixels < 1 ? most : floor(most / pixels);
   const double above = pixels < 1 ? floor(most * pixels) : floor(pixels * below + 0.5);

@@ -1,5 +1,5 @@
-/* volume/io/writer.h - describes the formats in which volumes are written. A file of such a format has a
- * header, voxels, and at most a few bytes after the voxels. */
+/* volume/io/writer.h - describes the formats in which volumes are written. A written file has a header,
+ * voxels, and at most a few bytes after the voxels. */
 #ifndef HL_VOLUME_WRITER_H
 #define HL_VOLUME_WRITER_H
 
@@ -18,7 +18,7 @@ typedef enum hl_packing {
 typedef struct hl_written_header {
   unsigned char bytes[HL_WRITER_HEADER_BYTES];
   size_t length;
-  const char *end;  /* text after the voxels; null if there is none */
+  const char *end;  /* text after the voxels; null if no text follows the voxels */
   const char *unit; /* set by the caller: the unit of the grid's lengths, one of the writer's `units`; null if
                      * unknown */
   size_t size_at;   /* position in the header at which the length of the packed voxels is to be written, in

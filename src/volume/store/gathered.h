@@ -14,8 +14,8 @@
 bool hl_volume_is_in_memory(const hl_volume *volume);
 
 /* Gets a volume whose voxels are in one array in memory. The result is the map itself or, for a map over
- * ranks or in sparse pages, a copy that the map owns. The first call for such a map makes the copy; for a map
- * over ranks, all ranks must make the first call. Later calls for a map return the same copy. Returns
+ * ranks or in sparse pages, a copy that the map owns. The first call makes the copy. For a map over ranks,
+ * all ranks must make the first call. Later calls for a map return the same copy. Returns
  * HL_ERROR_UNSUPPORTED for a map in a scratch file or in bricks, and HL_ERROR_MEMORY, on all ranks, if one
  * rank has no room for the copy. */
 hl_status hl_volume_in_memory(const hl_volume *map, hl_volume **whole, hl_error *error);

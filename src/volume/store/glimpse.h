@@ -1,9 +1,9 @@
 /* volume/store/glimpse.h - describes the glimpse of a volume larger than memory: the voxels that automatic
  * choices (guess/) need.
  *
- * The glimpse has few voxels, which lie far apart, on lattices. Reading these voxels from a scratch file
- * would take a pass over the whole file. Therefore the voxels of the glimpse are copied to memory when the
- * volume is stored. */
+ * The glimpse has few voxels, which lie far apart, on lattices. Reading the glimpse's voxels from a scratch
+ * file would take a pass over the whole file. Therefore the voxels of the glimpse are copied to memory when
+ * the volume is stored. */
 #ifndef HL_VOLUME_GLIMPSE_H
 #define HL_VOLUME_GLIMPSE_H
 

@@ -119,7 +119,7 @@ static void count_held(hl_pages *pages, bool more) {
 /* ---- sparse pages ---- */
 
 /* Takes the next free place in the mapping for a sparse page, and sets all voxels of the page to the value of
- * voxels that are not stored. Returns the place's number. */
+ * voxels that are not stored. Returns the number of the place in the mapping. */
 static size_t take_place(hl_pages *pages) {
   const size_t place = __atomic_fetch_add(&pages->places, 1, __ATOMIC_RELAXED),
                bytes = hl_storage_bytes(pages->storage);

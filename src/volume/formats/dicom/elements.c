@@ -65,7 +65,7 @@ static uint64_t limited(uint64_t at, uint32_t length, uint64_t most) {
   return length == HL_DICOM_UNDEFINED || at + length > most ? most : at + length;
 }
 
-/* The position where the innermost sequence or item that is being read ends. */
+/* The position of the end of the innermost sequence or item that is being read. */
 static uint64_t end_of_item(const hl_dicom_reader *reader) {
   uint64_t end = UINT64_MAX;
   for (int n = 0; n < reader->depth; n++) {

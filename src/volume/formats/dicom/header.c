@@ -1,7 +1,7 @@
 /* volume/formats/dicom/header.c - reads a file's attributes by one table, and checks them.
  *
- * In: a file's elements. Out: the file's header. The checks here find out whether the frames can be read,
- * before memory for the frames is allocated. */
+ * In: a file's elements. Out: the file's header. The checks in header.c find out whether the frames can be
+ * read, before memory for the frames is allocated. */
 #include "volume/formats/dicom/header.h"
 
 #include <math.h>

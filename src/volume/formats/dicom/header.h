@@ -72,7 +72,7 @@ typedef struct hl_dicom_header {
   double window[2]; /* centre and width of the window */
   hl_dicom_frame base;
   hl_dicom_frame *frames; /* owned; [frames_told]; the attributes that the file states for single frames; null
-                           * if there are none */
+                           * if the file states none */
   size_t frames_told, frames_capacity;
   double *offsets; /* owned; [offset_count]; for a dose grid, the offsets of its frames along the normal */
   size_t offset_count;
@@ -112,8 +112,8 @@ bool hl_dicom_is_remnant(const char *path, const unsigned char *bytes, size_t le
 hl_status hl_dicom_begin(hl_source **source, hl_dicom_header *header, hl_dicom_reader *reader,
                          hl_error *error);
 
-/* Reads a file's header up to its pixels. Release the header also after a failure. *source may be replaced,
- * as by hl_dicom_begin(). */
+/* Reads a file's header up to its pixels. The caller must release the header also after a failure. *source
+ * may be replaced, as by hl_dicom_begin(). */
 hl_status hl_dicom_header_read(hl_source **source, hl_dicom_header *header, hl_error *error);
 void hl_dicom_header_release(hl_context *context, hl_dicom_header *header);
 

@@ -4,7 +4,7 @@
 #include "volume/formats/dicom/codecs.h"
 
 /* Finds the process of a JPEG picture: the number n, 0 to 15, of its frame header's marker SOFn (T.81,
- * B.2.2). *bits: set to the precision in bits; 0 if there is no frame header. */
+ * B.2.2). *bits: set to the precision in bits; 0 if the picture has no frame header. */
 static int find_process(const hl_dicom_packed *packed, int *bits) {
   const unsigned char *bytes = packed->bytes;
   for (size_t n = 2; n + 5 < packed->length;) {

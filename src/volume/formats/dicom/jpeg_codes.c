@@ -4,7 +4,7 @@
 #include <string.h>
 
 /* Reads the next marker segment, and sets *marker and *content to the segment's marker and content. Returns
- * false at the end of the data, or if no segment begins there. */
+ * false at the end of the data, or if no segment begins at the read position. */
 static bool next_segment(hl_jpeg_reader *r, int *marker, const unsigned char **content, size_t *length) {
   while (r->at + 4 <= r->length && r->bytes[r->at] == 0xff && r->bytes[r->at + 1] == 0xff) r->at++;
   if (r->at + 4 > r->length || r->bytes[r->at] != 0xff) return false;

@@ -25,8 +25,8 @@ typedef struct hl_jpeg_reader {
   uint64_t bits; /* the next bits of the data; the first bit is bit `bit_count` - 1 */
   int bit_count;
   size_t missing;                         /* number of bytes that were needed although the data had ended */
-  size_t restart;                         /* number of units between two restart markers; 0 if there are no
-                                           * such markers */
+  size_t restart;                         /* number of units between two restart markers; 0 if the picture has
+                                           * no restart markers */
   hl_jpeg_table table[2][HL_JPEG_TABLES]; /* tables of DC codes and differences; tables of AC codes */
 } hl_jpeg_reader;
 

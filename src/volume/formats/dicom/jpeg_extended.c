@@ -78,7 +78,8 @@ static hl_status take(void *decoder_, int marker, const unsigned char *content, 
 
 /* ---- blocks of 8 x 8 ---- */
 
-/* The zigzag order: the place, row times 8 plus column, of each coefficient in a block (T.81, figure A.6). */
+/* The zigzag order: for each coefficient, its position in a block, which is row times 8 plus column (T.81,
+ * figure A.6). */
 static const unsigned char zigzag[64] = {0,  1,  8,  16, 9,  2,  3,  10, 17, 24, 32, 25, 18, 11, 4,  5,
                                          12, 19, 26, 33, 40, 48, 41, 34, 27, 20, 13, 6,  7,  14, 21, 28,
                                          35, 42, 49, 56, 57, 50, 43, 36, 29, 22, 15, 23, 30, 37, 44, 51,
@@ -113,7 +114,8 @@ static const double cosines[8] = {0.35355339059327376220, 0.49039264020161522456
                                   0.41573480615127261854, 0.35355339059327376220, 0.27778511650980111237,
                                   0.19134171618254488586, 0.09754516100806413392};
 
-/* The factor of coefficient u in sample x of the inverse transform: C(u) / 2 cos((2 x + 1) u pi / 16). */
+/* The factor C(u) / 2 cos((2 x + 1) u pi / 16), by which the inverse transform multiplies coefficient u for
+ * sample x. */
 static double factor(int x, int u) {
   int turn = (2 * x + 1) * u % 32; /* the angle, of which 32 units are a full turn; for u from 1 to 7 the
                                     * angle is neither 0 nor 16 */

@@ -17,7 +17,7 @@ typedef struct hl_dicom_mosaic {
 } hl_dicom_mosaic;
 
 /* Examines an element at the top level of a file, and stores the facts about a mosaic that the element
- * states. Elements that state no such facts change nothing. */
+ * states. Elements without facts about a mosaic change nothing. */
 hl_status hl_dicom_mosaic_take(hl_dicom_reader *reader, const hl_dicom_element *element,
                                hl_dicom_mosaic *mosaic, hl_error *error);
 

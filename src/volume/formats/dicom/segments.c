@@ -17,8 +17,8 @@ enum {
   COLOR = 0x0062000d
 };
 enum {
-  HL_NO_SEGMENT = -1 /* the number of a segment whose item states none; no frame refers to such a
-                      * segment */
+  HL_NO_SEGMENT = -1 /* stands for the missing number of a segment whose item states no number; no frame
+                      * refers to a segment without a number */
 };
 
 size_t hl_dicom_segment_of(const hl_dicom_segments *segments, double number) {

@@ -25,12 +25,12 @@ typedef struct hl_dicom_segments {
 } hl_dicom_segments;
 
 /* Stores the facts about segments that an element states. The element stands at the top level of a file, or
- * within an item of HL_DICOM_SEGMENTS. Elements that state no such facts change nothing. */
+ * within an item of HL_DICOM_SEGMENTS. Elements without facts about segments change nothing. */
 hl_status hl_dicom_segments_take(hl_dicom_reader *reader, const hl_dicom_element *element,
                                  hl_dicom_segments *segments, hl_error *error);
 void hl_dicom_segments_release(hl_context *context, hl_dicom_segments *segments);
 
-/* The index of the segment with this number; SIZE_MAX if there is none. */
+/* The index of the segment with this number; SIZE_MAX if no segment has the number. */
 size_t hl_dicom_segment_of(const hl_dicom_segments *segments, double number);
 
 #endif

@@ -85,11 +85,11 @@ static size_t largest(const hl_dicom_set *set) {
   for (size_t n = 0; n < set->series_count; n++) {
     const hl_dicom_series *series = &set->series[n];
     double size = (double)series->rows * (double)series->columns * (double)series->frames;
-    /* A series of a single picture is chosen only if there is no series of several frames. */
+    /* A series of a single picture is chosen only if no series has several frames. */
     if (series->frames == 1) size *= 1e-6;
     if (series->is_segmentation)
-      /* A segmentation is chosen only if there is no scan of a similar size, because most users who name no
-       * series want the scan. */
+      /* A segmentation is chosen only if no scan has a similar size, because most users who name no series
+       * want the scan. */
       size *= 1e-3;
     if (size > most) {
       most = size;
@@ -254,7 +254,8 @@ static hl_status add_file(hl_dicom_set *set, hl_dicom_header *header, size_t ent
                           .is_volume_space = header->is_volume_space,
                           .frames.are_times = header->vectors.are_times,
                           .frames.count = (size_t)header->frame_count};
-  /* Padding values mark pixels outside of the picture. In segmentations such pixels are 0. */
+  /* Padding values mark pixels outside of the picture. In segmentations, pixels outside of the picture are
+   * 0. */
   if (header->segments.kind == HL_DICOM_NO_SEGMENTS) take_padding(header, file->padding);
   else file->padding[0] = file->padding[1] = NAN;
   status = find_series(set, header, &file->series, error);

@@ -173,10 +173,10 @@ static int widest_axis(const sorting *s) {
   return widest;
 }
 
-/* Chooses an orientation for slices that state none. Such slices are assumed to be perpendicular to the
- * patient's axis along which they follow each other. The rows of sagittal slices run from front to back, the
- * rows of coronal slices from right to left, and the columns of sagittal and coronal slices from head to
- * feet. */
+/* Chooses an orientation for slices that state none. Slices without an orientation are assumed to be
+ * perpendicular to the patient's axis along which they follow each other. The rows of sagittal slices run
+ * from front to back, the rows of coronal slices from right to left, and the columns of sagittal and coronal
+ * slices from head to feet. */
 static void assume_axes(sorting *s) {
   static const vec3 rows[3] = {{0, 1, 0}, {1, 0, 0}, {1, 0, 0}},
                     columns[3] = {{0, 0, -1}, {0, 0, -1}, {0, 1, 0}};

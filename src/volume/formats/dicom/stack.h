@@ -8,7 +8,8 @@
 #include "volume/formats/dicom/set.h"
 #include "volume/volume.h"
 
-/* A slice of the grid. A slice lies at a position that has frames, or between two such positions. */
+/* A slice of the grid. A slice lies at a position that has frames, or between two positions that have
+ * frames. */
 typedef struct hl_dicom_slice {
   size_t place;  /* index of the position at the slice, or else of the last position before the slice */
   double weight; /* weight of the frame at the next position; 0 if the slice lies at the position `place` */

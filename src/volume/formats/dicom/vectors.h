@@ -19,8 +19,8 @@ typedef struct hl_dicom_vectors {
   bool are_times; /* whether the frames follow each other in time, as in films of ultrasound or angiography */
 } hl_dicom_vectors;
 
-/* Stores the facts about vectors that an element at the top level of a file states. Elements that state no
- * such facts change nothing. */
+/* Stores the facts about vectors that an element at the top level of a file states. Elements without facts
+ * about vectors change nothing. */
 hl_status hl_dicom_vectors_take(hl_dicom_reader *reader, const hl_dicom_element *element,
                                 hl_dicom_vectors *vectors, hl_error *error);
 void hl_dicom_vectors_release(hl_context *context, hl_dicom_vectors *vectors);

@@ -2,8 +2,8 @@
  *
  * If all slices have the same slope and intercept, voxels stay integers, and slope and intercept become the
  * volume's value_scale and value_offset. If slopes or intercepts differ, as in PET, values are computed and
- * kept as floats. Voxels that have the padding value become NAN. If any slice has such voxels, all integers
- * are converted to floats at the end. */
+ * kept as floats. Voxels that have the padding value become NAN. If any slice has voxels with the padding
+ * value, all integers are converted to floats at the end. */
 #include "volume/formats/dicom/voxels.h"
 
 #include <math.h>
@@ -285,7 +285,7 @@ static hl_status read_slices(reading *r, hl_error *error) {
 }
 
 /* Returns whether any slice has padding. If the work is divided among ranks, the result is whether any rank
- * has such a slice. */
+ * has a slice with padding. */
 static bool any_padded(const reading *r) {
   uint64_t padded = r->padded;
   if (r->to.own != NULL) hl_ranks_sum_counts(r->set->context->ranks, &padded, 1);

@@ -1,5 +1,6 @@
-/* volume/formats/slices/slice_raw.c - reads slices of bare voxels. The name of such a slice, or of one of its
- * folders, states size and type: scan_512x512_uint16/0001.raw, slice_0001_512x512_uint16_be.raw. */
+/* volume/formats/slices/slice_raw.c - reads slices of bare voxels. The name of a slice, or of one of its
+ * folders, states the size and the type of the voxels: scan_512x512_uint16/0001.raw,
+ * slice_0001_512x512_uint16_be.raw. */
 #include <string.h>
 
 #include "volume/convert.h"

@@ -5,7 +5,7 @@
 #include "volume/formats/tiff/tiff.h"
 
 /* Returns whether the content is TIFF. A DICOM file may begin like a TIFF file, so that the file is valid as
- * DICOM and as TIFF (PS3.10, 7.1); the DICOM reader reads such files. */
+ * DICOM and as TIFF (PS3.10, 7.1); the DICOM reader reads files that are valid as both. */
 static bool has_content(const unsigned char *bytes, size_t length) {
   if (length >= 132 && memcmp(bytes + 128, "DICM", 4) == 0) return false;
   return length >= 4 && (memcmp(bytes, "II*\0", 4) == 0 || memcmp(bytes, "MM\0*", 4) == 0 ||

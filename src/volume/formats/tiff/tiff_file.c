@@ -424,8 +424,8 @@ static void take_row(page_reading *r, const unsigned char *row, unsigned plane, 
   }
 }
 
-/* Decodes a tile that has several slices. The tile must be uncompressed or deflated. libtiff cannot decode
- * such a tile, because it treats each tile as one slice. */
+/* Decodes a tile that has several slices. The tile must be uncompressed or deflated. libtiff cannot decode a
+ * tile with several slices, because libtiff treats each tile as one slice. */
 static hl_status decode_deep_tile(page_reading *r, uint32_t index, uint64_t stored, hl_error *error) {
   tiff_file *file = r->file;
   hl_context *context = file->context;
@@ -506,8 +506,8 @@ static hl_status read_chunks(page_reading *r, hl_error *error) {
 }
 
 /* A tile may be larger than its page, but a tile is refused if it is more than TILE_IN_PAGES times as wide as
- * the page and larger than a megabyte. Without this limit a small file could have hundreds of tiny pages,
- * whose tiles would take seconds to decode. */
+ * the page and larger than a megabyte. Without the limit TILE_IN_PAGES, a small file could have hundreds of
+ * tiny pages, whose tiles would take seconds to decode. */
 enum { TILE_IN_PAGES = 1024, SMALL_TILE_BYTES = 1 << 20 };
 
 /* Finds the sizes of the page's chunks. If a chunk reaches beyond the page, only the chunk's rows within the

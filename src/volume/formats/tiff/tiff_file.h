@@ -37,7 +37,8 @@ typedef struct tiff_file {
 } tiff_file;
 
 /* Opens a file. bytes: the file's content; null if the file is to be read. quiet: whether the context's
- * `reads` callback is not called, as on threads other than the caller's. Close *file also after a failure. */
+ * `reads` callback is not called, as on threads other than the caller's. The caller must close *file also
+ * after a failure. */
 hl_status tiff_file_open(hl_context *context, const char *path, const void *bytes, size_t byte_count,
                          bool quiet, tiff_file *file, hl_error *error);
 void tiff_file_close(tiff_file *file);

@@ -310,7 +310,7 @@ static size_t find_count(const char *description, const char *name) {
 
 enum { UNIT_BYTES = 64 };
 
-/* Copies the text from the description's line "name=TEXT"; "" if there is no such line. */
+/* Copies the text from the description's line "name=TEXT"; "" if the description has no such line. */
 static void find_text(const char *description, const char *name, char text[UNIT_BYTES]) {
   size_t length = strlen(name);
   text[0] = 0;
@@ -329,7 +329,7 @@ static bool is_imagej(const char *description) {
   return description != NULL && strncmp(description, "ImageJ=", 7) == 0;
 }
 
-/* Takes the lengths of voxels from ImageJ's description and the page's resolution. The resolution states the
+/* Finds the lengths of voxels from ImageJ's description and the page's resolution. The resolution states the
  * lengths along x and y; the description states the distance between slices and the units. The unit of y or z
  * is stated only if it differs from the unit of x. The lengths are converted to micrometres if all units are
  * known. */

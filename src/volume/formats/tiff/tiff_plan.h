@@ -27,8 +27,8 @@ typedef struct tiff_plan {
 
 /* Makes the plan. description: the text of the first page's ImageDescription; null if the page has no text.
  * pages: number of slices in all pages of the first file. components: samples of a pixel. depth: slices of a
- * page. resolution: pixels per unit along x and y in the first page; 0 if the file does not state it. Release
- * the plan also after a failure. */
+ * page. resolution: pixels per unit along x and y in the first page; 0 if the file does not state it. The
+ * caller must release the plan also after a failure. */
 hl_status tiff_plan_make(hl_load_request *request, const char *path, const char *description, size_t pages,
                          size_t components, size_t depth, const double resolution[2], tiff_plan *plan,
                          hl_error *error);

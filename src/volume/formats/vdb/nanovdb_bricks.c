@@ -18,8 +18,8 @@ enum { SHIFT = 5, SIDE = 1 << SHIFT, WIDTH = SIDE + BRICK_MARGIN, COEFFICIENTS =
 /* The greatest number of bricks in the box of active voxels, because a damaged or hostile file may state a
  * box of any size. */
 enum { MOST_BRICKS = 1 << 22 };
-/* Bricks are made only if they take fewer bytes than this fraction of the dense volume's bytes, because
- * bricks are sampled more slowly. */
+/* Bricks are made only if the bricks take fewer bytes than the fraction WORTH_WHILE of the dense volume's
+ * bytes, because sampling bricks is slower. */
 static const double WORTH_WHILE = 0.6;
 
 typedef struct brick_reader {

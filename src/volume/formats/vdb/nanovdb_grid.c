@@ -30,8 +30,8 @@ typedef struct walk {
   pnanovdb_buf_t memory;
   pnanovdb_root_handle_t root;
   int64_t low[3], size[3]; /* the box of active voxels */
-  int64_t first[3];        /* the first lower node that meets the box; `count` is the number of such nodes
-                            * along each axis */
+  int64_t first[3];        /* the first lower node that intersects the box; `count` is the number of lower
+                            * nodes along each axis that intersect the box */
   size_t count[3];
   hl_voxel_type type;  /* type of the staged values, from which the volume's stored values are made */
   size_t bytes;        /* bytes of a staged value */
@@ -419,8 +419,8 @@ static bool put_lower(const walk *w, pnanovdb_lower_handle_t lower, const int64_
   return sound;
 }
 
-/* Stores the 128^3 voxels from `begin` on. All voxels of such a region lie in the same tile of the root, or
- * in no tile. */
+/* Stores the 128^3 voxels from `begin` on. All voxels of a region of 128^3 voxels lie in the same tile of the
+ * root, or in no tile. */
 static bool put_region(const walk *w, const int64_t begin[3]) {
   uint32_t kind = w->grid->kind;
   const pnanovdb_coord_t place = {(int32_t)begin[0], (int32_t)begin[1], (int32_t)begin[2]};

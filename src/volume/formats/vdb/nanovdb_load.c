@@ -46,7 +46,7 @@ typedef struct grid_list {
   const char *path;
   grid_entry *entries; /* owned; [HL_ARRAYS_MOST], of which the first `count` are set */
   size_t count;
-  int density; /* index of the grid with the name "density"; -1 if there is none */
+  int density; /* index of the grid with the name "density"; -1 if no grid has this name */
 } grid_list;
 
 static uint64_t little(const unsigned char *bytes, int count) {

@@ -29,7 +29,7 @@ typedef struct vtk_header {
   hl_load_request *request;
   bool of_cells; /* whether the volume's array has values for cells instead of points */
   bool lists;    /* whether this is the first pass, in which arrays are listed */
-  bool once;     /* whether the file can be read only once. If so, the first pass already stops at the first
+  bool once;     /* whether the file can be read only once, so that the first pass already stops at the first
                   * suitable array */
   size_t arrays; /* number of arrays met so far in this pass that can hold the volume */
 } vtk_header;

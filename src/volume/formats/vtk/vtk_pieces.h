@@ -46,7 +46,7 @@ typedef struct hl_vtk_pieces {
 } hl_vtk_pieces;
 
 /* Reads all tags of a file. The members context, types, type_count and xml.stream must be set, and all others
- * must be zero. Release the pieces also after a failure. */
+ * must be zero. The caller must release the pieces also after a failure. */
 hl_status hl_vtk_pieces_read(hl_vtk_pieces *pieces, hl_error *error);
 void hl_vtk_pieces_release(hl_vtk_pieces *pieces);
 

@@ -63,8 +63,8 @@ typedef struct hl_zarr_array {
   unsigned char fill[8]; /* the value of voxels in missing chunks, native byte order */
   hl_zarr_codecs codecs;
   char separator;        /* separator of the numbers in the names of chunks: '.' or '/' */
-  bool separator_untold; /* in version 2: whether the metadata do not state the separator. If so, a chunk that
-                          * is not found under its name with '.' is searched under its name with '/' */
+  bool separator_untold; /* in version 2: whether the metadata do not state the separator, so that a chunk
+                          * that is not found under its name with '.' is searched under its name with '/' */
   bool has_prefix;       /* whether names of chunks begin with "c" */
   struct {
     bool are_used;                    /* whether files are shards, which hold several chunks */

@@ -37,7 +37,7 @@ typedef struct hl_zarr_image {
 } hl_zarr_image;
 
 /* Reads the metadata of an image. ome: the attributes of the group in `folder`, which include "multiscales".
- * Release *image also after a failure. */
+ * The caller must release *image also after a failure. */
 hl_status hl_zarr_image_read(const hl_bundle *bundle, const char *folder, const json_t *ome,
                              hl_zarr_image *image, hl_error *error);
 
