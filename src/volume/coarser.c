@@ -206,8 +206,8 @@ static hl_status make_coarser(const hl_volume *volume, hl_coarser_kind kind, boo
   return status;
 }
 
-/* Makes the walls of a coarser mesh of cells. Matter rises across a wall over the distance of one voxel. In a
- * coarser mesh whose stored depths reach twice as far, matter rises over the distance of two voxels. */
+/* Makes the walls of a coarser mesh of cells. Matter rises across a wall over the distance of one voxel. If
+ * the stored depths reach far enough, matter of the coarser mesh rises over two voxels of the finer mesh. */
 static hl_status coarsen_wall(const hl_volume *volume, hl_volume *made, hl_error *error) {
   const hl_volume *wall = volume->wall;
   if (wall == NULL) return HL_OK;

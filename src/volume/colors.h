@@ -34,9 +34,9 @@ typedef struct hl_color_source {
   bool premultiplied; /* whether alpha is multiplied into the colours */
 } hl_color_source;
 
-/* Makes a volume of colours. source->component tells whether opacity is computed from alpha or from
- * luminance. colors: [voxels][HL_COLOR_BYTES], in a block of hl_allocate() that the volume takes over, also
- * on failure. */
+/* Makes a volume of colours. The member `component` of the made volume tells whether opacity is computed from
+ * alpha or from luminance. colors: [voxels][HL_COLOR_BYTES], in a block of hl_allocate() that the volume
+ * takes over, also on failure. */
 hl_status hl_volume_adopt_colors(hl_context *context, const hl_color_source *source, unsigned char *colors,
                                  hl_volume **volume, hl_error *error);
 

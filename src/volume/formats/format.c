@@ -63,8 +63,8 @@ static hl_status choose_named(hl_load_request *request, const char *path, hl_err
                      : "");
 }
 
-/* Returns whether VTK uses an array to mark points and cells that are duplicates or hidden. Such an array
- * cannot be the volume. */
+/* Returns whether VTK uses an array to mark points and cells that are duplicates or hidden. An array of such
+ * marks cannot be the volume. */
 static bool is_ghost(const hl_array_entry *array) {
   return hl_text_is_one_of(array->name, "vtkGhostType|vtkGhostLevels|vtkValidPointMask");
 }

@@ -24,7 +24,8 @@ typedef struct hl_load_request {
   const char *channel_name;   /* the name or the number of the wanted channel, as text; null after the channel
                                * was found in the file, and if the caller names no channel */
   int pixels;                 /* pixels of the picture's longer side; 0 if unknown */
-  int preview_pixels;         /* pixels of the longer side of a first picture; 0 if there is none */
+  int preview_pixels;         /* pixels of the longer side of a first picture; 0 if the caller wants no first
+                               * picture */
   const hl_volume *coarse;    /* the coarser volume in hl_volume_load_options; null if all voxels are read */
   const double (*seen)[4][4]; /* [seen_count]; the planes in hl_volume_load_options */
   size_t seen_count;
@@ -52,7 +53,7 @@ typedef struct hl_load_request {
   hl_resolutions resolutions; /* set by hl_level_choose() */
   char array_told[1000], component_told[400],
       selection_told[600]; /* warnings that name the array, the component, and the time and channel that were
-                            * chosen by default; "" if there are none */
+                            * chosen by default; "" if nothing was chosen by default */
 } hl_load_request;
 
 /* Adds an array to the list. name: "" if arrays have no names in the format; type: 0 if arrays of the array's
@@ -69,10 +70,10 @@ hl_status hl_arrays_choose(hl_load_request *request, const char *path, int activ
 /* Chooses the component to read, and stores its index in the payload, whose `components` and `block` must be
  * set. The choice is the wanted component. If the caller wants none, the choice is the only component, or the
  * magnitude of vectors of two or three components, or the first component. is_series: whether components are
- * time steps and channels. In such a series the time steps of a channel are adjacent components.
- * request->selection has the numbers of times and channels; if request->selection has no such numbers, all
- * components are times. By default the first time step of the first channel is read. Refuses a time, a
- * channel or a level that request->selection does not have. */
+ * time steps and channels. In a series of time steps and channels, the time steps of a channel are adjacent
+ * components. request->selection has the numbers of times and channels; if request->selection has no such
+ * numbers, all components are times. By default the first time step of the first channel is read. Refuses a
+ * time, a channel or a level that request->selection does not have. */
 hl_status hl_component_choose(hl_load_request *request, const char *path, bool is_series, hl_payload *payload,
                               hl_error *error);
 
@@ -149,8 +150,8 @@ typedef struct hl_format {
   hl_status (*load_bundle)(hl_bundle *bundle, hl_load_request *request, bool *claimed, hl_volume **volume,
                            hl_error *error);
 
-  /* finds_by_name: whether load_bundle() opens files by their names, without a list of all files. Only such
-   * formats can be read from servers. */
+  /* finds_by_name: whether load_bundle() opens files by their names, without a list of all files. Only
+   * formats that open files by their names can be read from servers. */
   bool finds_by_name;
 } hl_format;
 

@@ -82,7 +82,8 @@ hl_status hl_volume_get_format(size_t index, hl_file_format *format) {
 typedef struct packing {
   const char *name, *missing;
   const char *read_endings, *written_endings; /* endings of the names of files that are packed as a whole;
-                                               * null if such files are not read, or not written */
+                                               * null if files packed as a whole are not read, or not
+                                               * written */
 } packing;
 
 static const packing packings[] = {

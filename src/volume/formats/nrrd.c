@@ -25,8 +25,8 @@ static bool is_component_axis(const nrrd_header *header, const nrrd_axis *axis) 
 }
 
 /* Returns whether the samples along the first axis are assumed to be components, although the file does not
- * say so. Such an assumption is made if the axis has at most four samples, the file states neither directions
- * nor kinds of axes, and at least four axes have several samples. */
+ * say so. The first axis is assumed to hold components if it has at most four samples, the file states
+ * neither directions nor kinds of axes, and at least four axes have several samples. */
 static bool is_first_of_components(const nrrd_header *header) {
   bool unsaid = header->axis[0].size <= 4 && !header->space.has_directions;
   int thick = 0;

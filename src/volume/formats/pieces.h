@@ -12,8 +12,8 @@ typedef struct hl_pieces {
   hl_destination to;
 } hl_pieces;
 
-/* Begins a volume without any pieces. grid: the whole volume's grid, which the caller has checked. Close the
- * pieces also after a failure. */
+/* Begins a volume without any pieces. grid: the whole volume's grid, which the caller has checked. The caller
+ * must close the pieces also after a failure. */
 hl_status hl_pieces_begin(hl_context *context, const hl_volume_description *grid, const char *path,
                           hl_pieces *pieces, hl_error *error);
 /* Copies a piece to the voxels from `first` on. Refuses a piece that does not fit into the volume. */

@@ -91,8 +91,8 @@ static hl_status load(hl_stream **stream, hl_load_request *request, hl_volume **
   return status == HL_OK ? hl_payload_read(*stream, &payload, request->spacing, volume, error) : status;
 }
 
-/* Returns whether the name states the size of the file. Such a name proves the format, because bare voxels
- * may begin with any bytes, even with another format's mark. */
+/* Returns whether the name states the size of the file. A name that states the size proves the format,
+ * because bare voxels may begin with any bytes, even with another format's mark. */
 static bool fits(const hl_stream *stream) {
   hl_payload payload;
   return hl_raw_name(stream->path, &payload) && !hl_text_ends(stream->path, ".gz") &&

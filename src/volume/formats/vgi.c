@@ -38,7 +38,7 @@ static bool is_word_byte(unsigned char byte) {
   return is_digit(byte) || (byte >= 'a' && byte <= 'z') || (byte >= 'A' && byte <= 'Z');
 }
 
-/* Returns whether a file begins with a word in braces. JSON files are excluded, because there a quotation
+/* Returns whether a file begins with a word in braces. JSON files are excluded, because in JSON a quotation
  * mark follows the brace. */
 static bool has_content(const unsigned char *bytes, size_t length) {
   size_t at = length >= 3 && memcmp(bytes, "\xef\xbb\xbf", 3) == 0 ? 3 : 0;

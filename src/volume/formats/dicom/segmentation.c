@@ -54,8 +54,8 @@ static bool share_a_bit(const uint64_t *a, const uint64_t *b, size_t words) {
   return false;
 }
 
-/* Reads the masks of all segments at the position `place`, and notes which segments overlap. masks: scratch
- * memory for all of these masks. */
+/* Reads the masks of all segments at the position `place`, and stores which segments overlap. masks: scratch
+ * memory for the masks of all segments. */
 static hl_status compare_place(segment_reading *r, size_t place, uint64_t *masks, size_t *shown,
                                hl_error *error) {
   size_t words = (r->slice_voxels + 63) / 64, count = 0, segments = r->stack->times;

@@ -156,7 +156,7 @@ typedef struct conversion {
   float *field;
   const float *by; /* the density, for means */
   size_t count;
-  float least;   /* for logarithms: the density below which densities are raised */
+  float least;   /* for logarithms: lower densities are raised to this density */
   float outside; /* for means */
 } conversion;
 
@@ -235,8 +235,8 @@ static hl_status make_field(const making *m, const hl_particle_plan *plan, hl_pa
  * fraction is chosen, not measured. Bricks must save much memory, because they are sampled more slowly than
  * voxels. */
 #define BRICKS_PART 0.6
-/* The greatest number of bytes of bricks and of the fields from which they are made, if there is no memory
- * limit. */
+/* The greatest number of bytes of bricks and of the fields from which they are made, if the context has no
+ * memory limit. */
 #define BRICK_BYTES 1073741824.0
 
 static size_t fields_of(const hl_particles_description *d) {

@@ -231,8 +231,8 @@ static void tell_difference(const hl_cell_mesh *mesh, double bound) {
            mesh->subject, mesh->cell_count, bound);
 }
 
-/* Stores in the volume that its field is continued beyond the walls, and stores the walls. grid: the volume's
- * grid. */
+/* Stores in the volume the field that is continued beyond the walls, and the depths behind the walls. grid:
+ * the volume's grid. */
 static hl_status keep_wall(const hl_cell_mesh *mesh, hl_cells_wall *wall, const hl_volume_description *grid,
                            hl_volume *volume, hl_error *error) {
   hl_volume_description wide = *grid;
