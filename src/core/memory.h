@@ -54,7 +54,7 @@ typedef struct hl_reserve {
 } hl_reserve;
 
 /* Takes a block of count * size uninitialised bytes from the reserve, or else from hl_allocate(). The result
- * is null when hl_allocate() fails. */
+ * is null if the reserve has no such block and hl_allocate() fails. */
 void *hl_reserve_take(hl_reserve *reserve, size_t count, size_t size);
 /* Returns a block that hl_reserve_take() gave. The block may be null. */
 void hl_reserve_return(hl_reserve *reserve, void *memory);

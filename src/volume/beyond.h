@@ -16,7 +16,7 @@
 enum { HL_BEYOND_REACH = 4 }; /* distance from seen voxels, in voxels */
 
 typedef struct hl_beyond {
-  const hl_volume *coarse;    /* borrowed; null if everything is seen */
+  const hl_volume *coarse;    /* borrowed; the coarser volume; null if all voxels are seen */
   hl_voxel_type type;         /* type of the voxels in the file */
   const double (*seen)[4][4]; /* borrowed; [seen_count]; the four planes (a, b, c, d) around each part that is
                                * seen, in the world; a point (x, y, z) is inside a plane if a x + b y + c z +

@@ -175,7 +175,8 @@ static void place_box(saving *s) {
 
 /* ---- rows ---- */
 
-/* Returns whether the file's own numbers are written unchanged. Doubles would round numbers of 64 bits. */
+/* Returns whether the file's own numbers are written unchanged. Converting the file's own numbers of 64 bits
+ * to doubles would round them. */
 static bool keeps_numbers(const saving *s) {
   const hl_volume *volume = s->volume;
   return hl_volume_is_exact(volume) && (s->shrink == 1 || s->labels) && s->grid.type == volume->type &&

@@ -108,7 +108,8 @@ static void weigh(const hl_volume *volume, float *line, float *values, const flo
 }
 
 /* Converts values in place to whole numbers of 16 bits, and sets type, scale and offset in the description,
- * so that value = scale * number + offset. If all values are equal, nothing is changed. */
+ * so that value = scale * number + offset. If all values are equal, values and description are not
+ * changed. */
 static void store_in_16_bits(float *values, size_t count, hl_volume_description *description) {
   float low = values[0], high = values[0];
   uint16_t *numbers = (uint16_t *)(void *)values;

@@ -73,7 +73,7 @@ typedef struct walk {
                  * if the volume is packed */
   size_t count, first, piece; /* number of all voxels; number of the current piece's first voxel; number of
                                * voxels in this piece */
-  const void *voxels;         /* voxels of the current piece */
+  const void *voxels;         /* the voxels of the walk's current piece */
   bool has_one_value;         /* whether all voxels of the piece have one value */
   bool cancelled;
 } walk;
@@ -121,8 +121,8 @@ static bool next_piece(walk *w) {
   return true;
 }
 
-/* Counts how often each stored value occurs. counts: must be zeros before the call. Returns false if
- * cancelled. */
+/* Counts how often each stored value occurs. counts: must be zeros before the call. Returns false if the user
+ * has cancelled. */
 static bool count_values(const hl_volume *volume, void *buffer, uint64_t *counts) {
   walk w = {.volume = volume, .buffer = buffer, .count = counted_voxels(volume)};
   while (next_piece(&w))

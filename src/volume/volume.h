@@ -209,7 +209,7 @@ static inline double hl_stored_number(hl_storage storage, const void *row, size_
 /* A row of numbers. The numbers are the file's own numbers if the stored values round any of the file's
  * numbers, else the stored values. */
 typedef struct hl_number_row {
-  hl_voxel_type type; /* U8, U16, F32, or a type of exact.h */
+  hl_voxel_type type; /* type of the numbers: U8, U16, F32, or a type of exact.h */
   const void *numbers;
 } hl_number_row;
 

@@ -13,8 +13,8 @@
 
 enum { HL_ARRAYS_MOST = 256 }; /* greatest number of arrays that are listed for one file */
 
-/* One request to load a volume. A request holds the choices of the caller, and the facts that the reader
- * finds in the file. */
+/* A request to load a volume from a file. A request holds the choices of the caller, and the facts that the
+ * reader finds in the file. */
 typedef struct hl_load_request {
   hl_context *context;
   const char *array;          /* null if the reader may choose */
@@ -115,7 +115,7 @@ hl_status hl_component_only(hl_load_request *request, const char *path, bool is_
 
 enum { HL_FORMAT_SNIFFED_BYTES = 1024, HL_FORMAT_ENDINGS = 3 };
 
-/* A format's reader. Every member except load may be null. */
+/* A format's reader. Every member of hl_format except `load` may be null. */
 typedef struct hl_format {
   const char *name;                       /* name of the format in error lines */
   const char *endings[HL_FORMAT_ENDINGS]; /* extensions of the names of files that must start with

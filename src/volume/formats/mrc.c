@@ -191,8 +191,9 @@ static void read_axes(const mrc_header *header, int axes[3]) {
   for (int n = 0; n < 3; n++) axes[n] = n;
 }
 
-/* Places the first voxel at ORIGIN. If ORIGIN is 0, as in crystallography, the voxel lies NXSTART columns,
- * NYSTART rows and NZSTART sections from the world's origin. */
+/* Sets the origin of the grid: the position of the first voxel is the header's ORIGIN. If ORIGIN is 0, as in
+ * crystallography, the voxel lies NXSTART columns, NYSTART rows and NZSTART sections from the world's
+ * origin. */
 static void place(const mrc_header *header, hl_volume_description *grid) {
   double step[3][3], origin[3];
   int axes[3];

@@ -192,7 +192,8 @@ static hl_status read_type(const nifti_header *header, hl_voxel_type *type, size
                         header->layout->datatype, (long long)code);
 }
 
-/* Reads slope and intercept. A slope of 0, NaN or infinity means that values are not scaled. */
+/* Reads the slope and the intercept of data values. A slope of 0, NaN or infinity means that values are not
+ * scaled. */
 static hl_status read_scale(const nifti_header *header, hl_volume_description *grid, hl_error *error) {
   double slope = load_real(header, header->layout->slope, 0),
          intercept = load_real(header, header->layout->intercept, 0);

@@ -1,8 +1,9 @@
 /* volume/io/writer.c - writes the headers of the formats in which volumes are saved.
  *
- * In: the grid of a volume. Out: the bytes before the voxels, native byte order. The world of NIfTI is
- * right-anterior-superior. The world of MetaImage is left-posterior-superior. The coordinates of a grid of
- * another anatomical space are converted, so that each voxel stays at its position in the body. */
+ * In: the grid of a volume. Out: the bytes of the file before the voxels, whose numbers have the native byte
+ * order. The world of NIfTI is right-anterior-superior. The world of MetaImage is left-posterior-superior.
+ * The coordinates of a grid of another anatomical space are converted, so that each voxel stays at its
+ * position in the body. */
 #define _GNU_SOURCE
 #include "volume/io/writer.h"
 

@@ -41,7 +41,7 @@ typedef struct lattice {
   size_t count[3];       /* number of indices kept along each axis */
   uint32_t *place[3];    /* [dimension]; for each index along the axis, the position of this index among the
                           * kept indices, or NOT_KEPT */
-  unsigned char *voxels; /* [count[2]][count[1]][count[0]]; stored values */
+  unsigned char *voxels; /* [count[2]][count[1]][count[0]]; stored values of the kept voxels */
 } lattice;
 
 struct hl_glimpse {

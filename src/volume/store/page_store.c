@@ -86,9 +86,9 @@ static page_part part_in(const hl_pages *pages, const size_t page[3], const row_
   return p;
 }
 
-/* Writes slices k0 to k1 - 1 of a page's part of a block. In the page, the slices of a part are a single run
- * of bytes. Slices of zeros are not written, because parts of the sparse file that were not written are
- * zeros. Returns false if the system has refused the write. */
+/* Writes slices k0 to k1 - 1 of a page's part of a block. In the page, the slices of a page's part of a block
+ * are a single run of bytes. Slices of zeros are not written, because parts of the sparse file that were not
+ * written are zeros. Returns false if the system has refused the write. */
 static bool write_part(const hl_pages *pages, const page_part *p, size_t k0, size_t k1,
                        const row_block *block) {
   unsigned char part[SLICES_AT_ONCE * PAGE_SLICE_BYTES], *to = part;

@@ -46,7 +46,7 @@ typedef struct hl_pages {
                            * loads */
   size_t mapping_bytes;
   int file;             /* owned; the mapped file; -1 after hl_pages_finish() has closed it */
-  unsigned char *first; /* the first page in the mapping */
+  unsigned char *first; /* address of the first page in the mapping */
   hl_context *context;  /* the context, whose count and limit of memory include the pages */
   hl_storage storage;
   size_t dimension[3];  /* number of voxels of the volume along each axis */
@@ -59,7 +59,7 @@ typedef struct hl_pages {
   bool filled;          /* whether hl_pages_finish() has been called */
   bool in_use;          /* whether the pages belong to a volume; if several ranks share the volume, other
                          * ranks can request voxels while in_use is true */
-  hl_blocks *blocks;    /* owned; null for a scratch file */
+  hl_blocks *blocks;    /* owned; the blocks of all ranks, for pages over ranks; else null */
   hl_own_voxels *own;   /* owned; the voxels of this rank's block */
   uint32_t *version;    /* owned; [pages] over ranks, else null; the version of each page, which rises when
                          * the page is forgotten; atomic */
@@ -169,7 +169,7 @@ static inline size_t hl_page_of(const hl_pages *pages, int axis, size_t voxel) {
 
 /* A page whose voxels a thread is reading. */
 typedef struct hl_page_reading {
-  const unsigned char *first; /* the page's first voxel, as it is stored */
+  const unsigned char *first; /* the stored value of the page's first voxel; further voxels follow */
   size_t number;
   uint32_t version; /* the page's version at hl_page_begin(); set only over ranks */
 } hl_page_reading;
@@ -209,7 +209,7 @@ static inline const unsigned char *hl_page_voxel(const hl_pages *pages, size_t i
          (i - (page[0] << pages->shift)) * hl_storage_bytes(pages->storage);
 }
 
-/* The stored value of a voxel. */
+/* The stored value of voxel (i, j, k), as a double. */
 static inline double hl_page_number(const hl_pages *pages, size_t i, size_t j, size_t k) {
   hl_page_reading reading;
   double number;

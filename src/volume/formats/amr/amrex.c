@@ -21,7 +21,7 @@
 
 enum { NAME_BYTES = 128, FILE_NAME_BYTES = 256, TEXT_BYTES_MOST = 1 << 28, FAB_LINE_BYTES = 512 };
 
-/* A text that is being read. */
+/* The position at which a text of the plotfile is read. */
 typedef struct text_cursor {
   const char *at, *end;
   const char *name; /* the file's name, for error lines */

@@ -20,10 +20,10 @@ typedef struct hl_dicom_element {
   uint64_t offset; /* position of the element's value in the file */
 } hl_dicom_element;
 
-/* A sequence that is being read. */
+/* A sequence whose items are being read. */
 typedef struct hl_dicom_level {
   uint32_t tag;
-  uint32_t item; /* number of the current item, from 0 */
+  uint32_t item; /* number of the sequence's current item, from 0 */
   bool in_item, fragments;
   bool implicit;     /* whether the elements in the sequence's items state no value representations */
   uint64_t end;      /* position of the sequence's end; UINT64_MAX if an end marker ends it */

@@ -225,8 +225,8 @@ static void clear_header(hl_dicom_header *header) {
   clear_frame(&header->base);
 }
 
-/* Finds the frame that the current element describes. The element lies in the functional groups of the file's
- * frames. The first time that a frame is described, all its attributes are reset. */
+/* Finds the frame of the file that the reader's current element describes. The element lies in the functional
+ * groups of the file's frames. The first time that a frame is described, all its attributes are reset. */
 static hl_status frame_of(const hl_dicom_reader *reader, hl_dicom_header *header, hl_dicom_frame **frame,
                           hl_error *error) {
   hl_context *context = hl_source_context(reader->source);

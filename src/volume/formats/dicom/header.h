@@ -69,7 +69,7 @@ typedef struct hl_dicom_header {
   double rows, columns, samples, allocated, stored, high, representation, planar, frame_count;
   double padding[2]; /* the padding value, and the other end of the range of padding values */
   double slice_spacing, thickness, imager_spacing[2], dose_scale;
-  double window[2]; /* centre and width of the window */
+  double window[2]; /* centre and width of the window of data values to show */
   hl_dicom_frame base;
   hl_dicom_frame *frames; /* owned; [frames_told]; the attributes that the file states for single frames; null
                            * if the file states none */

@@ -18,7 +18,7 @@ typedef struct hl_jpeg_table {
   uint16_t look[1 << HL_JPEG_LOOK_BITS]; /* length << 8 | value; 0 for a longer code */
 } hl_jpeg_table;
 
-/* One picture that is being read. */
+/* The state of reading one JPEG picture. */
 typedef struct hl_jpeg_reader {
   const unsigned char *bytes;
   size_t length, at;

@@ -20,7 +20,7 @@ static size_t promised(const hl_dicom_palette *palette, int c) {
 }
 
 /* Reads the entries of a table that is not segmented. Entries of 8 bits may lie two in a word, or one in each
- * word. Returns the number of entries. */
+ * word. Returns the number of entries that were read. */
 static size_t read_plain(const unsigned char *bytes, size_t length, size_t count, int bits, bool big,
                          unsigned char *entries) {
   bool packed = bits <= 8 && length < 2 * count;

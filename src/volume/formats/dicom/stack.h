@@ -25,7 +25,8 @@ typedef struct hl_dicom_stack {
                                       * whose number is `times`; else null */
   size_t empty_count;                /* number of empty slices */
   hl_dicom_slice *slices;            /* owned; [grid.dimensions[2]] */
-  hl_volume_description grid;        /* dimensions, origin, axes, space */
+  hl_volume_description grid;        /* the grid of the slices; only dimensions, origin, axes and space are
+                                      * set */
 } hl_dicom_stack;
 
 /* Makes the stack. The caller must release the stack also after a failure. */

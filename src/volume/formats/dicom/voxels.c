@@ -34,7 +34,7 @@ typedef struct reading {
     double slope, intercept, padding[2];
   } scale;
   size_t slice_voxels, voxel_bytes;
-  hl_destination to; /* [slices][slice_voxels], each of voxel_bytes */
+  hl_destination to; /* receives the voxels, [slices][slice_voxels], each of voxel_bytes */
   struct {
     hl_pool *pool;
     hl_dicom_workspace *spaces; /* owned; one workspace for each worker */

@@ -17,7 +17,7 @@ typedef struct lammps_dump {
   char line[HL_LINE_BYTES];
   bool ended;
   size_t atoms;   /* number of atoms of the step that is being read */
-  bool has_atoms; /* whether the step's atoms have been read */
+  bool has_atoms; /* whether the current step's atoms have been read */
   size_t steps;   /* number of steps that have begun so far */
   size_t wanted;  /* the index of the step to read */
   hl_particle_columns columns;

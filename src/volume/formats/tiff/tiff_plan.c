@@ -65,11 +65,11 @@ typedef struct ome_reader {
   hl_load_request *request;
   const char *path;
   size_t pages, components; /* pages and components of the first file */
-  size_t size[3];           /* numbers of planes along Z, C, T */
+  size_t size[3];           /* number of planes along each of Z, C, T */
   char order[3];            /* the letters Z, C and T in the order of the file's axes; the first axis changes
                              * fastest */
   bool in_pixels, done, is_planned;
-  /* The TiffData element that is being read. */
+  /* The state of the TiffData element that is being read. */
   struct {
     bool is_open, whole; /* is_open: whether the planes of the element have not been placed yet; whole:
                           * whether the element holds all further planes up to the last */

@@ -7,7 +7,7 @@
 
 /* The page that holds a slice. */
 typedef struct tiff_slice {
-  uint32_t file; /* index into the plan's files */
+  uint32_t file; /* index of the slice's file in the plan's `files` */
   uint32_t page; /* index of the directory in its file */
   bool is_there;
 } tiff_slice;

@@ -26,7 +26,7 @@ typedef struct brick_reader {
   const nanovdb_grid *grid;
   const size_t *size; /* voxels of the box along x, y, z */
   hl_bricks *bricks;
-  float *scratch; /* owned; [threads][2][COEFFICIENTS] */
+  float *scratch; /* owned; [threads][2][COEFFICIENTS]; each thread's memory for a box and a brick */
 } brick_reader;
 
 /* Reads the coefficients of a brick. The brick's part in the box of active voxels is read into `box`, which

@@ -39,9 +39,9 @@ hl_status hl_cell_mesh_add_cells(hl_cell_mesh *mesh, const double *types, const 
 /* Adds the hexahedra of a piece whose points are a curvilinear grid, [size[2]][size[1]][size[0]]. */
 hl_status hl_cell_mesh_add_grid(hl_cell_mesh *mesh, const size_t size[3], hl_error *error);
 
-/* Sets the piece's values. values: [count][components]; component: an index, or HL_COMPONENT_MAGNITUDE.
- * of_cells: whether values belong to the piece's cells instead of its points; then the value of a point is
- * the mean value of the cells around the point. */
+/* Sets the values of the current piece's points. values: [count][components]; component: an index, or
+ * HL_COMPONENT_MAGNITUDE. of_cells: whether values belong to the piece's cells instead of its points; then
+ * the value of a point is the mean value of the cells around the point. */
 hl_status hl_cell_mesh_set_values(hl_cell_mesh *mesh, const double *values, size_t count, size_t components,
                                   int component, bool of_cells, hl_error *error);
 

@@ -1,7 +1,8 @@
 /* volume/formats/vtk/legacy_arrays.c - reads the part of legacy .vtk files that all of their data sets share:
  * the opening lines and the arrays of POINT_DATA and CELL_DATA.
  *
- * In: a stream of lines with keywords. Out: a call for each array, at its values. */
+ * In: a stream of lines with keywords. Out: a call of `meet` for each array, with the stream at the array's
+ * values. */
 #include "volume/formats/vtk/legacy_arrays.h"
 
 #include <string.h>

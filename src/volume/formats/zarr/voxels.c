@@ -31,7 +31,7 @@ static const bool native_is_big_endian = __BYTE_ORDER__ == __ORDER_BIG_ENDIAN__;
 typedef struct worker {
   hl_zarr_unpacker unpacker;
   char key[KEY_BYTES];  /* name of the open file; "" if no file is open */
-  hl_source *source;    /* owned; null if the file does not exist */
+  hl_source *source;    /* owned; the open file's source; null if the file does not exist */
   unsigned char *index; /* owned; the shard's index: [16 * chunks_in_shard], followed by a checksum */
   void *row; /* owned; memory for a row of a chunk in stored form, or for a whole chunk if pages are sparse;
               * null if all voxels are in one array in memory from the beginning */
