@@ -119,8 +119,8 @@ hl_status hl_pool_check(hl_pool *pool, const char *doing, hl_error *error) {
   return hl_pool_cancelled(pool) ? hl_fail(error, HL_ERROR_CANCELLED, "cancelled while %s", doing) : HL_OK;
 }
 
-/* Returns whether it is time to call the cancel callback. If calls of this function follow each other
- * quickly, the clock is not read in each call. */
+/* Returns whether it is time to call the cancel callback. If calls of is_time_to_ask() follow each other
+ * quickly, not every call reads the clock. */
 static bool is_time_to_ask(hl_pool *pool) {
   if (pool->unread > 0) {
     pool->unread--;

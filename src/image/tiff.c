@@ -167,8 +167,8 @@ static uint64_t place_of_page(const unsigned char *bytes) {
   return place;
 }
 
-/* Returns whether the first page's header has a credible number of tags. A great number is refused, because
- * libtiff's time grows with the square of this number. */
+/* Returns whether the first page's header has a credible number of tags. A header with a great number of tags
+ * is refused, because libtiff's time grows with the square of the number of tags. */
 static bool has_few_tags(const unsigned char *bytes, size_t length) {
   enum { MOST_TAGS = 512 };
   if (length < 8 || place_of_page(bytes) + 2 > length) return false;

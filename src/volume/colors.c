@@ -49,8 +49,8 @@ static void divide_by_alpha(unsigned char *color) {
 }
 
 /* Splits each colour into the density from which opacity is computed, and the colour with a weight. The
- * weight is the density, so that the colours of transparent voxels do not tint edges. Each weight is at least
- * 1, so that a mean of weights is never 0. */
+ * weight of a colour is its voxel's density, so that the colours of transparent voxels do not tint edges.
+ * Each weight is at least 1, so that a mean of weights is never 0. */
 static void split(const hl_color_source *source, bool use_alpha, size_t count, unsigned char *colors,
                   unsigned char *densities) {
   for (size_t n = 0; n < count; n++) {

@@ -219,7 +219,7 @@ static void place_by_sform(const nifti_header *header, hl_volume_description *gr
 
 /* The limit of a * a below which a counts as 0. For a half turn the component a of the quaternion is 0; an a
  * * a below the limit is only the rounding error of the floats b, c, d. The function nifti_quatern_to_mat44()
- * of the reference implementation, nifti1_io.c, does the same. */
+ * of the reference implementation, nifti1_io.c, treats half turns in the same way. */
 static const double HALF_TURN = 1e-7;
 
 /* Sets axes and origin by the format's method 2, in which the header states a rotation, voxel sizes and an

@@ -226,8 +226,7 @@ static hl_voxel_type read_type(const hl_payload *payload) {
     memcpy(raw + index * sizeof number, &number, sizeof number); \
   } while (0)
 
-/* Stores a number as a value of a type. A number that the type's range does not contain must not be
- * passed. */
+/* Stores a number as a value of a type. The caller passes only numbers within the type's range. */
 static void put_number(hl_voxel_type type, double value, size_t index, unsigned char *raw) {
   switch (type) {
     case HL_VOXEL_U8: PUT(uint8_t); break;

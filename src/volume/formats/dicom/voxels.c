@@ -292,8 +292,8 @@ static bool any_padded(const reading *r) {
   return padded > 0;
 }
 
-/* Reads all slices. If integers include padding values, all voxels must become floats. Voxels in memory are
- * then converted by widen_padded() later; voxels that are not in memory are read a second time. */
+/* Reads all slices. If integers include padding values, all voxels must become floats. For this purpose
+ * widen_padded() later converts voxels in memory; voxels that are not in memory are read a second time. */
 static hl_status read_all(reading *r, hl_error *error) {
   hl_status status = find_padding(r, error);
   if (status == HL_OK) status = read_slices(r, error);

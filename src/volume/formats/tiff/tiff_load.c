@@ -269,8 +269,8 @@ static hl_status decode_slice(stack_reading *r, size_t z, int worker, void *voxe
   if (r->threads.opened[worker] != slice->file) {
     tiff_file_close(file);
     r->threads.opened[worker] = slice->file;
-    file->warnings = TIFF_NO_WARNINGS; /* the same warnings were logged when the file was opened for the first
-                                        * time */
+    file->warnings = TIFF_NO_WARNINGS; /* libtiff's warnings were logged when the file was opened for the
+                                        * first time */
     status = tiff_file_open(r->context, stack->path, stack->memory, stack->memory_size, true, file, error);
     if (status != HL_OK) r->threads.opened[worker] = UINT32_MAX;
   }
