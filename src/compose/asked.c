@@ -17,7 +17,7 @@ static const hl_setting_choice backgrounds[] = {
 static const hl_setting_choice sides[] = {
     {"front", HL_SIDE_FRONT}, {"back", HL_SIDE_BACK},     {"left", HL_SIDE_LEFT}, {"right", HL_SIDE_RIGHT},
     {"top", HL_SIDE_TOP},     {"bottom", HL_SIDE_BOTTOM}, {"iso", HL_SIDE_ISO},   {NULL, 0}};
-/* each value is 2 axis + sign */
+/* each value is 2 * axis + sign, where the sign is 1 for a negative direction */
 static const hl_setting_choice axes[] = {{"+x", 0}, {"-x", 1}, {"+y", 2}, {"-y", 3}, {"+z", 4},
                                          {"-z", 5}, {"x", 0},  {"y", 2},  {"z", 4},  {NULL, 0}};
 static const hl_setting_choice looks[] = {{"auto", HL_LOOK_AUTO},

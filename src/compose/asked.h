@@ -85,13 +85,15 @@ enum {
 /* The value of one option. */
 typedef struct hl_asked {
   bool given;
-  const char *text; /* the value as it was given; for an option that was given several times, the last
+  const char *text; /* the value as the caller gave it; of an option that was given several times, the last
                      * value */
   const char *texts[HL_ASK_MOST_TEXTS]; /* [count] */
   int count;
-  bool chosen; /* whether one of the choices was given; if so, `choice` is its value */
+  bool chosen; /* whether the value is one of the option's choices; if so, `choice` is the value of the
+                * choice */
   int choice;
-  double number[3]; /* for an option that was given several times, the last value's numbers */
+  double number[3]; /* the value's numbers; of an option that was given several times, the numbers of the last
+                     * value */
   bool percent[3];  /* whether each number is a percentile */
 } hl_asked;
 
@@ -105,25 +107,25 @@ typedef struct hl_option_row {
   bool even;      /* whether a single number stands for all numbers */
   bool repeats;
   bool named;                       /* for HL_OPTION_NUMBERS: whether NAME= may stand before the numbers */
-  const hl_setting_choice *choices; /* the choices of the option; if null, the option has the choices of the
-                                     * setting, if there are any */
+  const hl_setting_choice *choices; /* the option's own choices; if null, the option has the choices of
+                                     * `setting`, if the setting has choices */
   hl_setting_kind setting_kind;
-  const char *setting; /* the setting that the option sets; null if it sets none */
+  const char *setting; /* the setting that the option sets; null if the option sets no setting */
 } hl_option_row;
 
 extern const hl_option_row hl_option_rows[HL_ASK_COUNT];
 
-/* Reads options into asked: [HL_ASK_COUNT]. The texts in it are borrowed from the options. */
+/* Reads options into asked: [HL_ASK_COUNT]. `asked` borrows its texts from the options. */
 hl_status hl_options_read(const hl_option *options, size_t count, hl_asked *asked, hl_error *error);
 
-/* Reads the numbers of a text, without NAME=, as the numbers of a row's option. */
+/* Reads the numbers of a row's option from a text that has no NAME=. */
 bool hl_row_numbers(const hl_option_row *row, const char *text, hl_asked *asked);
 
-/* The text after NAME= of an option's value that may begin with it; the whole text if it has no name. */
+/* The text after NAME= of an option's value; the whole text if the value does not begin with NAME=. */
 const char *hl_after_name(const char *text);
 
-/* The choices of a row's option. If the row has no choices of its own, they are the choices of the row's
- * setting. Null if the setting has no choices either. */
+/* The choices of a row's option: the row's own choices, or else the choices of the row's setting. Null if the
+ * setting has no choices either. */
 const hl_setting_choice *hl_row_choices(const hl_option_row *row);
 
 #endif

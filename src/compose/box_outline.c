@@ -1,6 +1,7 @@
 /* compose/box_outline.c - makes the wires of "outline": the twelve edges of the box of voxels of each volume.
  *
- * The box is the file's, before cuts and clip boxes, so that the wires show where something was cut away. */
+ * The box holds all voxels of the file, also the voxels that cuts and clip boxes remove, so that the wires
+ * show where something was cut away. */
 #include "compose/composer.h"
 #include "core/context.h"
 #include "core/memory.h"
@@ -12,7 +13,8 @@ enum { CORNERS = 8, EDGES = 12 };
  */
 static const double thickness = 1 / 600.0;
 
-/* Finds the corners of a volume's box in the world. Corner n lies at the upper end of the axes of n's bits.
+/* Finds the corners of a volume's box in the world. Corner n lies at the upper end of each axis whose bit is
+ * set in n.
  */
 static void find_corners(const hl_scene_volume *volume, vec3 corners[CORNERS]) {
   double ends[2][3];
@@ -78,7 +80,7 @@ hl_status hl_make_box_outline(const hl_composer *composer, const hl_scene_descri
 void hl_box_outline_defaults(hl_scene_mesh *outline) {
   hl_scene_mesh_defaults(outline);
   outline->name = "outline";
-  for (int c = 0; c < 3; c++) outline->color[c] = 0.3; /* seen before black and before white */
+  for (int c = 0; c < 3; c++) outline->color[c] = 0.3; /* a grey that is seen before black and before white */
   outline->material = (hl_material){.emission = 1, .shininess = outline->material.shininess};
   outline->casts_shadow = outline->receives_shadow = 0;
   outline->cut = 0;

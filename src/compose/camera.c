@@ -26,8 +26,8 @@ static double distance(const double a[3], const double b[3]) {
   return sqrt(dot(difference, difference));
 }
 
-/* Applies --ortho and --fovy: changes the projection so that the picture shows the same height of the world
- * at the target as before. */
+/* Applies --ortho and --fovy: changes the projection, but keeps the height of the world that the picture
+ * shows at the target. */
 static void change_projection(const hl_asked *asked, hl_camera *camera) {
   double away = distance(camera->position, camera->target);
   if (asked[HL_ASK_ORTHO].given && camera->type == HL_CAMERA_PERSPECTIVE) {
@@ -44,8 +44,8 @@ static void change_projection(const hl_asked *asked, hl_camera *camera) {
   camera->fovy_deg = asked[HL_ASK_FOVY].number[0];
 }
 
-/* The axis of the world that a direction is nearest to: 2 times the axis, and 1 more where the direction
- * points to the axis' lower end. */
+/* The axis of the world that a direction is nearest to, as the number 2 * axis, or 2 * axis + 1 if the
+ * direction points to the axis' lower end. */
 static int nearest_axis(vec3 direction) {
   const double along[3] = {direction.x, direction.y, direction.z};
   int axis = 0;
@@ -62,8 +62,9 @@ static vec3 towards_eye(const hl_view *view) {
   return vec3_add(vec3_scale(level, hl_cos(elevation)), vec3_scale(up, hl_sin(elevation)));
 }
 
-/* If "view" asks for a side of a volume whose file does not tell the directions, logs which side this is in
- * two cases: if another axis than +z was taken for up, and for bodies, whose file's front may be their back.
+/* If "view" asks for a side of a volume whose file does not tell the directions, logs which side of the
+ * volume the picture shows. The function logs a line in two cases: if another axis than +z was taken for up,
+ * and for bodies, because the supposed front of a body may be its back.
  */
 static hl_status tell_of_side(const hl_composer *composer, const hl_scene_description *description,
                               const hl_view *view) {
@@ -96,13 +97,14 @@ static hl_status tell_of_side(const hl_composer *composer, const hl_scene_descri
   return HL_OK;
 }
 
-/* Logs which side the top and the bottom of a volume and slices across z are seen from. Other programs show
- * some of them as their mirror images. */
+/* Logs from which side the picture shows the top or the bottom of a volume, or a slice across z. Other
+ * programs show some of these pictures as their mirror images. */
 static void tell_of_mirror(const hl_composer *composer, const hl_scene_description *description,
                            const hl_view *view) {
   const hl_asked *asked = composer->asked, *side = &asked[HL_ASK_VIEW];
   const bool slice = asked[HL_ASK_SLICE].given, of_body = hl_scene_space(description) != HL_SPACE_UNKNOWN;
-  const int from = nearest_axis(towards_eye(view)); /* 4 and 5: from the greatest and the least z */
+  const int from = nearest_axis(towards_eye(view)); /* 4: from the side of the greatest z; 5: from the side of
+                                                     * the least z */
   if (!composer->bare || from < 4 || (!slice && (!side->given || !of_body)) || asked[HL_ASK_UP].given ||
       asked[HL_ASK_AZIMUTH].given || asked[HL_ASK_ELEVATION].given || asked[HL_ASK_ROLL].given)
     return;
@@ -119,15 +121,16 @@ static void tell_of_mirror(const hl_composer *composer, const hl_scene_descripti
            above ? "bottom" : "top");
 }
 
-/* Returns whether the view turns to the faces of cuts: of a bare volume whose view no option chooses. */
+/* Returns whether the view turns to the faces of cuts: the options cut a bare volume, and no option chooses
+ * the view. */
 static bool turns_to_cuts(const hl_composer *composer, const hl_scene_description *description) {
   const hl_asked *asked = composer->asked;
   return hl_cuts_bare_volume(composer, description) && !asked[HL_ASK_VIEW].given &&
          !asked[HL_ASK_AZIMUTH].given && !asked[HL_ASK_ELEVATION].given;
 }
 
-/* Finds the view to change. It is the view that "view" and "up" ask for. Without these options it is the view
- * of the scene's camera; for a bare volume it is the automatic view. */
+/* Finds the view to change: the view that "slice", "view" and "up" ask for. Without these options, the view
+ * is the view of the scene's camera, or for a bare volume the automatic view. */
 static hl_status choose_view(const hl_composer *composer, const hl_scene_description *description,
                              hl_view *view) {
   const hl_asked *asked = composer->asked, *up = &asked[HL_ASK_UP];
@@ -163,8 +166,8 @@ static bool turn_view(const hl_asked *asked, hl_view *view) {
          view->roll_deg != before.roll_deg;
 }
 
-/* Places the camera. It frames the volumes before it is turned, so that all frames of a turn have the same
- * target and distance. */
+/* Places the camera. The camera frames the volumes before it is turned, so that all frames of a turn have the
+ * same target and distance. */
 static hl_status place(const hl_composer *composer, bool framed, size_t added,
                        hl_scene_description *description) {
   const hl_asked *asked = composer->asked;

@@ -1,9 +1,9 @@
 /* compose/clip.c - applies the option "clip" AXIS=LO:HI,..., which keeps a part of each volume along axes of
- * its file's world.
+ * the world of the volume's file.
  *
- * A bare number is a fraction of the box around the volume's voxels; a number with a unit is a coordinate. An
- * end that is left out stays where the scene's own clip box has it; without a clip box it is the end of the
- * volume. NAME=AXIS=LO:HI clips the volume NAME alone. */
+ * A bare number is a fraction of the box around the volume's voxels; a number
+ * with a unit is a coordinate. An end that the text leaves out is the end of the scene's own clip box, or
+ * without a clip box the end of the volume. A text NAME=AXIS=LO:HI clips the volume NAME alone. */
 #include <math.h>
 #include <string.h>
 
@@ -46,7 +46,8 @@ hl_status hl_check_clip_names(const hl_composer *composer, const hl_scene_descri
 }
 
 /* Judges the ends between which a clip keeps a volume along an axis. Refuses ends that leave nothing of the
- * picture's only volume. Of several volumes, one may be clipped away, with a warning. */
+ * picture's only volume. If the picture has several volumes, an option may clip one away, and a warning is
+ * logged. */
 static hl_status judge_ends(const hl_composer *composer, const char *text, const double ends[2], int axis,
                             const hl_world_box *bounds, bool alone) {
   char place[HL_BOX_TEXT];

@@ -1,11 +1,12 @@
-/* compose/color_by.c - applies the option "color-by" FILE[:ARRAY][:MAP[:LO,HI]]: the volumes keep their
- * opacities, and get the colours of the values that another volume has at the same place. The other volume
- * joins the scene, and is not visible. ARRAY alone is an array of a volume's own file. With
- * "color-by-threshold", the volumes also keep their own colours where the other values are small.
+/* compose/color_by.c - applies the option "color-by" FILE[:ARRAY][:MAP[:LO,HI]]: each volume keeps its
+ * opacities, and gets the colours of the values that another volume has at the same position. The other
+ * volume is added to the scene, but is not visible. A value without FILE is an array of a scene volume's own
+ * file. With "color-by-threshold", matter keeps its own colour where the other volume's values are small.
  *
- * The value is read from its end. A last part of two numbers is the range, and then a last part that is the
- * name of a colormap is the map. What is left is the name of a file, if a file has this name. Otherwise
- * it is a file and one of its arrays, or an array of a volume of the scene. */
+ * The option's value is read from its end. If its last part is two numbers, this part is the range. If the
+ * last part before the range is the name of a colormap, this part is the map. The rest is the name of a file,
+ * if a file has this name. Otherwise the rest is the name of a file and of one of its arrays, or the name of
+ * an array of a scene volume's file. */
 #include <math.h>
 #include <stdio.h>
 #include <string.h>
@@ -31,11 +32,13 @@ static const char *const colormap_of_fields = "viridis";
 /* The value of the option in its parts. */
 typedef struct typed_coloring {
   char *text;                    /* owned; the value without its range and its map */
-  const char *file;              /* points into `text`, or is the name of the source's file */
-  const char *array;             /* points into `text`; null: the array that the file reads by default */
-  const hl_scene_volume *source; /* the scene's volume whose file has the array; null: another file */
+  const char *file;              /* the file with the colouring values; points into `text`, or is the name of
+                                  * the source's file */
+  const char *array;             /* points into `text`; null for the array that is read by default */
+  const hl_scene_volume *source; /* the scene's volume whose file has the array; null if `file` is another
+                                  * file */
   const char *map;
-  double range[2]; /* [0] < [1] if a range was typed */
+  double range[2]; /* the typed range; range[0] < range[1] if the value has a range */
 } typed_coloring;
 
 /* Takes the last part after ':' off a text, if the part is a range LO,HI. */
@@ -51,7 +54,7 @@ static void take_range(char *text, double range[2]) {
   *colon = '\0';
 }
 
-/* Whether a text ends in a colormap and one number. */
+/* Returns whether a text ends in the name of a colormap and a single number. */
 static bool is_half_range(const char *text) {
   char map[80], *rest;
   const char *colon = strrchr(text, ':'), *before = colon;
@@ -74,7 +77,7 @@ static bool is_input(const hl_composer *composer, const char *file) {
   return hl_plain_is_url(file) || hl_file_kind(composer->context, file) != 0;
 }
 
-/* Reads the text as a file, or as a file and one of its arrays. Returns false if there is no such file. */
+/* Reads the text as a file, or as a file and one of its arrays. Returns false if no such file exists. */
 static bool find_file(const hl_composer *composer, typed_coloring *typed) {
   typed->file = typed->text;
   if (is_input(composer, typed->text)) return true;
@@ -89,8 +92,8 @@ static bool find_file(const hl_composer *composer, typed_coloring *typed) {
   return false;
 }
 
-/* Reads the text as an array of the file of a volume of values. names: receives the arrays of the first one,
- * as far as there is room; [ARRAY_NAMES + 1]. */
+/* Reads the text as the name of an array in the file of one of the scene's volumes of values. names:
+ * [ARRAY_NAMES + 1]; receives the names of the arrays in these files, as far as it has room. */
 enum { ARRAY_NAMES = 32 };
 static void find_source(const hl_composer *composer, const hl_scene_description *description,
                         typed_coloring *typed, const char *names[ARRAY_NAMES + 1]) {
@@ -134,7 +137,7 @@ static hl_status read_coloring(const hl_composer *composer, const hl_scene_descr
 }
 
 /* Reads "color-by-threshold": the volumes keep their own colours where the other volume's values lie between
- * two numbers, or below one. */
+ * two numbers, or below a single number. */
 static hl_status read_threshold(const hl_composer *composer, double own[2]) {
   const hl_asked *asked = &composer->asked[HL_ASK_COLOR_BY_THRESHOLD];
   own[0] = own[1] = 0;
@@ -181,7 +184,8 @@ static hl_status check_scene(const hl_composer *composer, const hl_scene_descrip
   return HL_OK;
 }
 
-/* Says of a last part that is no array of its file that it is no colormap either. */
+/* Fails because the value's last part is not an array of the file. The error says that the last part is not a
+ * colormap either. */
 static hl_status refuse_part(const hl_composer *composer, const typed_coloring *typed, hl_status status,
                              const hl_error *own) {
   hl_error map = {0};

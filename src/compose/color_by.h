@@ -1,13 +1,14 @@
-/* compose/color_by.h - applies the options "color-by" and "color-by-threshold": matter in the colours of
+/* compose/color_by.h - applies the options "color-by" and "color-by-threshold": give matter the colours of
  * another volume's values. */
 #ifndef HL_COMPOSE_COLOR_BY_H
 #define HL_COMPOSE_COLOR_BY_H
 
 #include "compose/composer.h"
 
-/* What the option made. The description borrows it. */
+/* The arrays and volumes that the option made. The scene's description borrows them. */
 typedef struct hl_coloring {
-  hl_scene_volume *volumes; /* owned; the scene's volumes; the last one is the volume of the colours */
+  hl_scene_volume *volumes; /* owned; the scene's volumes, followed by the volume whose values give the
+                             * colours */
   hl_volume *other;         /* owned */
   char *text;               /* owned; the names of the file and the array */
   char name[64];
@@ -15,8 +16,9 @@ typedef struct hl_coloring {
   hl_transfer_function colors; /* owned; the colours of the other volume's values */
 } hl_coloring;
 
-/* Adds the other volume to the scene, and gives the volumes of values its colours. Does nothing if the option
- * is not given. *made is released by hl_coloring_release(), also after a failure. */
+/* Adds the other volume to the scene, and gives the scene's volumes of values the colours of the other
+ * volume. Does nothing if the option is not given. The caller releases *made by hl_coloring_release(), also
+ * after a failure. */
 hl_status hl_compose_color_by(const hl_composer *composer, hl_scene_description *description,
                               hl_coloring *made);
 void hl_coloring_release(hl_context *context, hl_coloring *made);

@@ -1,7 +1,8 @@
 /* compose/compose.c - implements hl_scene_compose(), which applies options to a scene in a fixed order.
  *
- * A scene cannot be changed. So its description is copied, the copy is changed, and another scene is made of
- * it. Only arrays that change (lights, volumes, transfer functions) are copied, too. */
+ * A scene cannot be changed. So the scene's description is copied, the copy is changed, and another scene is
+ * made of the changed copy. Of the description's arrays, only the ones that change (lights, volumes, transfer
+ * functions) are copied. */
 #include <halflight/compose.h>
 #include <limits.h>
 #include <math.h>
@@ -24,20 +25,22 @@
 typedef struct scene_change {
   hl_scene_description description;
   hl_changed_volumes volumes;
-  hl_scene_volume *channels; /* owned; the volumes, of which some may be translucent; null if none is */
-  hl_coloring coloring;      /* owned; the volumes, in the colours of another volume */
-  hl_rulers rulers;          /* owned; the marks, of which the last ones are added rulers */
+  hl_scene_volume *channels; /* owned; the volumes, of which some were made translucent; null if
+                              * hl_see_through() judged no volume */
+  hl_coloring coloring;      /* owned; the volumes and colours that "color-by" has made */
+  hl_rulers rulers;          /* owned; the scene's marks, followed by added rulers */
   hl_light *lights;          /* owned; [description.light_count] */
-  hl_scene_mesh *colored; /* owned; the scene's meshes if "colormap" gives some of them colours; else null */
-  hl_scene_mesh *meshes;  /* owned; the meshes, of which the last ones are added; null if none is added */
-  size_t added;           /* the number of added meshes, which `meshes` owns */
-  float *sky;             /* owned; the pixels of the image of "sky"; null if there is none */
+  hl_scene_mesh *colored;    /* owned; the scene's meshes, if "colormap" gives a mesh a colour; else null */
+  hl_scene_mesh *meshes; /* owned; the scene's meshes, followed by added meshes; null if no mesh is added */
+  size_t added;          /* the number of added meshes, which `meshes` owns */
+  float *sky;            /* owned; the pixels of the image of "sky"; null if "sky" names no image */
 } scene_change;
 
-/* Logs that the camera does not see the top of the floor: it looks along the floor, or from below. Derived: a
- * floor of the edge a, seen at the distance d at an angle of the sine s above its plane, is a s / (2 d
- * tan(fovy / 2)) of the picture high, or a s / height for an orthographic camera. A floor that is less than a
- * pixel high is seen as a line. */
+/* Logs that the camera does not see the top of the floor, because the camera looks along the floor, or from
+ * below. Derived: a floor with edges of length a is seen at the distance d, at an angle above the floor's
+ * plane whose sine is s. The fraction of the picture's height that the floor takes is a s / (2 d tan(fovy /
+ * 2)), or a s / height for an orthographic camera. A floor that is less than a pixel high is seen as a line.
+ */
 static void tell_of_hidden_floor(const hl_composer *composer, const hl_scene_description *description,
                                  const hl_mesh *floor) {
   const float(*corner)[3] = hl_mesh_describe(floor)->positions;
@@ -60,7 +63,7 @@ static void tell_of_hidden_floor(const hl_composer *composer, const hl_scene_des
          pixels > -1 ? "looks along the floor" : "looks at the floor from below");
 }
 
-/* Adds a mesh, which the change owns afterwards, also after a failure. */
+/* Adds a mesh, which `change` owns afterwards. After a failure the mesh is released. */
 static hl_status add_mesh(const hl_composer *composer, scene_change *change, const hl_scene_mesh *mesh) {
   hl_scene_description *description = &change->description;
   const size_t count = description->mesh_count;
@@ -110,7 +113,7 @@ static hl_status add_floor(const hl_composer *composer, scene_change *change) {
   return status;
 }
 
-/* Applies "colormap" NAME=COLOR to meshes: gives them their colours. */
+/* Applies "colormap" NAME=COLOR to meshes: gives meshes their colours. */
 static hl_status color_meshes(const hl_composer *composer, scene_change *change) {
   hl_scene_description *description = &change->description;
   const size_t count = description->mesh_count;
@@ -149,9 +152,9 @@ static void change_settings(const hl_asked *asked, hl_scene_description *descrip
     memcpy(description->background, background->number, sizeof description->background);
 }
 
-/* Gives scenes of smooth labels the B-spline as their kernel, because the numbers of smooth labels are its
- * coefficients. The scene of a bare label map has the linear kernel, which was chosen for the numbers of
- * labels. */
+/* Gives scenes of smooth labels the B-spline as their kernel, because the numbers that stand for smooth
+ * labels are coefficients of the B-spline. The scene of a bare label map has the linear kernel, which was
+ * chosen for the numbers of labels. */
 static void smooth_labels(const hl_composer *composer, hl_scene_description *description) {
   bool labels = false;
   for (size_t v = 0; v < description->volume_count; v++) labels |= description->volumes[v].label_count > 0;
@@ -200,14 +203,15 @@ static void change_release(hl_context *context, scene_change *change) {
   hl_release(context, change->lights);
 }
 
-/* Returns whether two values that may begin with NAME= can be for one volume: they have the same name, or one
- * of them has none. */
+/* Returns whether two values of options can be for the same volume: the two begin with the same NAME=, or at
+ * least one of them has no NAME=. */
 static bool may_meet(const char *a, const char *b) {
   const size_t name = (size_t)(hl_after_name(a) - a), other = (size_t)(hl_after_name(b) - b);
   return name == 0 || other == 0 || (name == other && memcmp(a, b, name) == 0);
 }
 
-/* Refuses values of "range" that are no range, and values beside "range" that leave it nothing to do. */
+/* Refuses values of "range" that are no range, and values of other options beside which "range" has no
+ * effect. */
 static hl_status check_ranges(const hl_asked *asked, hl_error *error) {
   const hl_asked *range = &asked[HL_ASK_RANGE], *threshold = &asked[HL_ASK_THRESHOLD];
   if (asked[HL_ASK_RANGE_SCALE].given && !range->given)

@@ -6,7 +6,7 @@
 #include "compose/asked.h"
 #include "core/error.h"
 
-/* One call. */
+/* The state of one call. */
 typedef struct hl_composer {
   hl_context *context;
   const hl_asked *asked; /* [HL_ASK_COUNT] */
@@ -15,8 +15,8 @@ typedef struct hl_composer {
   hl_error *error;       /* may be null */
 } hl_composer;
 
-/* Converts the status of a failed call for the case that the options, and not a file, have caused the
- * failure. */
+/* Converts the status of a failed call to HL_ERROR_ARGUMENT if it blames a file, because the options have
+ * caused the failure. */
 static inline hl_status hl_blame_options(hl_status status) {
   return status == HL_ERROR_INPUT ? HL_ERROR_ARGUMENT : status;
 }
@@ -26,17 +26,19 @@ static inline hl_status hl_blame_options(hl_status status) {
 /* Returns true if the options replace or change the volumes' transfer functions. */
 bool hl_asks_for_functions(const hl_asked *asked);
 
-/* The transfer function of volume number `index` with the options applied. If color is not null and no
- * "colormap" is given for this volume, the function has this colour. The caller owns the function's points,
- * also after a failure. range: the values that "range" gives the volume; both 0 if it gives none. */
+/* The transfer function of volume number `index` with the options applied. color: the colour of the function
+ * if no "colormap" is given for the volume; may be null. The caller owns the function's points, also after a
+ * failure. range: the values that "range" gives the volume; 0 and 0 if "range" gives the volume none. */
 hl_status hl_compose_function(const hl_composer *composer, const hl_scene_description *description,
                               size_t index, const char *color, hl_transfer_function *function,
                               double range[2]);
 
-/* The colormap that a text names, without regard to upper and lower case; null if there is none. */
+/* The colormap that a text names, without regard to upper and lower case; null if the text names no colormap.
+ */
 const char *hl_find_colormap(const char *text);
 
-/* Fails because an option names a colormap that does not exist. The error offers the nearest one. */
+/* Fails because an option names a colormap that does not exist. The error offers the colormap with the
+ * nearest name. */
 hl_status hl_refuse_colormap(const char *option, const char *name, hl_error *error);
 
 /* Refuses "tf", "colormap", "range", "threshold" and "iso" with a NAME= that no volume has. */
@@ -51,43 +53,45 @@ bool hl_text_is_for(const hl_composer *composer, const char *text, const hl_scen
 hl_status hl_check_volume_name(const hl_composer *composer, hl_ask option, const char *text,
                                const hl_scene_description *description);
 
-/* "colormap" NAME=COLOR: whether one of its values names a mesh. */
+/* Returns whether a value NAME=COLOR of "colormap" is for a mesh. */
 bool hl_colors_meshes(const hl_composer *composer, const hl_scene_description *description);
 
 /* Gives meshes the colours that "colormap" NAME=COLOR asks for. meshes: [description->mesh_count]. */
 hl_status hl_color_meshes(const hl_composer *composer, const hl_scene_description *description,
                           hl_scene_mesh *meshes);
 
-/* The value of an option for one volume. The option may be given several times, and the last value for this
- * volume counts. Null if there is no value. */
+/* The value of an option for one volume. The option may be given several times, and the last value for the
+ * volume counts. Null if no value is for the volume. */
 const char *hl_text_for(const hl_composer *composer, hl_ask option, const hl_scene_volume *volume,
                         size_t index);
 
-/* Returns whether "colormap" gives volume number `index` a colormap, and not one colour. */
+/* Returns whether "colormap" gives volume number `index` a colormap, and not a single colour. */
 bool hl_has_colormap(const hl_composer *composer, const hl_scene_description *description, size_t index);
 
-/* Returns whether options of values without NAME= leave volume number `index` out: it is a label map beside
- * volumes of values, and no "tf", "colormap" or "iso" names it. */
+/* Returns whether options about values do not apply to volume number `index` unless they name it: the volume
+ * is a label map beside volumes of values, and no "tf", "colormap", "range", "threshold" or "iso" names the
+ * volume. */
 bool hl_is_left_out(const hl_composer *composer, const hl_scene_description *description, size_t index);
 
 /* ---- face_window.c ---- */
 
-/* Finds whether "range" is the window of a volume's cut faces: options cut a bare scanned body with the look
- * of a surface, and no option gives the volume another function or other colours. */
+/* Finds whether "range" is the window of a volume's cut faces. This is so if options cut a bare scanned body
+ * that has the look of a surface, and no option gives the volume another function or other colours. */
 hl_status hl_windows_faces(const hl_composer *composer, const hl_scene_description *description, size_t index,
                            bool *windows);
 
 /* Makes the values behind a body's surface grey, from black at window[0] to white at window[1]. The surface
- * keeps its colours, and all values their opacity. */
+ * keeps its colours, and all values keep their opacity. */
 hl_status hl_window_faces(const hl_composer *composer, const hl_volume *volume, const double window[2],
                           hl_transfer_function *function);
 
 /* ---- see_through.c ---- */
 
-/* In a bare scene of channels, makes channels translucent by which the camera hardly sees another channel. In
+/* In a bare scene of channels, makes those channels translucent that hide another channel from the camera. In
  * a bare scene of label maps, makes matter of a translucent look so thin that the camera sees the labels in
- * it. Logs a line for each of the changed volumes. Options that choose opacities switch this off. *changed:
- * owned by the caller; the scene's volumes, which may have changed; null if there is nothing to judge. */
+ * the matter. Logs a line for each changed volume. If options choose opacities, the function changes nothing.
+ * *changed: owned by the caller; the scene's volumes, which may have changed; null if the function changes
+ * nothing. */
 hl_status hl_see_through(const hl_composer *composer, hl_scene_description *scene, hl_scene_volume **changed);
 
 /* ---- isosurfaces.c ---- */
@@ -108,7 +112,8 @@ hl_status hl_compose_isosurfaces(const hl_composer *composer, size_t index, hl_s
 
 hl_status hl_check_clip(const hl_asked *clip, hl_error *error);
 
-/* Clips volume number `index` by the values of "clip" that are for it. alone: the scene has no other volume.
+/* Clips volume number `index` by the values of "clip" that are for it. alone: whether the scene has no other
+ * volume.
  */
 hl_status hl_compose_clip(const hl_composer *composer, hl_scene_volume *volume, size_t index, bool alone);
 
@@ -126,9 +131,9 @@ size_t hl_count_cuts(const hl_asked *asked);
 /* Returns whether the options cut a bare volume. */
 bool hl_cuts_bare_volume(const hl_composer *composer, const hl_scene_description *description);
 
-/* Adds the options' cuts that name volume number `index` to its own cuts. alone: the scene has no other
- * volume, and cuts without a name are the volume's, too. cuts: an array with room for all; the volume borrows
- * it. */
+/* Adds the options' cuts that name volume number `index` to the volume's own cuts. alone: whether the scene
+ * has no other volume; cuts without a name then cut this volume. cuts: an array with room for the volume's
+ * own cuts and the options' cuts; the volume borrows it. */
 hl_status hl_compose_cuts(const hl_composer *composer, hl_scene_volume *volume, size_t index, bool alone,
                           hl_cut *cuts);
 
@@ -166,15 +171,15 @@ hl_status hl_compose_sky(const hl_composer *composer, hl_scene_description *desc
 /* ---- camera.c ---- */
 
 /* Places the camera. seen: whether the visible part of the volumes has changed; if so, the camera of a bare
- * volume frames the volumes anew. added: the number of the last meshes that options have added: the picture
- * frames them, but an automatic view is chosen without them. */
+ * volume frames the volumes anew. added: the number of meshes that options have added, at the end of the
+ * scene's meshes. The camera frames added meshes, too, but the automatic view is chosen without them. */
 hl_status hl_compose_camera(const hl_composer *composer, bool seen, size_t added,
                             hl_scene_description *description);
 
 /* ---- values.c ---- */
 
 /* Turns a bare label map back into a volume of values, if options ask for its values. *scene: a new scene of
- * the description; null if there is no such label map. */
+ * the description; null if options ask for the values of no label map. */
 hl_status hl_compose_values(const hl_composer *composer, const hl_scene_description *description,
                             hl_scene **scene);
 
@@ -195,7 +200,7 @@ hl_status hl_compose_labels(const hl_composer *composer, hl_scene **scene);
 
 /* ---- hidden.c ---- */
 
-/* If matter hides a label map that "labels" adds, as seen by the scene's camera, logs this. */
+/* Logs if matter hides labels of a label map that "labels" adds from the scene's camera. */
 hl_status hl_tell_of_hidden_labels(const hl_composer *composer, const hl_scene_description *scene);
 
 /* ---- idle.c ---- */

@@ -9,7 +9,7 @@
 #include "text/plain.h"
 #include "text/units.h"
 
-/* Reads the name of a unit, if one is there. Returns false if the name is not known. */
+/* Reads the name of a unit, if the text begins with a name. Returns false if no unit has the name. */
 static bool read_unit(const char **text, hl_coordinate *coordinate) {
   char name[16] = "";
   const size_t length = strcspn(*text, ":,");

@@ -14,21 +14,23 @@ typedef struct hl_coordinate {
   double metres; /* the length of the number's unit; 0 if the number is in the file's own unit */
 } hl_coordinate;
 
-/* Reads "0.25", "10mm", "10u" or nothing, and moves *text past it. Returns false if something else is there.
- * "u" stands for the file's own unit. */
+/* Reads a coordinate such as "0.25", "10mm" or "10u" from the beginning of a text, and moves *text past the
+ * coordinate. An empty coordinate is read, too. The unit "u" stands for the file's own unit. Returns false if
+ * the text begins with something else. */
 bool hl_read_coordinate(const char **text, hl_coordinate *coordinate);
 
 /* A box in a world, and the world's unit. */
 typedef struct hl_world_box {
   double low[3], high[3];
-  const char *unit; /* a name of the unit of lengths; null if it is not known */
+  const char *unit; /* a name of the unit of lengths; null if the unit is not known */
 } hl_world_box;
 
-/* The box around a volume's voxels in the world of its file. given: the unit that "unit" names; null if the
- * file tells it. Returns false if the volume's place is not known. */
+/* The box around a volume's voxels in the world of its file. given: the unit that the option "unit" names;
+ * null if the option is not given, so that the file tells the unit. Returns false if the volume's place is
+ * not known. */
 bool hl_world_box_of(const hl_volume *volume, const char *given, hl_world_box *box);
 
-/* Writes the place of a box, as "the volume goes from 0,0,0 to 1,1,1 m". what: the name of the thing in the
+/* Writes where a box lies, as "the volume goes from 0,0,0 to 1,1,1 m". what: the name of the thing in the
  * box. If the unit is not known, the text names the option that sets it. */
 enum { HL_BOX_TEXT = 240 };
 const char *hl_describe_box(const hl_world_box *box, const char *what, char text[HL_BOX_TEXT]);
@@ -45,8 +47,8 @@ double hl_length_of(const hl_coordinate *coordinate, double metres);
 double hl_coordinate_of(const hl_coordinate *coordinate, double otherwise, double low, double high,
                         double metres);
 
-/* Reads a range along an axis, as "x=LO:HI", and moves *text past it. Returns false if the text has something
- * else there. */
+/* Reads a range along an axis, as "x=LO:HI", from the beginning of a text, and moves *text past the range.
+ * Returns false if the text begins with something else. */
 typedef struct hl_axis_range {
   int axis;
   hl_coordinate ends[2];
@@ -62,7 +64,7 @@ bool hl_read_box(const char *text, hl_axis_range box[3]);
 bool hl_range_is_given(const hl_axis_range *range);
 
 /* Refuses a value of an option that names a side of a body, as "left=0:0.5", where ranges along axes are
- * wanted. Says nothing of other texts. */
+ * wanted. Returns HL_OK for other texts. */
 hl_status hl_refuse_side(const char *option, const char *text, hl_error *error);
 
 #endif

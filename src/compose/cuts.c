@@ -1,7 +1,8 @@
-/* compose/cuts.c - "cut-plane" POINT:NORMAL or AXIS=AT, "cut-box" RANGES and "cut-sphere" CENTRE:RADIUS:
- * parts that are cut out of volumes. In a scene of one volume, the options' numbers are in the world of the
- * volume's file; in a scene of several volumes, they are in the scene's world. A value that begins with NAME=
- * cuts the volume NAME alone, and its numbers are in the world of this volume's file. */
+/* compose/cuts.c - applies the options "cut-plane" POINT:NORMAL or AXIS=AT, "cut-box" RANGES and "cut-sphere"
+ * CENTRE:RADIUS, which cut parts out of volumes. In a scene of one volume, the options' numbers are in the
+ * world of the volume's file; in a scene of several volumes, they are in the scene's world. A value that
+ * begins with NAME= cuts the volume NAME alone, and the value's numbers are in the world of this volume's
+ * file. */
 #include <math.h>
 #include <string.h>
 
@@ -15,8 +16,8 @@ static const int option_of[] = {
     [HL_CUT_PLANE] = HL_ASK_CUT_PLANE, [HL_CUT_BOX] = HL_ASK_CUT_BOX, [HL_CUT_SPHERE] = HL_ASK_CUT_SPHERE};
 enum { CUT_TYPES = 3 };
 
-/* A cut as it was typed. For a plane: a point and a normal; for a sphere: a centre and a radius; for a box:
- * its ranges. */
+/* A cut as the user typed it: a plane has a point and a normal, a sphere has a centre (in `point`) and a
+ * radius, and a box has ranges. */
 typedef struct typed_cut {
   hl_coordinate point[3], radius;
   double normal[3];
@@ -42,8 +43,8 @@ static bool read_normal(const char *text, double normal[3]) {
 }
 
 /* Reads a plane across an axis. The texts "x=AT" and "x=AT:" cut away the part from AT on, and "x=:AT" cuts
- * away the part before AT. The plane's point has AT as its coordinate along the axis. Its other coordinates
- * have no effect. */
+ * away the part before AT. The plane's point has AT as its coordinate along the axis. The point's other
+ * coordinates have no effect. */
 static bool read_axis_plane(const char *text, typed_cut *cut) {
   hl_axis_range away = {.axis = *text - 'x'};
   const char *at = text + 2;
@@ -128,7 +129,7 @@ bool hl_cuts_bare_volume(const hl_composer *composer, const hl_scene_description
 }
 
 /* Places a cut. box: the box around the voxels. If the text gives no end for a side of a cut box, the cut box
- * ends beyond the voxels on this side. */
+ * extends beyond the voxels on this side. */
 static void place_cut(const typed_cut *typed, const hl_world_box *box, hl_cut *cut) {
   const double *low = box->low, *high = box->high, metres = hl_metres_of_box(box);
   double longest = 0;
@@ -175,14 +176,14 @@ static cut_reach reach_of_body(const hl_cut *cut, const hl_world_box *box) {
   return squares > reach * reach ? CUT_REACHES_NONE : CUT_REACHES_SOME;
 }
 
-/* Returns whether cut plane number n is the plane of "slice", which is the last one. */
+/* Returns whether cut plane number n is the plane of "slice", which is the last cut plane. */
 static bool is_slice(const hl_composer *composer, hl_cut_type type, int n) {
   return composer->asked[HL_ASK_SLICE].given && type == HL_CUT_PLANE &&
          n + 1 == composer->asked[HL_ASK_CUT_PLANE].count;
 }
 
-/* Warns of cuts that lie outside of the box. Refuses a slice outside of the box, or one that leaves nothing.
- * what: the name of the thing in the box. */
+/* Warns of cuts that lie outside of the box. Refuses a slice outside of the box, or a slice that leaves
+ * nothing of the box. what: the name of the thing in the box. */
 static hl_status judge_cut(const hl_composer *composer, const hl_cut *cut, const hl_world_box *box,
                            const char *what, int n) {
   char place[HL_BOX_TEXT];
@@ -204,10 +205,10 @@ static hl_status judge_cut(const hl_composer *composer, const hl_cut *cut, const
 
 /* The target to which the options' cuts are added: a volume or a scene. */
 typedef struct cut_target {
-  const hl_scene_volume *volume; /* the volume, which takes the cuts that name it; null if the target is a
-                                  * scene */
-  size_t index;                  /* the volume's */
-  bool nameless;                 /* whether the target takes the cuts without a name */
+  const hl_scene_volume *volume; /* the volume, to which the cuts that name it are added; null if the target
+                                  * is a scene */
+  size_t index;                  /* the volume's index */
+  bool nameless;                 /* whether cuts without a name are added to the target */
 } cut_target;
 
 static bool takes(const hl_composer *composer, const cut_target *target, const char *text, bool named) {
@@ -216,7 +217,8 @@ static bool takes(const hl_composer *composer, const cut_target *target, const c
   return target->volume != NULL && hl_text_is_for(composer, text, target->volume, target->index, &rest);
 }
 
-/* Converts the options' cuts to places in the box, and adds them as far as they are for the target. */
+/* Adds those of the options' cuts that are for the target. Fractions in the options become coordinates in the
+ * box. */
 static hl_status add_cuts(const hl_composer *composer, const cut_target *target, const hl_world_box *box,
                           hl_cut *cuts, size_t *count) {
   const char *what = target->volume != NULL ? "volume" : "scene";

@@ -1,8 +1,8 @@
 /* compose/face_window.c - makes "range" the window of the faces that cuts open in a scanned body.
  *
- * Radiologists look at the inside of a body through a window: its low end is black, its high end white. The
- * body's surface lies below most windows. So the surface keeps its opacity and its colours, and the values
- * behind it are grey. */
+ * Radiologists look at the inside of a body through a window of values: the window's low end is black, and
+ * its high end is white. The values of the body's surface lie below most windows. So the surface keeps its
+ * opacity and its colours, and values beyond the surface's values are grey. */
 #include <math.h>
 #include <string.h>
 
@@ -29,8 +29,9 @@ hl_status hl_windows_faces(const hl_composer *composer, const hl_scene_descripti
   return status;
 }
 
-/* The greatest value of a body's surface: the one from which on the function has half of its greatest
- * opacity, or in CT the one where fat begins. Lesser Hounsfield units are mixtures of tissue and air. */
+/* The greatest value of a body's surface: the value from which on the function has half of its greatest
+ * opacity, but in CT at least the value at which fat begins. Hounsfield units below the value of fat are
+ * mixtures of tissue and air. */
 static double value_of_surface(const hl_volume *volume, const hl_transfer_function *function) {
   static const double fat = -150;
   const hl_opacity_point *points = function->opacity;

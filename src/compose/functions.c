@@ -37,8 +37,8 @@ static const char *find_known(const char *text, const char *(*known)(const void 
   return NULL;
 }
 
-/* "gray" is the colormap that ParaView, matplotlib and Fiji have under this name, although CSS has a colour
- * of this name. */
+/* The name "gray" stands for the colormap that ParaView, matplotlib and Fiji call so, although CSS has a
+ * colour of this name. */
 const char *hl_find_colormap(const char *text) {
   const bool gray = hl_plain_equal(text, "gray") || hl_plain_equal(text, "grey");
   return find_known(gray ? "grays" : text, colormap_name);
@@ -126,15 +126,15 @@ static void name_of(const part *part, char *name, size_t size) {
   }
 }
 
-/* The text after "NAME="; null if the text has no name, and so is for every volume. If a file has the whole
- * text as its name, the text is that file's name, even with a '=' in it. */
+/* The text after "NAME="; null if the text has no name, so that the value is for every volume. If the whole
+ * text is the name of a file, the text has no name, even with a '=' in it. */
 static const char *after_name(const hl_context *context, const char *text) {
   const char *equals = strchr(text, '=');
   return equals == NULL || hl_file_kind(context, text) != 0 ? NULL : equals + 1;
 }
 
-/* The length of a name without the size and type that the names of files of bare voxels have: "engine" of
- * "engine_256x256x128_uint8". */
+/* The length of a file's name without the size and type that names of files of bare voxels have: 6, the
+ * length of "engine", for "engine_256x256x128_uint8". */
 static size_t length_without_size(const char *name) {
   for (const char *at = strchr(name, '_'); at != NULL; at = strchr(at + 1, '_')) {
     const size_t digits = strspn(at + 1, "0123456789");
@@ -171,8 +171,8 @@ static bool is_for_any(const hl_composer *composer, const char *text,
   return false;
 }
 
-/* Returns whether a value of "colormap" is for mesh number `index`: the value names the mesh, or it has no
- * name and the picture has no volumes. *color: the text of the colour. */
+/* Returns whether a value of "colormap" is for mesh number `index`: the value names the mesh, or the value
+ * has no name and the picture has no volumes. *color: the text of the colour. */
 static bool is_for_mesh(const hl_composer *composer, const char *text,
                         const hl_scene_description *description, size_t index, const char **color) {
   if (names_part(composer, text, part_of_mesh(&description->meshes[index], index), color)) return true;
@@ -189,7 +189,7 @@ static bool is_for_any_mesh(const hl_composer *composer, const char *text,
   return false;
 }
 
-/* Adds a part's name to a text that lists names. The name is cut if there is no room. */
+/* Adds a part's name to a text that lists names. The name is cut off where `names` has no more room. */
 static void list_name(part part, char *names, size_t size) {
   char own[256];
   const size_t used = strlen(names);
@@ -346,7 +346,7 @@ bool hl_has_colormap(const hl_composer *composer, const hl_scene_description *de
 
 /* ---- functions ---- */
 
-/* Logs that a preset of CT is fitted to values that are no Hounsfield units, as the values of MR are. */
+/* Logs that a preset for CT is fitted to values that are not Hounsfield units, such as values of MR. */
 static void tell_of_units(const hl_composer *composer, const char *preset, const hl_volume *volume) {
   if (strncmp(preset, "ct-", 3) == 0 && !hl_is_hounsfield(volume))
     hl_log(composer->context, HL_LOG_INFO,
@@ -432,7 +432,8 @@ typedef struct value_range {
   hl_range_scale scale;
 } value_range;
 
-/* text: the value of "range" for the volume, without NAME=; null if there is none. */
+/* Finds the range of a volume. text: the value of "range" for the volume, without NAME=; null if "range" has
+ * no value for the volume. */
 static hl_status find_range(const hl_composer *composer, const hl_volume *volume, const char *text,
                             value_range *range) {
   const hl_asked *scale = &composer->asked[HL_ASK_RANGE_SCALE];
@@ -465,11 +466,12 @@ static hl_status spread(const hl_composer *composer, const hl_volume *volume, co
   return hl_blame_options(status);
 }
 
-/* What a colour becomes that is given to all values of a volume. */
+/* The use of a single colour that an option gives a volume. */
 typedef enum plain_color {
   PLAIN_EVEN,  /* all values have the colour */
-  PLAIN_RAMP,  /* of a maximum projection: the colours go from black to the colour */
-  PLAIN_BESIDE /* of one of several maximum projections: the colours go from the background to the colour */
+  PLAIN_RAMP,  /* in a maximum projection: the colours go from black to the given colour */
+  PLAIN_BESIDE /* in one of several maximum projections: the colours go from the background's colour to the
+                * given colour */
 } plain_color;
 
 /* Gives all values one colour. */
@@ -517,7 +519,8 @@ typedef struct function_changes {
   bool is_beside;     /* whether other volumes are in the scene */
 } function_changes;
 
-/* Applies "range", "threshold" and "colormap", in this order. stated: the values of "range"; 0 without it. */
+/* Applies "range", "threshold" and "colormap", in this order. stated: receives the ends of "range"; 0 and 0
+ * if "range" is not given. */
 static hl_status change_function(const hl_composer *composer, const hl_scene_volume *described,
                                  const function_changes *changes, bool maximum,
                                  hl_transfer_function *function, double stated[2]) {
@@ -560,7 +563,7 @@ hl_status hl_compose_function(const hl_composer *composer, const hl_scene_descri
   range[0] = range[1] = 0;
   if (is_list(composer, &asked[HL_ASK_COLORMAP])) {
     status = copy_item(composer, description, changes.colormap, index, item, sizeof item);
-    changes.colormap = item[0] != '\0' ? item : NULL; /* ",hot" gives the first volume none */
+    changes.colormap = item[0] != '\0' ? item : NULL; /* the list ",hot" gives the first volume no colormap */
   }
   if (changes.colormap == NULL) changes.colormap = color;
   char window[HL_SLICE_TEXT];

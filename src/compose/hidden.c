@@ -17,18 +17,20 @@
 
 /* A label counts as seen if this fraction of its places is seen. */
 #define SEEN 0.05
-/* Of two screens that both let less light pass, the first counts as the one that hides a place. */
+/* Transmittances of screens below this are not told apart: of several such screens, the first one counts as
+ * hiding a place. */
 #define LEAST 1e-6
 
 enum { PLACES = 256, FEWEST_PLACES = 16, ALL_PLACES = 32768 };
 
-/* What is found about one label, seen from one side. */
+/* The counts for one label, as seen from one side. */
 typedef struct label_sight {
-  uint64_t voxels,
-      facing; /* examined voxels of the label; examined voxels at whose near side no label lies */
-  uint64_t met, tried, seen; /* the chosen voxels: how many were met, were tried, and are seen */
-  bool present, hidden; /* whether the label has voxels; whether hardly any of them are seen from the sides so
-                         * far */
+  uint64_t voxels, facing; /* voxels: the examined voxels of the label; facing: the examined voxels that have
+                            * no label in front of them */
+  uint64_t met, tried, seen; /* the numbers of chosen voxels that were met, that were tried, and that are
+                              * seen */
+  bool present, hidden; /* present: whether the label has voxels; hidden: whether hardly any of its voxels are
+                         * seen from the sides that were tried */
 } label_sight;
 
 /* The sides from which labels are looked at: the eye's side, and the sides along the camera's axes. A label
@@ -40,7 +42,8 @@ typedef struct sought_map {
   const hl_scene_description *scene;
   const hl_screen *own; /* the map with its cuts */
   const hl_screen *screens;
-  uint64_t *hides; /* owned; [screen_count]; how many of the places that are not seen a screen hides most */
+  uint64_t *hides; /* owned; [screen_count]; the number of hidden places for which each screen is the one that
+                    * hides most */
   size_t screen_count;
   affine3 to_world;
   uint64_t places;     /* the number of voxels of a label that are tried */
@@ -76,8 +79,9 @@ static bool find_voxel(const sought_map *sought, uint64_t voxel, sought_voxel *f
   return true;
 }
 
-/* Looks from one voxel of a label to the side. A label is judged by its voxels that face the side; a label
- * that lies within other labels, by all of its voxels. At most about `places` voxels of a label are tried. */
+/* Looks from one voxel of a label to the side. A label is judged by its voxels that face the side. A label
+ * that lies within other labels is judged by all of its voxels. At most about `places` voxels of a label are
+ * tried. */
 static void try_voxel(const sought_map *sought, const sought_voxel *voxel) {
   label_sight *sight = &sought->sights[voxel->label];
   const uint64_t all = sight->facing > 0 ? sight->facing : sight->voxels, every = all / sought->places + 1;
@@ -167,7 +171,7 @@ static void tell(const hl_composer *composer, const hl_scene_volume *map, const 
          one ? "is" : "are", (int)lengths[1], names[1], (int)lengths[1], names[1], (int)lengths[1], names[1]);
 }
 
-/* The volume that hides the most places from the eye and from the other sides. */
+/* The volume that hides the greatest number of places from the eye and from the other sides. */
 static const hl_scene_volume *find_hiding(const sought_map *sought) {
   size_t most = 0;
   for (size_t s = 1; s < sought->screen_count; s++)
@@ -175,8 +179,8 @@ static const hl_scene_volume *find_hiding(const sought_map *sought) {
   return sought->screens[most].volume;
 }
 
-/* Tells that a map is hidden from the eye, or else which of its labels are enclosed in the screens. A label
- * at the far side of matter is no surprise while other labels are seen. */
+/* Logs that the whole map is hidden from the eye, or else which labels of the map are hidden from all sides.
+ * A label that is hidden only at the far side of matter is not logged if other labels are seen. */
 static void tell_of_map(const hl_composer *composer, sought_map *sought) {
   const hl_scene_volume *map = sought->own->volume;
   char names[300];

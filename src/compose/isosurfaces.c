@@ -1,6 +1,6 @@
 /* compose/isosurfaces.c - applies the option "iso" [NAME=]VALUE[,VALUE...][:COLOR[:OPACITY]], which shows
- * surfaces on which a volume has one value. In a list, the last value has the colour and the opacity. The
- * surfaces replace the matter that the volume's transfer function shows. */
+ * surfaces on each of which a volume has one value. In a list of values, the colour and the opacity are for
+ * the last value. The surfaces replace the matter that the volume's transfer function shows. */
 #include <math.h>
 #include <string.h>
 
@@ -13,7 +13,7 @@
 enum { COLOR_BYTES = 64 };
 
 /* Reads the first surface of a text: VALUE[:COLOR[:OPACITY]], or VALUE before a comma. *text moves to the
- * next surface, or to the text's end. Returns false if something else is there. */
+ * next surface, or to the text's end. Returns false if the text begins with something else. */
 static bool read_iso(const char **text, hl_isosurface *surface) {
   char *rest, color[COLOR_BYTES];
   surface->value = hl_plain_number(*text, &rest);
@@ -61,7 +61,8 @@ size_t hl_count_isosurfaces(const hl_asked *iso) {
   size_t count = 0;
   for (int n = 0; n < iso->count; n++) {
     const char *text = text_of_surface(iso->texts[n]);
-    const size_t length = strcspn(text, ":"); /* the commas behind the colon belong to a colour */
+    const size_t length = strcspn(text, ":"); /* commas behind the colon belong to a colour, not to the list
+                                               * of values */
     count++;
     for (size_t at = 0; at < length; at++) count += text[at] == ',';
   }
@@ -79,8 +80,7 @@ static hl_status warn_of_range(const hl_composer *composer, const hl_scene_volum
   return HL_OK;
 }
 
-/* Logs that opaque surfaces hide each other, if no surface of a volume is so translucent that another one
- * shows through it. */
+/* Logs that opaque surfaces hide each other, if a volume has several surfaces and all of them are opaque. */
 static void tell_of_hidden(const hl_composer *composer, const hl_isosurface *surfaces, size_t count) {
   bool opaque = count > 1;
   for (size_t n = 0; n < count; n++) opaque &= surfaces[n].opacity == 1;

@@ -1,5 +1,5 @@
-/* compose/labels.c - "labels", "mask", "label-table" and "show": a label map becomes one more volume, or a
- * mask over the volumes, or the bare volume itself is shown as a label map. */
+/* compose/labels.c - applies the options "labels", "mask", "label-table" and "show". A label map becomes one
+ * more volume of the scene, or a mask over its volumes, or the bare volume itself is shown as a label map. */
 #include <math.h>
 #include <stdio.h>
 #include <string.h>
@@ -15,8 +15,8 @@
 #include "text/stem.h"
 #include "volume/load_beside.h"
 
-/* The number of label layers in the volume's file. Components that are neither time steps nor channels are
- * such layers. */
+/* The number of label layers in the volume's file. Components of the file's array that are neither time steps
+ * nor channels are layers. */
 static size_t layers_of(const hl_volume *volume) {
   hl_volume_selection read = {.struct_size = sizeof read};
   if (hl_volume_get_selection(volume, &read) == HL_OK && (read.times > 1 || read.channels > 1)) return 1;
@@ -37,9 +37,9 @@ static void name_after_file(const char *file, hl_label_layers *layers, hl_label 
   labels[0].name = layers->stem;
 }
 
-/* Loads one layer and its labels. reading: the options for reading the file; a layer is read as a component
- * of the file. scene: the scene whose first volume the labels lie over; null if there is none. The scene's
- * unit of lengths becomes the layer's unit. */
+/* Loads the next layer and its labels. reading: the options for reading the file; a layer is read as a
+ * component of the file. scene: the scene whose first volume the labels lie over; null if the labels lie over
+ * no volume. The scene's unit of lengths becomes the layer's unit. */
 static hl_status load_layer(hl_context *context, const char *file, const char *table,
                             const hl_volume_load_options *reading, const hl_scene_description *scene,
                             hl_label_layers *layers, hl_error *error) {
@@ -118,8 +118,8 @@ static hl_status add_layers(const hl_composer *composer, const hl_label_layers *
   description.volumes = volumes;
   hl_status status = make(composer, &description, scene);
   if (status == HL_OK && composer->bare) {
-    description = *hl_scene_describe(*scene); /* in the new scene's description, transfer functions were made
-                                               * from the labels; the camera is placed by these functions */
+    description = *hl_scene_describe(*scene); /* the new scene's description has transfer functions made from
+                                               * the labels, by which the camera is placed */
     status = hl_camera_reframe(&description, &description.camera, composer->error);
     if (status == HL_OK) status = make(composer, &description, scene);
   }
@@ -128,8 +128,8 @@ static hl_status add_layers(const hl_composer *composer, const hl_label_layers *
 }
 
 /* The options for reading the file of labels. itself: whether the label map replaces the scene's only volume,
- * which is bare; if so, the map is read with the options of this volume. If not, the map is converted to the
- * anatomical space of the scene's first volume. */
+ * which is bare. If so, the map is read with the options by which this volume was read; if not, the map is
+ * converted to the anatomical space of the scene's first volume. */
 static hl_volume_load_options reading_of(const hl_scene_description *description, bool itself) {
   hl_volume_load_options reading;
   hl_volume_info info = {.struct_size = sizeof info};
@@ -147,7 +147,7 @@ static hl_volume_load_options reading_of(const hl_scene_description *description
 }
 
 /* The fraction of opacity that "rest:FRACTION" in "show" gives the matter outside a mask's labels; 0 if
- * "show" does not have it. */
+ * "show" has no such item. */
 static double rest_of(hl_shown_list *show) {
   double rest = 0;
   for (size_t s = 0; s < show->count; s++) {
@@ -158,7 +158,7 @@ static double rest_of(hl_shown_list *show) {
   return rest;
 }
 
-/* Makes a scene in which the volumes have the mask. Volumes that are label maps stay as they are. */
+/* Makes a scene in which the volumes have the mask. Volumes that are label maps get no mask. */
 static hl_status put_on_mask(const hl_composer *composer, const hl_mask *mask, hl_scene **scene) {
   hl_scene_description description = *hl_scene_describe(*scene);
   hl_scene_volume *volumes = hl_allocate(composer->context, description.volume_count, sizeof *volumes);
@@ -173,7 +173,7 @@ static hl_status put_on_mask(const hl_composer *composer, const hl_mask *mask, h
   return status;
 }
 
-/* Warns if the layers have no labels, so that they show nothing. */
+/* Warns if the layers have no labels, so that the picture shows nothing of them. */
 static void tell_of_no_labels(const hl_composer *composer, const char *path, const hl_label_layers *layers) {
   size_t labels = 0;
   for (size_t n = 0; n < layers->count; n++) labels += layers->volumes[n].label_count;
@@ -182,8 +182,8 @@ static void tell_of_no_labels(const hl_composer *composer, const char *path, con
            path);
 }
 
-/* Moves the visible labels to the front of the list. Hidden labels are left out, and their matter belongs to
- * the rest. Returns the number of visible labels. */
+/* Moves the visible labels to the front of the list, and returns the number of visible labels. Without the
+ * hidden labels in the list, their matter belongs to the rest. */
 static size_t keep_shown(hl_label *labels, size_t count) {
   size_t kept = 0;
   for (size_t n = 0; n < count; n++)
@@ -191,15 +191,15 @@ static size_t keep_shown(hl_label *labels, size_t count) {
   return kept;
 }
 
-/* Returns whether a label's colour comes from a file, and not from the label's number. */
+/* Returns whether a label's colour comes from a file, and was not chosen by the label's number. */
 static bool has_own_color(const hl_label *label) {
   double distinct[3];
   hl_label_distinct_color(label->value, distinct);
   return memcmp(distinct, label->color, sizeof distinct) != 0;
 }
 
-/* Logs how matter gets the colours that a file gives the mask's labels. Nothing is logged if the list gives
- * any label a colour, or if no visible label has a colour from a file. */
+/* Logs which option gives matter the colours that a file gives the mask's labels. Nothing is logged if the
+ * list gives any label a colour, or if no visible label has a colour from a file. */
 static void tell_of_own_colors(const hl_composer *composer, const hl_shown_list *show, const hl_mask *mask) {
   const char *item = "all";
   bool own = false;
@@ -281,8 +281,8 @@ static bool is_read_plainly(const hl_scene_volume *volume) {
          !(volume->spacing[0] > 0) && volume->file_space == NULL;
 }
 
-/* Returns whether the scene's only volume is a bare label map whose file has further layers of labels. These
- * are then shown, too. */
+/* Returns whether the scene's only volume is a bare label map whose file has further layers of labels. The
+ * further layers are then shown, too. */
 static bool is_layered(const hl_composer *composer, const hl_scene_description *description) {
   const hl_scene_volume *only = description->volume_count == 1 ? &description->volumes[0] : NULL;
   if (!composer->bare || (composer->flags & HL_COMPOSE_CHANGED) != 0 || only == NULL || only->file == NULL ||

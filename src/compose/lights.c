@@ -41,8 +41,8 @@ static hl_status change_first_light(const hl_composer *composer, hl_scene_descri
   return HL_OK;
 }
 
-/* Applies "shadows": sets the kind of the scene's shadows. Every light that casts shadows then follows this
- * setting. */
+/* Applies "shadows": sets the kind of the scene's shadows. Every light that casts shadows then follows the
+ * scene's setting. */
 static void change_shadows(const hl_composer *composer, hl_scene_description *description, hl_light *lights) {
   if (!composer->asked[HL_ASK_SHADOWS].given) return;
   hl_shadows shadows = (hl_shadows)composer->asked[HL_ASK_SHADOWS].choice;
@@ -53,7 +53,7 @@ static void change_shadows(const hl_composer *composer, hl_scene_description *de
 
 /* Chooses the strength of a bare volume's light anew if the volume is cut, has isosurfaces, scatters light
  * more than once, or is lit by a light rig. The first choice was made for the whole volume and its transfer
- * function; the new one is made for the visible part. */
+ * function; the new choice is made for what is visible now. */
 static hl_status expose_anew(const hl_composer *composer, hl_scene_description *description,
                              hl_light *lights) {
   double factor = 1;

@@ -10,7 +10,7 @@ hl_status hl_compose_lights(const hl_composer *composer, hl_scene_description *d
                             hl_light **lights);
 
 /* Applies "ambient": sets the ambient light, which replaces the sky that was chosen for a bare volume. If
- * "shadows" is off, constant light without shadows replaces that sky. */
+ * "shadows" is off, constant light without shadows replaces the sky of a bare volume. */
 void hl_compose_ambient(const hl_composer *composer, hl_scene_description *description);
 
 #endif

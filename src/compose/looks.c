@@ -57,15 +57,16 @@ hl_status hl_compose_volume_look(const hl_composer *composer, hl_scene_volume *v
   return HL_OK;
 }
 
-/* The background, in linear RGB, to which a maximum projection is fitted; returns false if it has no single
- * colour. */
+/* Finds the background's colour, in linear RGB, to which a maximum projection is fitted. Returns false if the
+ * background has no single colour. */
 static bool find_background(const hl_composer *composer, double color[3]) {
   const hl_asked *background = &composer->asked[HL_ASK_BACKGROUND];
   for (int c = 0; c < 3; c++) color[c] = background->given ? background->number[c] : 0;
   return !background->chosen;
 }
 
-/* The colour at the fraction t of the way between two colours, in encoded values. */
+/* The colour at the fraction t of the way between two colours, mixed in sRGB-encoded values. Colours are
+ * linear RGB. */
 static void mix_encoded(const double from[3], const double to[3], double t, double mixed[3]) {
   for (int c = 0; c < 3; c++) {
     const double begin = hl_srgb_encode_number(from[c]), end = hl_srgb_encode_number(to[c]);
@@ -74,8 +75,8 @@ static void mix_encoded(const double from[3], const double to[3], double t, doub
 }
 
 /* Derived: a grey of the preset, when encoded, lies at the fraction t of the way from black to white. The new
- * colour lies at the same fraction of the way from the background to the end colour, also in encoded values.
- * For a black background and a white end, the new colour is the grey itself. */
+ * colour lies at the fraction t of the way from the background's colour to the end colour, also in encoded
+ * values. For a black background and a white end, the new colour is the grey itself. */
 void hl_fit_projection(const hl_composer *composer, hl_transfer_function *function) {
   double from[3];
   if (!composer->asked[HL_ASK_BACKGROUND].given || !find_background(composer, from)) return;
@@ -97,8 +98,8 @@ bool hl_is_film(const hl_composer *composer, const hl_scene_description *descrip
          hl_text_for(composer, HL_ASK_TF, volume, index) == NULL;
 }
 
-/* Derived: before black a path of transmittance T shows 1 - T, and on the film T^f. Both are the middle grey
- * g if T = 1 - g and f = ln g / ln(1 - g). */
+/* Derived: a path of the transmittance T shows 1 - T before black. With its extinction multiplied by f, the
+ * path shows T^f on the film. The two are the middle grey g if T = 1 - g and f = ln g / ln(1 - g). */
 void hl_make_film(hl_transfer_function *function) {
   for (size_t n = 0; n < function->color_count; n++)
     for (int c = 0; c < 3; c++)
@@ -110,15 +111,15 @@ void hl_make_film(hl_transfer_function *function) {
 
 /* Returns whether a colour is nearly the background's, so that a map that begins with it fades by itself. */
 static bool is_nearly(const double color[3], const double background[3]) {
-  static const double nearly = 1.0 / 16; /* of the encoded values from black to white */
+  static const double nearly = 1.0 / 16; /* as a fraction of the encoded values from black to white */
   for (int c = 0; c < 3; c++)
     if (fabs(hl_srgb_encode_number(color[c]) - hl_srgb_encode_number(background[c])) > nearly) return false;
   return true;
 }
 
-/* Fades the colours of values below `begin` into the background, by the places of the function's points.
- * These are even on the scale of the function's range, so that decades of a logarithmic scale fade evenly,
- * too. */
+/* Fades the colours of values below `begin` into the background. The fading of a point depends on the point's
+ * number, and points are evenly spaced on the scale of the function's range, so that decades of a logarithmic
+ * scale fade evenly, too. */
 static void fade_below(double begin, const double background[3], hl_transfer_function *function) {
   if (begin >= function->color[function->color_count - 1].value) return;
   size_t count = 0;
@@ -170,8 +171,8 @@ void hl_tell_of_function(const hl_composer *composer) {
                                      : "the shading and the light are those of the look");
 }
 
-/* On a background, the ramp goes from the background's colour to the volume's, evenly in encoded values, as
- * the greys of one volume do. */
+/* On a background, the ramp goes from the background's colour to the volume's colour, evenly in encoded
+ * values, like the greys of a single volume. */
 size_t hl_projection_ramp(const hl_composer *composer, const double color[3], const double range[2],
                           bool on_background, hl_color_point ramp[HL_RAMP_POINTS]) {
   double from[3];

@@ -2,9 +2,9 @@
  * this fraction of its opacity.
  *
  * hl_mask.rest multiplies extinction. Derived: matter of the optical depth d along a path has the opacity 1 -
- * exp(-d). If its extinction is multiplied by f, the opacity is 1 - exp(-f d). This is the fraction r of the
- * first opacity if f = -ln(1 - r (1 - exp(-d))) / d. This factor is near r if d is small, and is 1 for r =
- * 1. */
+ * exp(-d). If its extinction is multiplied by f, the opacity is 1 - exp(-f d). The second opacity is the
+ * fraction r of the first opacity if f = -ln(1 - r (1 - exp(-d))) / d. The factor f is near r if d is small,
+ * and is 1 for r = 1. */
 #include <math.h>
 
 #include "compose/composer.h"
@@ -13,11 +13,11 @@
 #include "scene/geometry/placement.h"
 #include "volume/volume.h"
 
-/* A limit of opacities. It is below 1, because an opacity of 1 has an infinite extinction. */
+/* A limit of opacities, which is below 1, because an opacity of 1 has an infinite extinction. */
 #define MOST_OPACITY 0.9999
 
 /* The optical depth along a typical path: the mean extinction of the visible voxels, times the edge of a cube
- * that has the same number of voxels. It is 0 if opacity does not depend on the value alone. */
+ * that has the same number of voxels. The result is 0 if opacity does not depend on the value alone. */
 static double typical_depth(const hl_scene_volume *seen) {
   const hl_volume *volume = seen->volume;
   const hl_transfer_function *function = &seen->transfer_function;

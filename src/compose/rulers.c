@@ -1,5 +1,5 @@
-/* compose/rulers.c - applies the option "ruler" X,Y,Z:X,Y,Z[:TEXT]. A point is in fractions of the box around
- * the volumes, or in lengths of their world. */
+/* compose/rulers.c - applies the option "ruler" X,Y,Z:X,Y,Z[:TEXT]. The coordinates of a point are fractions
+ * of the box around the volumes, or lengths in the scene's world. */
 #include "compose/rulers.h"
 
 #include <string.h>
@@ -10,7 +10,7 @@
 /* A ruler as it was typed. */
 typedef struct typed_ruler {
   hl_coordinate ends[2][3];
-  const char *text; /* null if there is none */
+  const char *text; /* null if the ruler has no text */
 } typed_ruler;
 
 static bool read_ruler(const char *text, typed_ruler *ruler) {

@@ -68,7 +68,7 @@ static bool is_in_box(const hl_screen *screen, vec3 place) {
   return within;
 }
 
-/* Whether a volume's mask leaves its matter at a place in the volume's index space. */
+/* Returns whether a volume's mask leaves the volume's matter at a place in the volume's index space. */
 static bool is_in_mask(const hl_screen *screen, vec3 place) {
   const hl_mask *mask = &screen->volume->mask;
   return mask->volume == NULL || hl_mask_factor(mask, affine3_apply(screen->to_mask, place)) > 0;

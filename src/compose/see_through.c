@@ -1,9 +1,9 @@
 /* compose/see_through.c - makes channels of a file translucent that hide other channels of the file, and
  * makes translucent matter thin that hides label maps.
  *
- * A volume is judged at places of its matter that the camera would see if the volume were alone. If other
- * matter leaves almost no light of most of these places, the volume is hidden. The matter that hides it is
- * made so thin that most of the light passes: its transfer function gets a longer unit distance. */
+ * A volume is judged at places of its matter that the camera would see if the volume were alone. If almost no
+ * light of most of these places passes other matter, the volume is hidden. The matter that hides the volume
+ * is made so thin that most of the light passes: its transfer function gets a longer unit distance. */
 #include <math.h>
 #include <stdio.h>
 #include <string.h>
@@ -17,19 +17,19 @@
 #include "guess/sample.h"
 #include "text/stem.h"
 
-/* A volume is hidden if a smaller fraction of its places is seen. */
+/* A volume is hidden if a smaller fraction of its places than this is seen. */
 #define ENOUGH 0.25
 /* The fraction of light below which matter counts as hiding the matter behind it. A volume's own matter hides
  * places that are not at the volume's front; another volume's matter hides the whole volume. */
 #define HIDES 0.3
 /* The fraction of the light that matter lets pass after it has become translucent. */
 #define THROUGH 0.65
-/* The least fraction that is told from nothing. */
+/* The least fraction of light that counts as different from no light. */
 #define LEAST 1e-30
 
 enum { PLACES = 256, TRIED = 16384, NAME_BYTES = 61 };
 
-/* The volumes of a scene, of which some hide others. */
+/* The volumes of a scene that are judged, and the places at which one of them is judged. */
 typedef struct channel_views {
   const hl_scene_description *scene;
   hl_screen *screens; /* owned; [count] */
@@ -63,7 +63,7 @@ static bool find_matter(const hl_screen *screen, uint64_t voxel, double most, ve
   return true;
 }
 
-/* Places that are found one after the other, of which evenly distributed ones are kept. */
+/* The state of a search that finds places one after the other and keeps evenly distributed ones. */
 typedef struct kept_places {
   uint64_t met, every; /* the number of places so far; one of `every` places is kept */
 } kept_places;
@@ -78,8 +78,8 @@ static void keep_place(channel_views *views, kept_places *kept, vec3 point) {
   views->places[views->place_count++] = point;
 }
 
-/* Finds places of the surfaces of a map's labels that face the camera. Labels that are there only to show
- * where others lie do not count. */
+/* Finds places of the surfaces of a map's labels that face the camera. Labels that a legend does not list,
+ * which only show where other labels lie, do not count. */
 static void find_label_places(channel_views *views, const hl_screen *screen) {
   const hl_scene_volume *map = screen->volume;
   const size_t *size = map->volume->dimension;
@@ -122,7 +122,7 @@ static bool is_map(const channel_views *views, size_t volume) {
   return views->scene->volumes[volume].label_count > 0;
 }
 
-/* The middle one of the fractions of light that a volume lets pass from all places. */
+/* The median, over all places, of the fraction of light that a volume lets pass. */
 static hl_status find_middle(hl_context *context, const channel_views *views, const hl_screen *screen,
                              double *middle, hl_error *error) {
   float passing[PLACES];
@@ -135,7 +135,7 @@ static hl_status find_middle(hl_context *context, const channel_views *views, co
   return HL_OK;
 }
 
-/* The fraction of the places from which all other volumes together let light pass. */
+/* The fraction of a volume's places from which enough light passes all other volumes together. */
 static double seen_part(const channel_views *views, size_t of) {
   size_t seen = 0;
   for (size_t p = 0; p < views->place_count; p++) {
@@ -149,9 +149,10 @@ static double seen_part(const channel_views *views, size_t of) {
   return views->place_count > 0 ? (double)seen / (double)views->place_count : 1;
 }
 
-/* If a volume is hidden, makes the volumes thin that hide it. Places of labels are hidden if most of their
- * light is lost, as they lie in matter that is meant to be seen through. Derived: the transmittances of all
- * of them are multiplied, and the factor f makes the transmittance t^f. */
+/* If a volume is hidden, makes the volumes thin that hide it. The places of a label map are not tested for
+ * being hidden, because labels lie in matter that is meant to be seen through: every volume that takes most
+ * of their light is made thin. Derived: the transmittances of all hiding volumes are multiplied, and a factor
+ * f for the extinction makes a transmittance t the transmittance t^f. */
 static hl_status thin_before(hl_context *context, channel_views *views, size_t of, hl_error *error) {
   double middle[HL_CHANNELS_MOST];
   size_t hiding = 0;
@@ -183,7 +184,9 @@ static const char *name_of(const hl_scene_volume *volume, char name[NAME_BYTES])
   return name;
 }
 
-/* Makes volumes that hide others thinner. The option "density" multiplies the result. */
+/* Makes volumes that hide others thinner. The factor in `thin` was found for matter with the option "density"
+ * applied, so the option's number multiplies the thinned extinction once more: otherwise the option would
+ * have no effect. */
 static void make_thin(const hl_composer *composer, const channel_views *views, hl_scene_volume *volumes) {
   const hl_asked *density = &composer->asked[HL_ASK_DENSITY];
   for (size_t v = 0; v < views->count; v++) {
@@ -198,7 +201,8 @@ static void make_thin(const hl_composer *composer, const channel_views *views, h
   }
 }
 
-/* of_maps: whether label maps must be seen; else the volumes of values must see each other. */
+/* Makes all hiding volumes thin. of_maps: whether label maps must be seen; if not, volumes of values must not
+ * hide each other. */
 static hl_status thin_all(const hl_composer *composer, bool of_maps, channel_views *views,
                           hl_scene_volume *volumes) {
   hl_context *context = composer->context;
@@ -241,7 +245,8 @@ static bool has_channels(const hl_composer *composer, const hl_scene_description
   return channels >= 2;
 }
 
-/* Returns whether the scene consists of label maps and of matter that an option's look lets be seen through.
+/* Returns whether the scene consists of label maps and of volumes of values, and the option "look" makes
+ * matter translucent.
  */
 static bool has_labels_in_glass(const hl_composer *composer, const hl_scene_description *scene) {
   const hl_asked *look = &composer->asked[HL_ASK_LOOK];

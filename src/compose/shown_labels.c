@@ -71,8 +71,8 @@ static bool is_whole(const hl_label *label, const hl_shown_label *shown) {
   return label->name != NULL && strcmp(label->name, shown->whole) == 0;
 }
 
-/* Returns whether a label has the name of the item. Upper and lower case count as the same, unless
- * `exactly`. */
+/* Returns whether a label has the name of the item. Unless `exactly`, the function ignores upper and lower
+ * case. */
 static bool has_name(const hl_label *label, const hl_shown_label *shown, bool exactly) {
   if (label->name == NULL) return false;
   return exactly ? strcmp(label->name, shown->name) == 0 : hl_plain_equal(label->name, shown->name);
@@ -100,16 +100,16 @@ static void show_label(hl_shown_label *shown, double opacity, bool exactly, hl_l
   label->tint = 1; /* in a mask, matter takes the label's colour */
 }
 
-/* The opacity of each of `count` bodies that the list shows together by the item "all". opacity: the item's
- * opacity, which is the opacity of all bodies together along a typical path. Derived: of n equal bodies that
- * fill a space, a path meets as a rule the cube root of n. It crosses the skin of each of them twice. The
- * fractions of light that these skins let pass are multiplied. */
+/* The opacity of each of `count` bodies that the item "all" shows together. opacity: the item's opacity,
+ * which is the opacity of all bodies together along a typical path. Derived: of n equal bodies that fill a
+ * space, a path typically meets the cube root of n. The path crosses the skin of each body that it meets
+ * twice. The fractions of light that the skins let pass are multiplied. */
 static double opacity_of_each(double opacity, size_t count) {
   return opacity < 1 ? -hl_expm1(hl_log1p(-opacity) / (2 * hl_cbrt((double)count))) : opacity;
 }
 
-/* Returns whether the item "all" or "rest" shows labels that are no objects to look up in a legend: they are
- * the faint rest around labels that the list names. */
+/* Returns whether the item "all" or "rest" shows labels that need no entry in a legend, because they are the
+ * faint rest around labels that the list names. */
 static bool is_faint_rest(const hl_shown_list *list, const hl_shown_label *all) {
   bool named = false;
   for (size_t s = 0; s < list->count; s++) named |= !list->labels[s].all;
@@ -117,9 +117,9 @@ static bool is_faint_rest(const hl_shown_list *list, const hl_shown_label *all) 
 }
 
 void hl_show_labels(hl_shown_list *list, hl_label *labels, size_t count) {
-  bool exactly[HL_MOST_SHOWN] = {false}; /* for each item, whether it equals the name of a label in every
-                                          * letter's case, because atlases have names that differ only in
-                                          * case */
+  bool exactly[HL_MOST_SHOWN] = {false}; /* for each item, whether the name of a label equals the item's name
+                                          * exactly, because atlases have names that differ only in upper and
+                                          * lower case */
   size_t bodies = 0;
   if (list->count == 0) return;
   for (size_t n = 0; n < count; n++) bodies += labels[n].visible != 0;
@@ -168,8 +168,8 @@ static const char *name_of_label(const void *data, size_t index) {
   return NULL;
 }
 
-/* Writes the labels of the layers, by name or else by value: "liver, tumour, 7". If there is no room for all
- * labels, the text ends with the number of further labels. */
+/* Writes the labels of the layers, each by its name or else by its value: "liver, tumour, 7". If not all
+ * labels are written, the text ends with the number of further labels. */
 static void list_labels(const hl_label_layers *layers, char *text, size_t size) {
   enum { LISTED = 12 };
   size_t used = 0, count = 0;

@@ -21,7 +21,8 @@ static bool names_image(const char *text) {
   return false;
 }
 
-/* Reads ZENITH:HORIZON[:GROUND] or one colour. Returns the number of colours, 0 for any other text. */
+/* Reads ZENITH:HORIZON[:GROUND] or one colour. Returns the number of colours; 0 if the text is something
+ * else. */
 static int read_colors(const char *text, double colors[GRADIENT_COLORS][3]) {
   const hl_setting *setting = hl_setting_find(HL_SETTINGS_SKY, "color");
   for (int count = 0; count < GRADIENT_COLORS; count++) {
@@ -47,8 +48,8 @@ hl_status hl_check_sky(const hl_asked *sky, hl_error *error) {
       sky->text);
 }
 
-/* The colours of an image without alpha. Because the image's colours are premultiplied, the result is the
- * image over black. */
+/* The colours of an image without alpha. Because the image's colours are premultiplied by alpha, the result
+ * is the image over black. */
 static float *take_pixels(hl_context *context, const hl_image *image) {
   size_t count = (size_t)hl_image_width(image) * (size_t)hl_image_height(image);
   const float *from = hl_image_pixels_const(image);
@@ -74,7 +75,7 @@ static hl_status load(const hl_composer *composer, const char *path, hl_sky *sky
   return status;
 }
 
-/* Sets the sky's colours: one colour is an even sky, and black is no sky. */
+/* Sets the sky's colours: a single colour makes an even sky, and black makes no sky. */
 static void set_colors(const char *text, hl_sky *sky) {
   double colors[GRADIENT_COLORS][3];
   int count = read_colors(text, colors);

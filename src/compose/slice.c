@@ -19,9 +19,9 @@
  * the plane. */
 #define SHEET_SPACING 0.125
 
-/* How a slice is seen. */
+/* The direction from which a slice is seen. */
 typedef struct slice_sight {
-  int axis;                 /* across the slice */
+  int axis;                 /* number of the axis across the slice */
   double towards_eye;       /* 1 if the eye stands where the axis' coordinates are greater, else -1 */
   double up[3];             /* the direction that is up in the picture */
   hl_side side, other_side; /* the side of the volumes at which the eye stands, and the side opposite it */
@@ -29,13 +29,13 @@ typedef struct slice_sight {
 
 /* A slice as it was typed. */
 typedef struct typed_slice {
-  int axis;        /* across the slice; -1 if the text is no slice */
+  int axis;        /* number of the axis across the slice; -1 if the text is no slice */
   bool is_of_body; /* whether a body's plane was named in place of an axis */
-  const char *at;  /* the place on the axis, as a text: the user's text, or the middle */
+  const char *at;  /* the place on the axis, as text: the user's text, or "0.5" for the middle */
 } typed_slice;
 
-/* Reads AXIS or AXIS=AT. AXIS is x, y or z, or one of a body's planes: all worlds whose space is known have x
- * from side to side, y from front to back and z along the body. */
+/* Reads AXIS or AXIS=AT. AXIS is x, y or z, or the name of one of a body's planes, because in all worlds
+ * whose space is known, x goes from side to side, y from front to back and z along the body. */
 static typed_slice read_slice(const char *text) {
   static const char *const planes[3] = {"sagittal", "coronal", "axial"};
   const size_t length = strcspn(text, "=");
@@ -50,9 +50,10 @@ static typed_slice read_slice(const char *text) {
   return slice;
 }
 
-/* Finds the sight of a slice across an axis. Where the world is a body's, the axes' letters say which of
- * their ends the eye stands at, and which direction is up: as radiologists look at slices. In other worlds
- * the eye stands at the top, the front or the right, as by "view". */
+/* Finds the direction from which a slice across an axis is seen. In a world whose anatomical space is known,
+ * slices are seen as radiologists look at them: the letters of the space's axes say at which end of the axis
+ * the eye stands, and which direction is up. In other worlds the eye stands at the top, the front or the
+ * right of the volumes, which "view" can name, too. */
 static slice_sight find_sight(const hl_scene_description *description, int axis) {
   const char *letters = hl_space_name(hl_scene_space(description));
   const double front = letters != NULL && letters[1] == 'A' ? 1 : -1;
@@ -63,8 +64,9 @@ static slice_sight find_sight(const hl_scene_description *description, int axis)
   return (slice_sight){0, letters[0] == 'L' ? 1 : -1, {0, 0, 1}, HL_SIDE_LEFT, HL_SIDE_RIGHT};
 }
 
-/* The sight of the slice that is asked for; "view" may ask for the opposite side. Across z of a world that is
- * no body's, the opposite side turns the picture over about its x. */
+/* The direction from which the slice of the option "slice" is seen; "view" may ask for the opposite side.
+ * Seen from the opposite side, a slice across z, in a world without anatomical space, has the opposite
+ * direction up, so that x still goes to the right. */
 static slice_sight asked_sight(const hl_asked *asked, const hl_scene_description *description) {
   const hl_asked *view = &asked[HL_ASK_VIEW];
   slice_sight sight = find_sight(description, read_slice(asked[HL_ASK_SLICE].text).axis);
@@ -131,7 +133,8 @@ hl_status hl_expand_slice(const hl_scene_description *description, hl_asked *ask
   if (planes->count == HL_ASK_MOST_TEXTS)
     return hl_fail(error, HL_ERROR_ARGUMENT, "--slice: there is no room for one more --cut-plane");
   const typed_slice slice = read_slice(asked[HL_ASK_SLICE].text);
-  const bool measured = slice.at[strspn(slice.at, "+-.0123456789")] != '\0'; /* a length, and no fraction */
+  const bool measured = slice.at[strspn(slice.at, "+-.0123456789")] != '\0'; /* whether the place is a length,
+                                                                              * and not a fraction */
   const bool unitless = measured && !asked[HL_ASK_UNIT].given && !(hl_scene_world_metres(description) > 0);
   if (slice.is_of_body && hl_scene_space(description) == HL_SPACE_UNKNOWN)
     return hl_fail(
@@ -205,9 +208,9 @@ size_t hl_slice_layer(const hl_composer *composer, const hl_scene_description *d
   return mapped ? before + 1 : 0;
 }
 
-/* Derived: where several volumes are at one place, their colours are mixed by their extinctions. A layer of a
- * slice has `denser` times the extinction of the layer under it. The colour of the picture then differs from
- * the colour of the uppermost layer by a ten-thousandth at most. */
+/* Derived: where several volumes have matter at one place, their colours are mixed in proportion to their
+ * extinctions. A layer of a slice has `denser` times the extinction of the layer under it. The colour of the
+ * picture then differs from the colour of the uppermost layer by a ten-thousandth at most. */
 void hl_lay_slice_over(size_t below, hl_transfer_function *function) {
   static const double denser = 1e4;
   hl_opacity_point *points = (hl_opacity_point *)function->opacity;

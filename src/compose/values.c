@@ -19,8 +19,8 @@ static bool asks_for_values(const hl_composer *composer, const hl_scene_volume *
   return asked[HL_ASK_MASK].given || (asked[HL_ASK_LOOK].given && asked[HL_ASK_LOOK].choice == HL_LOOK_MIP);
 }
 
-/* Makes volumes of values of the label maps whose values options ask for: removes their labels, and gives
- * them the transfer function and material for their values. The scene then has the kernel that suits the
+/* Turns the label maps whose values options ask for into volumes of values: removes the labels, and gives
+ * each volume the transfer function and material for its values. The scene then has the kernel that suits the
  * first volume's values. functions: [description->volume_count], zeroed; the caller owns their points, also
  * after a failure. */
 static hl_status take_labels_off(const hl_composer *composer, hl_scene_volume *volumes,

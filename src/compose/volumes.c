@@ -80,15 +80,16 @@ static hl_status change_volume(const hl_composer *composer, const hl_scene_descr
   return hl_compose_isosurfaces(composer, index, volume, own);
 }
 
-/* The number of planes by which hl_scene_for_volume() has cut bare volumes. Must be called before the
- * options' cuts are added. */
+/* The number of planes by which hl_scene_for_volume() has cut bare volumes. The function must be called
+ * before the options' cuts are added. */
 static size_t count_holder_planes(const hl_scene_description *description) {
   size_t planes = 0;
   for (size_t v = 0; v < description->volume_count; v++) planes += description->volumes[v].cut_count;
   return planes;
 }
 
-/* Finds the small bodies that hl_scene_for_volume() has hidden in bare volumes. */
+/* Counts the small bodies that hl_scene_for_volume() has hidden in bare volumes. *share: raised to the
+ * greatest fraction of a volume's bodies' voxels that is hidden. */
 static size_t count_scraps(const hl_scene_description *description, double *share) {
   size_t bodies = 0;
   for (size_t v = 0; v < description->volume_count; v++) {
@@ -107,7 +108,7 @@ static bool shows_whole(const hl_composer *composer) {
   return composer->bare && composer->asked[HL_ASK_WHOLE].given;
 }
 
-/* Logs that parts of a bare volume are cut off. */
+/* Logs that the holders of a bare volume's object are cut off. */
 static void tell_of_holders(const hl_composer *composer, const hl_scene_description *description) {
   size_t planes = count_holder_planes(description);
   if (composer->bare && planes > 0 && !shows_whole(composer))
@@ -151,16 +152,17 @@ static bool shows_film(const hl_composer *composer, const hl_scene_description *
   return found;
 }
 
-/* Applies "density": matter absorbs and sends this number of times as much light on the same path. Derived:
- * opacity o per distance u is the extinction -ln(1 - o) / u. Labels keep their own opacities. */
+/* Applies "density": the option's number multiplies the extinction of matter, and with it the light that
+ * matter absorbs and sends. Derived: opacity o per distance u is the extinction -ln(1 - o) / u. Labels keep
+ * their own opacities. */
 static void change_density(const hl_composer *composer, hl_scene_volume *volume) {
   const hl_asked *density = &composer->asked[HL_ASK_DENSITY];
   if (density->given && volume->label_count == 0)
     volume->transfer_function.unit_distance /= density->number[0];
 }
 
-/* Allocates the arrays for everything that may change. The array of cuts has room for the cuts that are there
- * already, and for all of the options' cuts in the scene and in each volume. */
+/* Allocates the arrays for everything that may change. The array of cuts has room for the cuts that the scene
+ * and its volumes already have, and for all of the options' cuts in the scene and in each volume. */
 static hl_status make_room(const hl_composer *composer, const hl_scene_description *description,
                            hl_changed_volumes *changed) {
   hl_context *context = composer->context;

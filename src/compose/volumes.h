@@ -5,10 +5,10 @@
 
 #include "compose/composer.h"
 
-/* The arrays of changed volumes, all of them owned. An array is null if no option asks for it. */
+/* The arrays of changed volumes. The struct owns all arrays. An array is null if no option needs it. */
 typedef struct hl_changed_volumes {
   hl_scene_volume *volumes;        /* [count] */
-  hl_transfer_function *functions; /* [count]; with their points */
+  hl_transfer_function *functions; /* [count]; transfer functions, which own their points */
   hl_isosurface *surfaces;         /* [count][values of "iso"] */
   hl_cut *cuts; /* all cuts, including the options' cuts: first the cuts of a scene of several volumes, then
                  * the cuts of each volume */

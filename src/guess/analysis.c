@@ -1,11 +1,11 @@
 /* guess/analysis.c - finds the kind of data in a volume, and the values that divide objects from their
  * background.
  *
- * Nothing here depends on the data's scale and offset. The background is the commonest value on the grid's
- * faces. Two thresholds of the distance from the background find the objects. Voxels may belong to objects
- * beyond the threshold of least cross entropy, and surely do beyond the threshold of greatest variance
- * between classes. Smoothness and the shape of the histogram distinguish simulations, media and scanned
- * objects. */
+ * The analysis does not depend on the data's scale and offset. The background is the commonest value on the
+ * grid's faces. Two thresholds of a value's distance from the background find the objects. Voxels beyond the
+ * threshold of least cross entropy may belong to objects. Voxels beyond the threshold of greatest variance
+ * between classes surely belong to objects. Smoothness and the shape of the histogram distinguish
+ * simulations, media and scanned objects. */
 #include "guess/analysis.h"
 
 #include <math.h>
@@ -25,14 +25,15 @@
 /* The least roughness of smoke on fine grids; 0.50 to 0.58 was measured on grids of 200 to 320 voxels. */
 #define FOG   0.4
 #define NOISY 1.2 /* a roughness that no simulated turbulence exceeds; white noise has 1.7 */
-/* The fraction of the voxels below `lower`. It is also the fraction of the voxels above `upper`. */
+/* The fraction of the voxels whose values lie below the middle by more than the distance `lower`, and the
+ * fraction of the voxels whose values lie above the middle by more than the distance `upper`. */
 #define TAIL 0.005
-/* A noise that every scanner's data exceed, as a fraction of top; 8-bit values have half of it by
- * rounding. */
+/* A noise that every scanner's data exceed, as a fraction of top. Rounding gives 8-bit values half of this
+ * noise. */
 #define CALM 0.003
 #define PEAK 1.2 /* least ratio of a histogram's peak to the valley before it */
-/* Least ratio for peaks of materials in data without noise; saddles of fields have 1.5, materials 2.1
- * (measured). */
+/* Least ratio for peaks of materials in data without noise; saddles of fields have the ratio 1.5, materials
+ * have the ratio 2.1 (measured). */
 #define HUMP  1.75
 #define LOBES 0.08  /* the greatest fraction of the voxels that the lobes of a signed quantity show */
 #define FLOOR 0.002 /* least mean of the background, as a fraction of top */
@@ -42,8 +43,8 @@ typedef struct distances {
   size_t count;
 } distances;
 
-/* Measures the distances of a sample's values from the background, in ascending order. Only one direction
- * counts: values on the other side of the background get 0. */
+/* Measures the distances of a sample's values from the background, in ascending order. Values on the side of
+ * the background that `direction` does not point to get the distance 0. */
 static void measure(const float *values, size_t count, double background, double direction, float *distance) {
   for (size_t n = 0; n < count; n++) {
     size_t from = direction > 0 ? n : count - 1 - n;
@@ -108,8 +109,8 @@ static bool has_one_body(const distances *d, double low, double high) {
   return most > 0.4 * sum;
 }
 
-/* A distance from the background that the noise at the grid's border hardly reaches. Most of the border must
- * be background. */
+/* A distance from the background that the noise at the grid's border hardly reaches. Most of the border's
+ * voxels must be background. */
 static double border_noise(const float *border, size_t count) {
   if (count == 0) return 0;
   double middle = hl_quantile(border, count, 0.5), upper = hl_quantile(border, count, 0.75);
@@ -173,7 +174,7 @@ static bool is_floating(const hl_volume *volume) {
 typedef struct spread {
   double low, high;  /* nearly all voxels have values from `low` to `high` */
   double zero;       /* the data value 0 */
-  bool fills, signs; /* fills: whether there is no air around the matter; signs: whether there are many values
+  bool fills, signs; /* fills: whether the matter has no air around it; signs: whether many voxels have values
                       * on both sides of the data value 0 */
 } spread;
 
@@ -189,8 +190,8 @@ static spread spread_of(const hl_sample *sample, double background) {
 }
 
 /* Returns true if the volume is a flow: its values fill the grid, and they are smooth, or rough with a single
- * peak in their histogram. (Scanned data have noise, too, but several peaks.) distance: scratch,
- * [sample->count]. */
+ * peak in their histogram. (Scanned data are rough, too, but their histogram has several peaks.) distance:
+ * scratch, [sample->count]. */
 static bool is_flow(const hl_volume *volume, const hl_sample *sample, const spread *s, double mode,
                     float *distance) {
   if (!s->fills || !is_floating(volume) || !is_continuous(sample)) return false;
@@ -203,9 +204,9 @@ static bool is_flow(const hl_volume *volume, const hl_sample *sample, const spre
   return roughness < NOISY && one_peak && falls(&d, 0.02, fmax(s->high - mode, 0.03), PEAK);
 }
 
-/* Returns true if many of the objects' voxels have the greatest value. They are then the inside of a solid
- * shape. Fewer of them are enough in smooth data with more levels than bytes have, because in bytes the
- * maxima of a field may be clipped. */
+/* Returns true if so many of the objects' voxels have the greatest value that these voxels are the inside of
+ * a solid shape. In smooth data with more levels than bytes have, a tenth of the objects' voxels is enough;
+ * in other data three tenths are needed, because bytes may clip the maxima of a field. */
 static bool is_filled_up(const hl_sample *sample, const distances *d, const hl_data_analysis *a,
                          double roughness) {
   const double least = roughness < SMOOTH && is_continuous(sample) ? 0.1 : 0.3;
@@ -215,9 +216,9 @@ static bool is_filled_up(const hl_sample *sample, const distances *d, const hl_d
   return (double)greatest > least * (double)things;
 }
 
-/* Returns true if the objects are a smooth quantity that falls off from its maxima. If the histogram does not
- * tell this, noise decides: with a scanner's noise, the histogram's bumps are materials; without it, they are
- * saddles between the maxima of a field. */
+/* Returns true if the objects are a smooth quantity that falls off from its maxima. If the histogram has low
+ * bumps, noise decides: in data with a scanner's noise, the bumps are materials; in data without noise, the
+ * bumps are saddles between the maxima of a field. */
 static hl_status falls_off(const hl_volume *volume, const hl_sample *sample, const distances *d,
                            const hl_data_analysis *a, bool *falling, hl_error *error) {
   double noise = 0;
@@ -229,9 +230,10 @@ static hl_status falls_off(const hl_volume *volume, const hl_sample *sample, con
   return status;
 }
 
-/* Returns whether the data are the density of a fog, as the file says. The file's word counts where the data
- * have no other sign than that they are smooth or filled up: they fall off from their maxima or are solid,
- * and nothing is below 0, which is empty. A scan's materials and a signed quantity remain as they are. */
+/* Returns whether the file says that the data are the density of a fog, and no value contradicts the file: no
+ * value is below 0, which is empty, and objects have values above the background. kind_of() believes the file
+ * only about data that are smooth, solid, or fall off from their maxima; a scan's materials remain surfaces.
+ */
 static bool is_fog(const hl_volume *volume, const hl_data_analysis *a) {
   return volume->says_fog && volume->minimum >= 0 && a->direction > 0;
 }
@@ -250,8 +252,8 @@ static hl_data_kind kind_of(const hl_volume *volume, const hl_sample *sample, co
 }
 
 /* Returns true if objects have values on both sides of the background (lobes), these values become rarer with
- * the distance, and they are not a scanner's noise. It is not enough that values lie on both sides of the
- * data value 0: in such data the commonest value may be a material, and air has low values. */
+ * the distance, and they are not a scanner's noise. Values on both sides of the data value 0 alone do not
+ * make lobes: the commonest value may be a material, around which air has low values. */
 static bool has_lobes(const hl_volume *volume, const hl_sample *sample, const spread *s, double background,
                       float *distance) {
   double above = s->high - background, below = background - s->low;
@@ -264,8 +266,8 @@ static bool has_lobes(const hl_volume *volume, const hl_sample *sample, const sp
   return thins && falls(&d, 0.02, above, PEAK) && hl_roughness(volume, sample, background, 0) < NOISY;
 }
 
-/* Chooses the side of the background on which the objects lie. If many values lie on both sides but they are
- * no lobes, the lowest value becomes the background. */
+/* Chooses the side of the background on which the objects lie. If many values lie on both sides of the
+ * background but the values are no lobes, the lowest value becomes the background. */
 static void choose_side(const spread *s, bool lobes, hl_data_analysis *a) {
   double above = s->high - a->background, below = a->background - s->low;
   a->direction = above >= below ? 1 : -1;
@@ -386,14 +388,14 @@ static hl_status analyse(const hl_volume *volume, hl_data_analysis *analysis, hl
   return may_be_labels ? hl_data_find_labels(volume, analysis, error) : status;
 }
 
-/* Keeps a copy of the analysis with the volume. Although the volume is constant, its analysis may be added
- * once. */
+/* Keeps a copy of the analysis with the volume. The analysis may be added once to a volume that is otherwise
+ * constant. */
 hl_status hl_data_keep(const hl_volume *volume, const hl_data_analysis *analysis, hl_error *error) {
   hl_data_analysis *kept = hl_allocate(volume->context, 1, sizeof *kept), *before = NULL;
   if (kept == NULL) return hl_fail_memory(error, sizeof *kept, "the analysis of a volume");
   *kept = *analysis;
   if (!atomic_compare_exchange_strong(&((hl_volume *)volume)->analysis, &before, kept))
-    hl_release(volume->context, kept); /* another thread kept one before */
+    hl_release(volume->context, kept); /* another thread kept its analysis first */
   return HL_OK;
 }
 
@@ -409,21 +411,22 @@ hl_status hl_data_analyse(const hl_volume *volume, hl_data_analysis *analysis, h
 
 /* ---- label maps: few whole numbers, each in blocks, or whole numbers that the file says are labels.
  *
- * Noise and the edges of smooth shapes may be whole numbers too, but there few neighbours are equal. */
+ * * Noise and the edges of smooth shapes may be whole numbers too, but few neighbouring voxels of noise and
+ * edges have equal values. */
 
 /* A label lies in blocks if more than this fraction of its voxels' neighbours has the same label. */
 #define IN_BLOCKS 0.5
 
 typedef struct tally {
   int64_t value;
-  unsigned int seen, shared; /* number of neighbours of voxels with this value; number of these neighbours
-                              * that have the same value */
+  unsigned int seen, shared; /* seen: number of neighbours of voxels with this value; shared: number of these
+                              * neighbours that have the value, too */
 } tally;
 
 enum { TALLIES = 4 * HL_FEW_LABELS, NO_ROOM = -1 };
 
-/* A hash table of the values that were met. If a value's place is taken by another value, the next free place
- * is used. */
+/* A hash table of the values that were met. If another value has taken a value's place, the value gets the
+ * next free place. */
 typedef struct value_table {
   tally tallies[TALLIES]; /* a place is free if `seen` is 0 */
   size_t count;
@@ -441,8 +444,8 @@ static int place_of(value_table *table, int64_t value) {
 }
 
 /* MOST_REPEATED: the greatest number of repetitions that is looked for. LEAST_REPEATED: the least number of
- * voxels, without repetitions, along an axis that is examined. With fewer voxels, as in a map of a few
- * plates, repetitions would be found by chance. */
+ * voxels, without repetitions, along an axis that is examined. Along an axis with fewer voxels, as in a map
+ * of a few plates, repetitions would be found by chance. */
 enum { MOST_REPEATED = 8, LEAST_REPEATED = 8 };
 
 /* Returns whether each voxel is repeated `count` times along an axis, as in a volume that was enlarged by
@@ -498,9 +501,8 @@ static int compare_values(const void *a, const void *b) {
   return x < y ? -1 : x > y;
 }
 
-/* Lists the labels in rising order: all values but the background. If there are more labels than
- * HL_FEW_LABELS, only some of them are listed. Returns whether there are labels, and most of them lie in
- * blocks. */
+/* Lists the labels in rising order: all values but the background. Of more labels than HL_FEW_LABELS, only
+ * some are listed. Returns whether the map has labels, most of which lie in blocks. */
 static bool list(const value_table *table, double background, hl_data_analysis *a) {
   size_t found = 0, in_blocks = 0;
   for (size_t t = 0; t < TALLIES && found < HL_FEW_LABELS; t++) {

@@ -15,7 +15,7 @@ typedef enum hl_data_kind {
                          * functions */
   HL_DATA_MEDIUM = 3,   /* smoke and clouds */
   HL_DATA_CONSTANT = 4, /* one value everywhere */
-  HL_DATA_LABELS = 5,   /* few whole numbers, in blocks: names of regions, not amounts */
+  HL_DATA_LABELS = 5,   /* few whole numbers, in blocks: the values are names of regions, not amounts */
   HL_DATA_FLOW = 6,     /* a smooth quantity that fills its grid: turbulence, speed, temperature */
   HL_DATA_PARTICLES = 7 /* the logarithm of the density of particles, over decades */
 } hl_data_kind;
@@ -34,11 +34,14 @@ typedef struct hl_data_analysis {
   double solid;       /* distance beyond which voxels surely belong to objects */
   double dense;       /* distance that divides the objects into two materials */
   double dense_share; /* fraction of the voxels beyond solid that lie beyond dense */
-  double light_mean;  /* the mean distance of the voxels between solid and dense; dense if there are none */
-  double dense_mean;  /* the mean distance of the voxels beyond dense; dense if there are none */
+  double light_mean;  /* the mean distance of the voxels between solid and dense; equal to dense if no voxels
+                       * lie between */
+  double dense_mean;  /* the mean distance of the voxels beyond dense; equal to dense if no voxels lie
+                       * beyond */
   double top;         /* distance that almost no voxel exceeds */
   double mean;        /* mean distance of the voxels beyond faint */
-  double vessels;     /* distance beyond which matter is vessels within other matter; 0 if there are none */
+  double vessels;     /* distance beyond which matter is vessels within other matter; 0 if the volume shows no
+                       * vessels */
   double depth;       /* voxel edges across the objects: cube root of their number of voxels */
   double common;      /* fraction of the voxels whose value lies within two fifths of lower and upper around
                        * the middle */
@@ -61,8 +64,8 @@ typedef struct hl_data_analysis {
   int material_count; /* number of materials of scanned objects; 0 if they were not looked for */
 } hl_data_analysis;
 
-/* Analyses a volume's voxels. This is done once, and the volume keeps the result. Fails for lack of memory,
- * and when cancelled. */
+/* Analyses a volume's voxels. The first call analyses them, and the volume keeps the result for later calls.
+ * Fails for lack of memory, and when cancelled. */
 hl_status hl_data_analyse(const hl_volume *volume, hl_data_analysis *analysis, hl_error *error);
 
 /* Gives a volume the analysis of another volume, which shows the same objects. */
@@ -79,9 +82,9 @@ double hl_data_find_vessels(const hl_volume *volume, const hl_sample *sample, co
                             const hl_data_analysis *analysis);
 
 /* Lowers the thresholds faint and solid of scanned objects to the rim of the objects' outer matter, if the
- * thresholds lie within the values of that matter. This happens if skin is much darker than the matter under
- * it. Returns whether the thresholds were lowered. All distances are relative. noise: a distance that the
- * noise around the objects hardly reaches. */
+ * thresholds lie within the values of that matter. The thresholds lie too high if skin is much darker than
+ * the matter under it. Returns whether the thresholds were lowered. All distances are relative. noise: a
+ * distance that the noise around the objects hardly reaches. */
 bool hl_data_find_rim(const hl_volume *volume, const hl_sample *sample, double noise,
                       hl_data_analysis *analysis);
 
@@ -91,16 +94,18 @@ hl_status hl_data_find_boundary(const hl_volume *volume, const hl_sample *sample
                                 hl_error *error);
 
 /* The least value of `cliffs` in objects that were cut out voxel by voxel, as a brain without its skull is.
- * Measured: four such objects have .21 to .96; eleven objects with natural rims have at most .07. */
+ * Measured: in four objects that were cut out, `cliffs` is .21 to .96; in eleven objects with natural rims,
+ * `cliffs` is at most .07. */
 #define HL_CUT_OUT 0.15
 
 /* Returns true if the grid cuts objects off, as it cuts a head off at the neck. A brain without its skull is
  * not cut off. */
 static inline bool hl_data_is_cut_off(const hl_data_analysis *analysis) { return analysis->cut_off >= 0.02; }
 
-/* Derived: Otsu's threshold divides the values of one material with noise into halves, whose means differ by
- * 1.6 standard deviations. So one material with noise of up to a sixth of its distance has at most this ratio
- * between the halves. Two materials have more; eleven scans have 1.5 to 3.2 (measured). */
+/* Derived: Otsu's threshold divides the values of one material with noise into halves, whose means differ
+ * by 1.6 standard deviations. So one material with noise of up to a sixth of its distance has at most this
+ * ratio between the halves' means. Scans of two materials have greater ratios: 1.5 to 3.2 in eleven scans
+ * (measured). */
 #define HL_ONE_MATERIAL 1.25
 
 /* Returns whether scanned objects are one material for the most part. */
@@ -133,8 +138,8 @@ static inline bool hl_data_is_named(const hl_volume *volume, const hl_data_analy
   return volume->segment_count > 0 || analysis->kind == HL_DATA_LABELS;
 }
 
-/* Returns whether a volume is drawn by its labels if nothing else is asked for. A mask is, though its two
- * values have a mean: the fraction of its object. */
+/* Returns whether a volume is drawn by its labels if nothing else is asked for. A mask is drawn by its label,
+ * although its two values have a mean, which is the fraction of its object. */
 static inline bool hl_data_is_label_map(const hl_volume *volume, const hl_data_analysis *analysis) {
   return hl_data_is_named(volume, analysis) || analysis->is_mask;
 }

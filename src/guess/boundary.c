@@ -1,11 +1,11 @@
 /* guess/boundary.c - finds whether the surface of scanned objects was cut out voxel by voxel, is sharp, or is
  * grainy by noise.
  *
- * A brain without its skull was cut out: around it all voxels have exactly one value, and the first voxel
- * inside is almost as bright as the matter within. A scanned object with a natural rim has voxels with values
- * between. The rim is sharp if most of the way from background to matter lies between two neighbouring
- * voxels. Voxels then stand too far apart for the rim. Noise moves the place at which the values pass a
- * threshold. */
+ * A brain without its skull was cut out: around the brain all voxels have exactly one value, and the first
+ * voxel inside is almost as bright as the matter within. A scanned object with a natural rim has voxels with
+ * values between background and matter. The rim is sharp if most of the way from background to matter lies
+ * between two neighbouring voxels. At a sharp rim, voxels stand too far apart to show how values rise. Noise
+ * moves the place at which the values pass a threshold. */
 #include <math.h>
 
 #include "guess/analysis.h"
@@ -51,13 +51,14 @@ static double share_of_cliffs(const hl_volume *volume, const hl_sample *sample, 
   return count.steps > 0 ? (double)count.cliffs / (double)count.steps : 0;
 }
 
-/* The sum of the shares of a row of steps, and their number. */
+/* The sum of the shares of steps between neighbouring voxels (add_share()), and the number of steps. */
 typedef struct step_shares {
   double sum;
   size_t count;
 } step_shares;
 
-/* A voxel's value at a number of voxels along one axis and another number along a second axis. */
+/* The value of the voxel that lies `steps` voxels along one axis and `aside` voxels along another axis from a
+ * voxel. */
 static double value_beside(const hl_volume *volume, const size_t at[3], int axis, int steps, int other,
                            int aside) {
   size_t place[3] = {at[0], at[1], at[2]};
@@ -81,9 +82,10 @@ static bool faces_axis(const hl_volume *volume, const size_t at[3], int axis, do
 }
 
 /* Adds the share of the step between a voxel and the next one along an axis, if the values pass the level
- * there: its part of the step over three voxel edges, which begins one voxel earlier and ends one voxel
- * later. Noise can make the share greater than 1. If the values return within the three edges, matter is one
- * voxel thin. Its share is 0, because smoothing would remove such matter. */
+ * between the two voxels. The share is the step's fraction of the longer step over three voxel edges, which
+ * begins one voxel earlier and ends one voxel later. Noise can make the share greater than 1. If the values
+ * return within the three edges, matter is one voxel thin. The share is then 0, because smoothing would
+ * remove such matter. */
 static void add_share(const hl_volume *volume, const size_t at[3], int axis, double level,
                       step_shares *made) {
   const int other = (axis + 1) % 3;
@@ -97,7 +99,7 @@ static void add_share(const hl_volume *volume, const size_t at[3], int axis, dou
   made->count++;
 }
 
-/* The mean share of the steps at which the values pass a level; if 0, they pass it nowhere. */
+/* The mean share of the steps at which the values pass a level; 0 if the values pass the level nowhere. */
 static double share_of_steps(const hl_volume *volume, const hl_sample *sample, double level) {
   const size_t *n = volume->dimension;
   step_shares made = {0, 0};
@@ -108,10 +110,10 @@ static double share_of_steps(const hl_volume *volume, const hl_sample *sample, d
   return made.count > 0 ? made.sum / (double)made.count : 0;
 }
 
-/* The mean slope, per voxel edge, of the values at the places where they pass a level; if 0, they pass the
- * level nowhere. Derived: a slope g in any direction is a difference g cos(t) along an axis, and a pair of
- * neighbours lies on both sides of the level with a probability in proportion to |cos(t)|. So the mean
- * difference of such pairs is g <cos^2> / <|cos|> = g (1/3) / (1/2) over all directions. */
+/* The mean slope, per voxel edge, of the values at the places where the values pass a level; 0 if the values
+ * pass the level nowhere. Derived: a slope g in any direction is a difference g cos(t) along an axis, and a
+ * pair of neighbours lies on both sides of the level with a probability in proportion to |cos(t)|. So the
+ * mean difference of such pairs is g <cos^2> / <|cos|> = g (1/3) / (1/2) over all directions. */
 static double slope_at(const hl_volume *volume, const hl_sample *sample, double level) {
   const size_t *n = volume->dimension;
   double sum = 0, pairs = 0;

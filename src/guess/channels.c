@@ -27,7 +27,7 @@ typedef struct joined_volumes {
   size_t count;
 } joined_volumes;
 
-/* Names a volume after its file: "head" for scans/head.nii.gz. */
+/* Names a volume after its file: a volume of scans/head.nii.gz is named "head". */
 static void name_after_file(const hl_scene_volume *volume, size_t index, char name[NAME_BYTES]) {
   size_t length;
   const char *stem = hl_stem(volume->file != NULL ? volume->file : "", &length);
@@ -109,7 +109,7 @@ static void convert_lengths(double factor, hl_scene_volume *volume) {
   volume->transfer_function.unit_distance *= factor;
 }
 
-/* The unit of lengths of the first scene whose files tell one, in metres; 0 if there is none. */
+/* The unit of lengths of the first scene whose files tell a unit, in metres; 0 if no file tells a unit. */
 static double common_metres(hl_scene *const *scenes, size_t count) {
   double metres = 0;
   for (size_t n = 0; n < count && !(metres > 0); n++) metres = hl_scene_world_metres(&scenes[n]->description);
@@ -167,8 +167,8 @@ hl_status hl_scene_join(hl_context *context, hl_scene *const *scenes, size_t cou
 
 /* ---- colours ---- */
 
-/* Finds the colour that a volume's file gives the channel from which the volume was read. Returns false if it
- * gives none. */
+/* Finds the colour that a volume's file gives the channel from which the volume was read. Returns false if
+ * the file gives the channel no colour. */
 static bool told_color(const hl_volume *volume, double srgb[3]) {
   if (volume == NULL || volume->channels == NULL) return false;
   const hl_channel *channel = &volume->channels[volume->selection.channel];
@@ -176,7 +176,7 @@ static bool told_color(const hl_volume *volume, double srgb[3]) {
   return channel->has_color;
 }
 
-/* Returns whether the files give each volume a colour, and no colour twice. */
+/* Returns whether the files give each volume a colour, and no two volumes the same colour. */
 static bool colors_differ(const hl_scene_description *description) {
   double own[3], other[3];
   for (size_t n = 0; n < description->volume_count; n++) {
@@ -235,7 +235,7 @@ static hl_status name_channel(channel_scenes *made, const hl_volume *volume, hl_
   return HL_OK;
 }
 
-/* Refuses a channel that is there already, by its number or by its name. */
+/* Refuses a channel that has a scene already, whether its number or its name was given. */
 static hl_status refuse_again(const channel_scenes *made, const hl_volume *volume, hl_error *error) {
   for (size_t n = 0; n < made->count; n++)
     if (made->scenes[n]->description.volumes[0].channel == volume->selection.channel)
@@ -295,15 +295,15 @@ static hl_status add_all(channel_scenes *made, hl_error *error) {
 }
 
 /* The length of the longest beginning of a list that ends before a comma and is shorter than `below`; 0 if
- * there is none. */
+ * the list has no such beginning. */
 static size_t shorter_beginning(const char *list, size_t below) {
   while (below > 0 && list[--below] != ',') {}
   return below;
 }
 
 /* Makes the scene of the channel that a list begins with. The name of a channel may hold commas. The longest
- * beginning of the list that is a channel's name counts. If there is none, the error is that of the shortest
- * beginning. *length: the length of the name. */
+ * beginning of the list that is a channel's name counts. If no beginning is a channel's name, the error is
+ * the one for the shortest beginning. *length: the length of the name. */
 static hl_status add_first(channel_scenes *made, const char *list, size_t *length, hl_error *error) {
   hl_status status;
   char name[HL_CHANNEL_NAME_BYTES];

@@ -3,8 +3,8 @@
 
 #include "scene/geometry/placement.h"
 
-/* The direction away from the inside of a shape, at a point near its face. For a box it is the direction of
- * the axis along which the point lies farthest outwards. */
+/* The direction away from the inside of a shape, at a point near its face. For a box, the direction lies
+ * along the axis along which the point lies farthest outwards. */
 static vec3 out_of_shape(const cut_shape *cut, vec3 point) {
   const mat3 *to_shape = &cut->to_shape.linear;
   vec3 q = affine3_apply(cut->to_shape, point);

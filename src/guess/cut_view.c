@@ -68,7 +68,7 @@ static void add_clip(face_normals *faces, const hl_scene_volume *volume) {
 }
 
 /* The sum, over the faces that an eye sees from their front, of the cosines at which the eye and a key light
- * see them. The light goes with the eye. */
+ * see each face. The key light turns with the eye. */
 static double shown(const face_normals *faces, const hl_light *light, const hl_view *view) {
   vec3 right, up, forward;
   hl_view_axes(view, &right, &up, &forward);

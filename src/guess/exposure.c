@@ -1,9 +1,9 @@
 /* guess/exposure.c - estimates the brightness of a picture and the thickness of the surfaces in it by
  * marching a few thousand rays.
  *
- * Steps are as long as the shortest voxel edge. A sample is the B-spline at the nearest voxel's centre. It is
- * lit as by the renderer (docs/scene.md, "Brightness and colour"), but without computing shadows: the caller
- * gives one fraction for all of them. */
+ * Steps are as long as the shortest voxel edge. A sample is the B-spline at the nearest voxel's centre. A
+ * sample is lit as by the renderer (docs/scene.md, "Brightness and colour"), but shadows are not computed:
+ * the caller gives one fraction of light that stands for all shadows. */
 #include "guess/exposure.h"
 
 #include <stdlib.h>
@@ -20,8 +20,9 @@
 #include "scene/scene.h"
 #include "volume/colors.h"
 
-#define TARGET 0.871 /* linear light of 240 of 255, IEC 61966-2-1 */
-/* The exposure brings one pixel to TARGET. This fraction of all pixels are darker than that pixel. */
+#define TARGET 0.871 /* linear light of the code 240 of 255, IEC 61966-2-1 */
+/* The exposure brings the brightness of one pixel to TARGET. This fraction of the pixels that show matter are
+ * darker than that pixel. */
 #define BRIGHTEST 0.99
 /* The least factors of an exposure. A cloud that glows inside may be four times as bright as a white surface.
  */
@@ -46,7 +47,7 @@ typedef struct exposure {
                               * spite of shadows, as a fraction */
   double step;               /* world units */
   double empty;              /* a value of the invisible surroundings */
-  hl_glow glow; /* the light in a medium that scatters it again and again; empty in other media */
+  hl_glow glow; /* the light in a medium that scatters light again and again; empty in other media */
   double flat;  /* a sample whose gradient is at most this long is no surface; values per world unit */
   double opacity[TABLE], color[TABLE][3]; /* entries over the volume's range */
 } exposure;
@@ -102,8 +103,8 @@ typedef struct sample_light {
   bool surface;
   vec3 normal;
   double left[MOST_LIGHTS], sky; /* the fraction of each light, and of the sky, that reaches the sample */
-  double glow;                   /* the light of all lights and of the sky, in place of these fractions, in a
-                                  * medium that scatters light again and again */
+  double glow;                   /* the light of all lights and of the sky in a medium that scatters light
+                                  * again and again; it takes the place of the fractions `left` and `sky` */
 } sample_light;
 
 static sample_light light_by_gradient(const exposure *e, double value, vec3 gradient) {
@@ -147,7 +148,7 @@ static void shade(const exposure *e, const double color[3], const sample_light *
 }
 
 /* Finds the distances along a ray, in lengths of `along` and from 0 on, at which the ray enters and leaves
- * the volume's box; false if it misses the box. */
+ * the volume's box. Returns false if the ray misses the box. */
 static bool cross_box(const exposure *e, vec3 from, vec3 along, double part[2]) {
   const double origin[3] = {from.x, from.y, from.z}, direction[3] = {along.x, along.y, along.z};
   part[0] = 0, part[1] = INFINITY;
@@ -161,7 +162,7 @@ static bool cross_box(const exposure *e, vec3 from, vec3 along, double part[2]) 
 }
 
 /* The thickness of a surface in steps: the depth, below the place where matter begins to be visible, at which
- * the optical depth becomes 1. It is assumed that values go on rising as steeply as at a sample. The
+ * the optical depth becomes 1. The estimate assumes that values go on rising as steeply as at a sample. The
  * thickness is infinite if matter of any depth stays transparent. steepness: values per step. */
 static double thickness_at(const exposure *e, int entry, double value, double steepness) {
   const hl_volume *volume = e->volume->volume;
@@ -195,9 +196,8 @@ static double brightest(const double color[3]) { return fmax(color[0], fmax(colo
 static double strength_of(const hl_light *light) { return light->intensity * brightest(light->color); }
 
 /* The fraction of light from a direction that reaches a point of the world. The path of the light is sampled
- * in steps of three voxel edges, until it leaves the volume's box. If the point lies on
- * a face of the box and the light is outside of this face, the path meets no matter, because the box is
- * convex. */
+ * in steps of three voxel edges, until it leaves the volume's box. If the point lies on a face of the box and
+ * the light lies outside of this face, the path meets no matter, because the box is convex. */
 static double passing(const exposure *e, vec3 point, vec3 towards) {
   enum { STEPS = 3 };
   const double *low = e->low, *high = e->high;
@@ -216,8 +216,9 @@ static double passing(const exposure *e, vec3 point, vec3 towards) {
 }
 
 /* The fractions of the lights and of the sky that reach a face. Eight directions represent the sky, each with
- * an equal part of the sky's light on the face. So the sin^2 of their angles from the normal is 1/4 and 3/4
- * (derived: the integral of the cosine over a cap of the hemisphere). */
+ * an equal part of the sky's light on the face. Four of the directions have angles from the normal whose
+ * sin^2 is 1/4, and four have angles whose sin^2 is 3/4 (derived: the integral of the cosine over a cap of
+ * the hemisphere). */
 static void light_reaching_face(const exposure *e, vec3 point, vec3 normal, sample_light *lit) {
   enum { DIRECTIONS = 8 };
   const hl_scene_description *scene = e->scene;
@@ -247,8 +248,8 @@ static void light_by_face(const exposure *e, const ray_face *face, double t, vec
   light_reaching_face(e, point, face->normal, lit);
 }
 
-/* The light at a place in a medium that scatters light again and again. place, point: the same place in index
- * space and in the world. */
+/* The light at a place in a medium that scatters light again and again. place: in index space; point: the
+ * same place in the world. */
 static double glow_at(const exposure *e, vec3 place, vec3 point) {
   const hl_scene_description *scene = e->scene;
   double light = hl_glow_at(&e->glow, place);
@@ -263,8 +264,8 @@ static double glow_at(const exposure *e, vec3 place, vec3 point) {
 
 typedef struct pixel {
   double brightness; /* the value of the brightest channel; -1 if the pixel is mostly background */
-  double thickness;  /* thickness of the first surface that the ray meets, in steps; infinite if it meets
-                      * none */
+  double thickness;  /* thickness of the first surface that the ray meets, in steps; infinite if the ray meets
+                      * no surface */
 } pixel;
 
 /* The light and opacity that a ray has gathered. */

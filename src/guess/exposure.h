@@ -5,13 +5,13 @@
 #include <halflight/scene.h>
 
 typedef struct hl_exposure {
-  double
-      factor; /* the factor for the strengths of all lights. With this factor, a hundredth of the picture's
-               * pixels have a code from 240 to 255 in their brightest channel. The factor lies between 0.5
-               * (0.15 for a medium that scatters light again and again) and 2; it is 1 if nothing is seen */
+  double factor; /* the factor for the strengths of all lights. With this factor, a hundredth of the picture's
+                  * pixels have a code from 240 to 255 in their brightest channel. The factor lies between 0.5
+                  * (0.15 for a medium that scatters light again and again) and 2; the factor is 1 if nothing
+                  * is seen */
   /* A surface's thickness, in smallest voxel edges: the depth, from where the surface begins, at which it
-   * hides matter behind it. A seventh of the visible surfaces are thinner than this. Infinite if nothing is
-   * hidden. */
+   * hides matter behind it. A seventh of the visible surfaces are thinner than this depth. The depth is
+   * infinite if no surface hides anything. */
   double thickness;
 } hl_exposure;
 

@@ -17,7 +17,7 @@
 #include "scene/scene.h"
 #include "volume/volume.h"
 
-/* Finds which resolution was read. Returns false if a finer one is not wanted, or cannot be read. */
+/* Finds which resolution was read. Returns false if a finer resolution is not wanted, or cannot be read. */
 static bool is_coarse(const hl_scene_volume *volume, hl_volume_selection *read) {
   *read = (hl_volume_selection){.struct_size = sizeof *read};
   return hl_volume_get_selection(volume->volume, read) == HL_OK && read->level > read->aim;
@@ -85,8 +85,8 @@ static double pixels_along(const hl_scene_description *description, const hl_sce
   return longest / tall * description->height;
 }
 
-/* The coarsest resolution that has a voxel for each pixel of the cameras' pictures; the resolution of the
- * scene's volume if it has. */
+/* The coarsest resolution that has a voxel for each pixel of the cameras' pictures. If the scene's volume has
+ * enough voxels, its own resolution is returned. */
 static int level_for_pixels(const hl_scene_description *description, const hl_scene_volume *volume,
                             const hl_camera *cameras, size_t count, int level) {
   const hl_resolutions *known = &volume->volume->resolutions;
@@ -108,7 +108,8 @@ int hl_volume_level_for(const hl_scene_description *description, size_t number, 
   return level_for_pixels(description, volume, cameras, camera_count, level);
 }
 
-/* Finds which resolution is read of a volume. Returns false if the volume has it already. */
+/* Finds the resolution at which a volume is to be read. Returns false if the volume has this resolution
+ * already. */
 static bool find_level(const hl_scene_description *description, size_t number, const hl_camera *cameras,
                        size_t count, hl_finer which, hl_volume_selection *read) {
   const bool is_coarser = is_coarse(&description->volumes[number], read);
@@ -140,8 +141,8 @@ static void find_options(const hl_scene_volume *volume, const hl_volume_selectio
       options->preview_pixels = (int)volume->volume->dimension[axis] + 1;
 }
 
-/* Replaces a finer volume by a smoothed one, if the coarse one was smoothed, or if the voxels need it and are
- * not projected. */
+/* Replaces a finer volume by a smoothed volume, if the coarse volume was smoothed, or if the voxels need
+ * smoothing and are not shown as a maximum projection. */
 static hl_status smooth(const hl_scene_volume *volume, bool projected, hl_volume **finer, hl_error *error) {
   hl_volume *smoothed = NULL;
   hl_status status = volume->volume->smoothing > 0
@@ -191,7 +192,7 @@ hl_status hl_volume_read_finer(hl_context *context, const char *path, const hl_s
 
 /* ---- a scene ---- */
 
-/* A scene's volumes at finer resolutions, and what belongs to them. */
+/* A scene's volumes at finer resolutions, with their labels. */
 typedef struct finer_volumes {
   hl_scene_volume *volumes; /* owned; [count] */
   hl_volume **read;         /* owned; [count] */

@@ -3,8 +3,9 @@
 #include "core/door.h"
 #include "guess/for_volume.h"
 
-/* The intensities of the key light, of the fill light and of the sky. Their ratios are the ratios for scanned
- * matter (looks.c). A white face that looks at the key light and at the sky sends about 1.6. */
+/* The intensities of the key light, of the fill light and of the sky. The three intensities have the ratios
+ * of the light for scanned matter (looks.c). A white face that looks at the key light and at the sky sends
+ * out about 1.6, the sum of the two intensities. */
 #define KEY  1.18
 #define FILL 0.04
 #define SKY  0.41

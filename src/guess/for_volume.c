@@ -28,11 +28,12 @@
 #define LIGHT_ELEVATION 45
 /* Key light from the side, for media. Derived: a deep medium that scatters evenly sends m / (m + e) of the
  * light to the eye, where m and e are the cosines of the light's and of the eye's directions to its border
- * (Lommel and Seeliger). Light from the eye gives every place 1/2, and a ball looks like a disc. With light
- * from the side, the border towards the light has 1 and the border away from it has 0. */
+ * (Lommel and Seeliger). With light from the eye, this fraction is 1/2 everywhere, and a ball looks like a
+ * disc. With light from the side, the fraction is 1 at the border towards the light and 0 at the border away
+ * from the light. */
 #define ASIDE_AZIMUTH   -75
 #define ASIDE_ELEVATION 40
-#define FILL_AZIMUTH    0 /* fill light from the eye: it suits a key light from any direction */
+#define FILL_AZIMUTH    0 /* fill light from the eye, which suits a key light from any direction */
 #define FILL_ELEVATION  0
 /* Constant light that takes the place of a sky, as a fraction of the sky's strength. */
 #define INSTEAD 0.35
@@ -43,11 +44,11 @@
 /* The greatest sheet spacing, as a fraction of a surface's thickness (hl_exposure). Rings on a surface get
  * stronger with the square of the spacing over the thickness. */
 #define SPACING_PER_THICKNESS 0.28
-/* The greatest sheet spacing in small grids, as a fraction of a surface's thickness. Even so, small grids do
- * not have more sheets than other grids. */
+/* The greatest sheet spacing in small grids, as a fraction of a surface's thickness. Small grids get at most
+ * the number of sheets that other grids get, even if surfaces are thinner than this fraction allows. */
 #define SMALL_GRIDS_SPACING_PER_THICKNESS 0.1
-/* LEAST_SPACING: the least distance of sheets that is chosen. SMALL_GRIDS_SPACING: the same for surfaces in
- * small grids, in place of it. Both are in smallest voxel edges. */
+/* LEAST_SPACING: the least distance of sheets that is chosen, in smallest voxel edges. SMALL_GRIDS_SPACING:
+ * the least distance of sheets for surfaces in small grids, in smallest voxel edges. */
 #define LEAST_SPACING       0.25
 #define SMALL_GRIDS_SPACING 0.125
 
@@ -92,8 +93,8 @@ static void choose_lights(const hl_look *look, hl_light lights[2], size_t *count
 }
 
 /* Returns true if the memory limit leaves room for a number of bytes beside the voxels and the copy of them
- * that a renderer makes. Memory that is held at present does not count, so that all processes that share a
- * volume make the same choice. */
+ * that a renderer makes. Memory that the process holds at present does not count, so that all processes that
+ * share a volume make the same choice. */
 static bool has_room(const hl_volume *volume, uint64_t bytes) {
   uint64_t limit = volume->context->options.memory_limit, taken = 0;
   if (hl_volume_is_in_memory(volume))
@@ -102,8 +103,8 @@ static bool has_room(const hl_volume *volume, uint64_t bytes) {
 }
 
 /* Returns true if the memory limit leaves room to smooth the volume, and to draw a volume of a float for each
- * voxel. While the volume is smoothed, no renderer has a copy of it. Its tables, such as the bounds of
- * bricks, take less than a sixteenth of its voxels' bytes and a megabyte. */
+ * voxel. While the volume is smoothed, no renderer has a copy of it. The renderer's tables, such as the
+ * bounds of bricks, take less than a sixteenth of the voxels' bytes plus a megabyte. */
 static bool has_room_to_smooth(const hl_volume *volume) {
   const uint64_t limit = volume->context->options.memory_limit, count = hl_volume_voxel_count(volume),
                  voxels = count * hl_storage_bytes(volume->storage), tables = voxels / 16 + (1 << 20);
@@ -152,7 +153,7 @@ static double diagonal_of(const hl_volume *volume, double more) {
 }
 
 /* Warns if voxels that are thin on one axis make many sheets, because a frame's time grows with the number of
- * its sheets. More than GREATEST_SHEETS are refused by the frame. */
+ * its sheets. A frame refuses more than GREATEST_SHEETS sheets. */
 static void tell_of_sheets(const hl_volume *volume, double spacing) {
   double edges[3], cubes = 0, sheets = diagonal_of(volume, 1) / spacing;
   for (int a = 0; a < 3; a++) {
@@ -169,17 +170,17 @@ static void tell_of_sheets(const hl_volume *volume, double spacing) {
 
 /* The sheet spacing, in smallest voxel edges: from LEAST_SPACING to 1; in small grids with thin surfaces,
  * from SMALL_GRIDS_SPACING. In coarse grids, sheets a voxel apart would show as rings on smooth surfaces, and
- * more sheets take little time. If a frame would have too many sheets, the spacing is greater, up to
- * GRID_MARGIN. thickness: the surfaces' thickness, in smallest voxel edges; infinite: there are no
+ * closer sheets take little time. If a frame would have too many sheets, the spacing is greater, up to
+ * GRID_MARGIN. thickness: the surfaces' thickness, in smallest voxel edges; infinite if the volume shows no
  * surfaces. */
 static double choose_spacing(const hl_volume *volume, hl_shading shading, double thickness) {
-  /* with `even`, a grid of any size has about the same number of sheets */
+  /* even: the spacing with which a grid of any size has about the same number of sheets */
   double even = diagonal_of(volume, 0) / (shading == HL_SHADING_PHONG ? SHEETS_OF_SURFACES : SHEETS_OF_MEDIA);
   double spacing = fmin(fmax(even, LEAST_SPACING), fmax(SPACING_PER_THICKNESS * thickness, LEAST_SPACING));
   double in_small = fmax(even, SMALL_GRIDS_SPACING_PER_THICKNESS * thickness);
   spacing = fmin(spacing, fmax(in_small, SMALL_GRIDS_SPACING));
   /* The sheets cover the matter, which reaches half a voxel beyond the faces. A sweep adds three sheets; the
-   * other seven allow for rounding. */
+   * other seven of the ten sheets allow for rounding. */
   double allowed = fmin(ceil(1000 * diagonal_of(volume, 1) / (GREATEST_SHEETS - 10)) / 1000, GRID_MARGIN);
   return fmax(round(1000 * fmin(spacing, 1)) / 1000, allowed);
 }
@@ -196,8 +197,8 @@ static hl_status judge_exposure(const hl_look *look, const hl_data_analysis *ana
   return status;
 }
 
-/* Scales all lights by one factor, so that the picture is as bright as it can be without being clipped. Also
- * puts sheets closer together if surfaces are thin. */
+/* Scales all lights by one factor, so that the picture is as bright as possible without being clipped. The
+ * function also puts sheets closer together if surfaces are thin. */
 static hl_status expose(const hl_look *look, const hl_data_analysis *analysis, hl_light lights[2],
                         hl_scene_description *description, hl_error *error) {
   hl_exposure exposure;
@@ -212,8 +213,8 @@ static hl_status expose(const hl_look *look, const hl_data_analysis *analysis, h
 }
 
 /* Gives a volume cuts that remove the holders of the object, and hides scraps beside the object. The searches
- * always use the look `base`, which suits the volume, so that they find the same whatever look is shown.
- * planes: memory for the cuts; it must last as long as the volume's description. */
+ * always use the look `base`, which suits the volume, so that the holders and scraps do not depend on the
+ * look that is shown. planes: memory for the cuts; it must last as long as the volume's description. */
 static hl_status show_object_alone(hl_context *context, const hl_look *base, const hl_data_analysis *analysis,
                                    hl_cut planes[HL_HOLDER_PLANES], hl_scene_volume *volume,
                                    hl_error *error) {
@@ -232,8 +233,8 @@ static hl_status show_object_alone(hl_context *context, const hl_look *base, con
 }
 
 /* Gives a label map its labels, with the names and colours in its file. A volume whose values turn out not to
- * be labels, or that is larger than memory, gets no labels. It is drawn by its values, and a log line says
- * so. *labels: owned by the caller; null if there is none. */
+ * be labels, or that is larger than memory, gets no labels. Such a volume is drawn by its values, and a log
+ * line says so. *labels: owned by the caller; null if the volume gets no labels. */
 static hl_status find_labels(hl_context *context, hl_scene_volume *volume, hl_label **labels,
                              hl_error *error) {
   int is_label_map = 0;

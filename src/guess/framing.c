@@ -11,18 +11,19 @@
 #include "guess/outline.h"
 #include "guess/view.h"
 
-/* The fraction of the picture's half width or height that the visible voxels fill. */
-#define FILLED 0.92 /* seen from one direction */
+/* The fraction of the picture's half width or height that the visible voxels fill, as seen from one
+ * direction. */
+#define FILLED 0.92
 /* The eye moves back to make room for turning, as long as the outline fills at least this part of the
  * picture. */
 #define FILLED_LEAST 0.82
-/* During a turn the outline may reach beyond the picture by this factor. It is small enough that only the
- * outline's invisible rim is cut off. */
+/* During a turn the outline may reach beyond the picture by this factor. The factor is so small that the
+ * picture cuts off only the outline's invisible rim. */
 #define OVER 1.04
 /* A view replaces an earlier one if it is wider by this factor. */
 #define WIDER 1.04
-/* To save room, a turn may be made about a target beside the middle of the visible voxels: at most this
- * fraction of the picture's sides away from it. */
+/* To save room, a turn may be made about a target beside the middle of the visible voxels. The target's
+ * distance from the middle is at most this fraction of the picture's sides. */
 #define ASIDE 0.012
 
 /* Matter counts as flat if its height is less than this fraction of its width. Flat matter is seen from
@@ -32,7 +33,8 @@
 
 enum { TURNS = 36, HALVINGS = 48, SECTIONS = 12 };
 
-/* The framing of a view. tangents: of half the picture's angles; 0 for parallel projection. */
+/* The framing of a view. tangent_x, tangent_y: tangents of half the picture's angles; 0 for parallel
+ * projection. */
 typedef struct frame_job {
   const hl_outline *outline;
   vec3 right, up, forward;
@@ -71,7 +73,8 @@ static double middle_from(const frame_job *job, vec3 along, double greatest, dou
   return (reach(job, along, high) - reach(job, vec3_scale(along, -1), high)) / 2;
 }
 
-/* The nearest eye, or the least height, with which the outline fills this fraction of the picture. */
+/* The nearest eye, or in parallel projection the least height, with which the outline fills the fraction
+ * `filled` of the picture. */
 static frame_place fit(const frame_job *job, double filled) {
   frame_place place = {0};
   if (job->tangent_y > 0) {
@@ -98,9 +101,9 @@ static vec3 point_at(const frame_job *job, const frame_place *place, double dept
 
 /* ---- room for turning ---- */
 
-/* The least distance from the target, or half height, with which everything stays in the picture. Derived:
- * for a side of the picture with tangent t, a point at x and z from the target needs x <= t (distance +
- * z). */
+/* The least distance of the eye from the target with which the whole outline stays in the picture; in
+ * parallel projection, the least half height. Derived: for a side of the picture with tangent t, a point at x
+ * and z from the target needs x <= t (distance + z). */
 static double needed(const frame_job *job, vec3 target) {
   const vec3 along[4] = {job->right, vec3_scale(job->right, -1), job->up, vec3_scale(job->up, -1)};
   double most = 0;
@@ -117,7 +120,8 @@ static void look(frame_job *job, const hl_view *view) {
   hl_view_axes(view, &job->right, &job->up, &job->forward);
 }
 
-/* The least distance, or half height, that is enough at all azimuths of a turn (see needed()). */
+/* The least distance, or half height, that keeps the outline in the picture at all azimuths of a turn (see
+ * needed()). */
 static double needed_in_a_turn(const frame_job *job, const hl_view *view, vec3 target) {
   frame_job turned = *job;
   hl_view at = *view;
@@ -137,7 +141,8 @@ static double radius_about(const hl_outline *outline, vec3 target) {
   return greatest;
 }
 
-/* The least distance, or half height, that is enough for all directions of view (see needed()). */
+/* The least distance, or half height, that keeps the outline in the picture for all directions of view (see
+ * needed()). */
 static double needed_at_all(const frame_job *job, vec3 target) {
   double radius = radius_about(job->outline, target), tangent = fmin(job->tangent_x, job->tangent_y);
   return tangent > 0 ? radius * sqrt(1 + 1 / (tangent * tangent)) /* radius over the sine */
@@ -150,7 +155,8 @@ static double room_of(const frame_job *job, const frame_place *place, double dep
 }
 
 /* Moves the target along one axis to the place where a turn needs the least room. The room that a turn needs
- * is a maximum of linear functions, and so convex; a golden-section search finds its minimum. */
+ * is a maximum of linear functions and therefore convex, so that a golden-section search finds its minimum.
+ */
 static void improve(const frame_job *job, const hl_view *view, vec3 along, double reach_each_way,
                     vec3 *target) {
   const double ratio = (sqrt(5) - 1) / 2;
@@ -165,16 +171,16 @@ static void improve(const frame_job *job, const hl_view *view, vec3 along, doubl
   *target = vec3_add(*target, vec3_scale(along, (low + high) / 2));
 }
 
-/* Moves the eye back to make room for turning. The target is moved to the place where a turn needs the least
- * room: to any depth, but only a little to the side. few: the job with a thinned outline, which is faster.
- * Returns the target's depth. */
+/* Moves the eye back to make room for turning. The function moves the target to the place where a turn needs
+ * the least room: to any depth, but only a little to the side. few: the job with a thinned outline, which is
+ * faster. Returns the target's depth. */
 static double make_room(const frame_job *job, const frame_job *few, const hl_view *view, frame_place *place) {
   const frame_place tight = *place, loose = fit(job, FILLED_LEAST);
   double depth = (reach(job, job->forward, 0) - reach(job, vec3_scale(job->forward, -1), 0)) / 2;
-  /* Seen from above or below, the object turns about the line of sight. A turn then needs the same room
-   * whatever the target's depth. */
+  /* Seen from above or below, the object turns about the line of sight. The target's depth then does not
+   * change the room that a turn needs. */
   bool depth_matters = fabs(vec3_dot(job->forward, vec3_normalise(vec3_of(view->up)))) < 1 - 1e-9;
-  /* repeated, because the middle depends slightly on the distance */
+  /* the loop repeats, because the middle depends slightly on the eye's distance */
   for (int round = 0; round < 3; round++) {
     centre(job, place);
     double room = room_of(job, place, depth),
@@ -194,7 +200,7 @@ static double make_room(const frame_job *job, const frame_job *few, const hl_vie
 
 /* ---- cameras ---- */
 
-/* Begins to frame a view. outline: an empty outline (zeros) is found here. */
+/* Begins to frame a view. outline: if it is empty (zeros), this function finds the outline. */
 static hl_status begin(const hl_scene_description *description, double zoom, const hl_camera *camera,
                        hl_outline *outline, frame_job *job, hl_error *error) {
   bool perspective = camera->type == HL_CAMERA_PERSPECTIVE, possible = zoom >= 1e-6 && zoom <= 1e6;
@@ -291,7 +297,7 @@ static double seen_of_faces(const hl_scene_volume *volume, const double share[6]
 
 hl_status hl_view_widen(const hl_scene_description *description, hl_outline *outline, hl_view *view,
                         hl_error *error) {
-  /* The three-quarter views to try: each is the view turned by one of these multiples of HL_VIEW_AZIMUTH. */
+  /* The three-quarter views to try are the given view turned by these multiples of HL_VIEW_AZIMUTH. */
   static const double turns[] = {0, -2, 4, 2, 1, -3, 5, 3};
   const hl_camera usual = {.type = HL_CAMERA_PERSPECTIVE, .fovy_deg = 30};
   hl_scene_description square = *description;
@@ -314,7 +320,7 @@ hl_status hl_view_widen(const hl_scene_description *description, hl_outline *out
   return status;
 }
 
-/* Places the camera without room for turning; its axes are already in *job. */
+/* Places the camera without room for turning. *job holds the camera's axes already. */
 static void place_tightly(const frame_job *job, double zoom, hl_camera *camera) {
   double near = -reach(job, vec3_scale(job->forward, -1), 0), far = reach(job, job->forward, 0),
          depth = (near + far) / 2;

@@ -17,14 +17,15 @@
 #define MEDIUM_DEPTH 10.0 /* optical depth of smoke across the whole object */
 #define METAL_DEPTH  12.0 /* optical depth of matter around metal across the whole object */
 #define SHELL        0.2  /* optical depth of the shell of a field, along a line that crosses the shell */
-#define PALE         0.25 /* part of white in the shell's colour */
+#define PALE         0.25 /* fraction of white in the shell's colour */
 /* The least mean distance of dense matter that is metal from the background, as a multiple of the objects'
- * mean distance. Measured: a stent in vessels has 4.3, and seven scans without metal have at most 2.1. */
+ * mean distance. Measured: a stent in vessels has the multiple 4.3; seven scans without metal have multiples
+ * of at most 2.1. */
 #define METAL 3
 /* The width of an object, in voxels, for which the opacities of solid matter were chosen. */
 #define FINE 96
 
-/* The distances dense and top, in rising order beyond solid. */
+/* The distances dense and top, raised where needed so that solid < dense < top. */
 static double dense_of(const hl_data_analysis *a) { return fmax(a->dense, a->solid + 1e-6 * a->top); }
 static double top_of(const hl_data_analysis *a) { return fmax(a->top, dense_of(a) * 1.001); }
 
@@ -34,7 +35,8 @@ typedef struct shade {
 } shade;
 
 /* Writes the function for solid matter. shades: [count]; the colours at rising distances. In coarse grids
- * fewer voxel edges lie between the rim of an object and its inside, so that each edge absorbs more. */
+ * fewer voxel edges lie between an object's rim and its inside, so the function makes each edge absorb more.
+ */
 static void write_solid(hl_function_writer *w, const shade *shades, size_t count) {
   const hl_data_analysis *a = w->analysis;
   const double ramp = a->solid - a->faint, dense = dense_of(a), edges = fmax(FINE / fmax(a->depth, 1), 1);
@@ -72,8 +74,8 @@ bool hl_data_holds_metal(const hl_data_analysis *a) {
   return a->material_count <= 1 && a->dense_mean > METAL * a->mean;
 }
 
-/* Writes matter around metal: flesh, bone and steel. The matter lets some light pass, so that metal is seen
- * within it, as a stent in a vessel. */
+/* Writes the function for metal and the matter around it: flesh, bone and steel. The matter lets some light
+ * pass, so that metal is seen within it, as a stent in a vessel. */
 static void write_metal(hl_function_writer *w) {
   static const double wall[3] = {0.44, 0.12, 0.08}, flesh[3] = {0.60, 0.20, 0.12},
                       bone[3] = {0.89, 0.80, 0.65}, steel[3] = {0.62, 0.72, 0.82};
@@ -145,9 +147,9 @@ static double core_of(const hl_data_analysis *a) {
 }
 
 /* Adds the opacities of a field on one side of its background (+1: above; -1: below): a clear shell around an
- * opaque core. Reflections show the shape of the shell, and the core is seen through it. Between the two
- * is a trace of matter, which hardly dims the core; the inside of the shell counts as matter where the grid
- * cuts it off. */
+ * opaque core. Reflections show the shape of the shell, and the core is seen through it. Between shell and
+ * core lies a trace of matter, which hardly dims the core. The trace makes the inside of the shell count as
+ * matter where the grid cuts the shell off. */
 static void add_shell_and_core(hl_function_writer *w, int side) {
   const hl_data_analysis *a = w->analysis;
   const double ramp = a->solid - a->faint, top = fmax(a->top, a->solid * 1.001), way = top - a->solid;
@@ -155,7 +157,7 @@ static void add_shell_and_core(hl_function_writer *w, int side) {
                half = fmin(fmin(0.03 * top, 0.25 * ramp), 0.15 * way);
   const double trace = 0.05; /* the optical depth, across the object, of matter between shell and core */
   /* The greatest opacity of the shell. Derived: if a field falls from its top to nothing over half of the
-   * object, the values of the shell, which have the width 2 half, take the fraction half / top of the object.
+   * object, the shell's values, which span the width 2 * half, take the fraction half / top of the object.
    * The mean of a tent is half its peak. */
   const double peak = SHELL * 2 * top / half;
   const double rows[][2] = {{shell - half, 0},    {shell, peak}, {shell + half, trace},
@@ -182,8 +184,8 @@ void hl_write_field(hl_function_writer *w) {
   hl_add_colormap(w, "plasma", core_of(a), a->solid + 0.6 * way, 0.8, 0.95);
 }
 
-/* Writes the function for particles. Their densities extend over many powers of ten, so the values are
- * logarithms. Values below the mean, which fill most of the space, are clear, and the densest matter is
+/* Writes the function for particles. The densities of particles extend over many powers of ten, so the values
+ * are logarithms. Values below the mean, which fill most of the space, are clear, and the densest matter is
  * nearly opaque. Each row has a value, as a fraction of the way from the mean to the densest value, and the
  * optical depth of matter with this value across the object. */
 void hl_write_particles(hl_function_writer *w) {
@@ -195,8 +197,8 @@ void hl_write_particles(hl_function_writer *w) {
   hl_add_colormap(w, "inferno", from, top, 0.25, 1);
 }
 
-/* Adds the opacities on one side of a flow's middle: common values are clear, rare values dense. Each row has
- * a value, as a fraction of the way from the middle to the last value, and an optical depth. */
+/* Adds the opacities on one side of a flow's middle: common values are clear, and rare values are dense. Each
+ * row has a value, as a fraction of the way from the middle to the last value, and an optical depth. */
 static void add_rare(hl_function_writer *w, double reach, int side) {
   static const double rarity[][2] = {{0.4, 0}, {0.6, 0.5}, {0.8, 3}, {1, 20}};
   enum { STEPS = sizeof rarity / sizeof *rarity };
@@ -221,8 +223,8 @@ void hl_write_flow(hl_function_writer *w) {
   hl_add_colormap(w, "plasma", middle - a->lower, middle + a->upper, 0.2, 0.94);
 }
 
-/* Kelly's colours of greatest contrast (1965), without greys and the darkest ones, followed by lighter shades
- * of these colours. */
+/* Kelly's colours of greatest contrast (1965), without greys and the darkest colours, followed by lighter
+ * shades of the rest. */
 static void label_color(size_t label, double linear[3]) {
   static const unsigned int kelly[] = {0xf3c300, 0x875692, 0xf38400, 0xa1caf1, 0xbe0032, 0xc2b280,
                                        0x008856, 0xe68fac, 0x0067a5, 0xf99379, 0x604e97, 0xf6a600,
@@ -236,7 +238,7 @@ static void label_color(size_t label, double linear[3]) {
 }
 
 /* Makes a label opaque only close to its own number. Between two regions the kernel interpolates numbers that
- * belong to neither region, which must stay clear. */
+ * belong to neither region; such numbers must stay clear. */
 static void add_label(hl_function_writer *w, double label, double before, double after, double narrowest) {
   static const double part = 0.03; /* fraction of the way to the next number */
   double down = fmin(fmax(part * (label - before), narrowest), 0.45 * (label - before)),
@@ -321,7 +323,8 @@ void hl_add_colormap(hl_function_writer *w, const char *name, double from, doubl
   for (int step = 0; step <= 32; step++) {
     double t = step / 32.0, color[3];
     hl_colormap_evaluate(name, start + t * (end - start), color);
-    hl_add_color(w, step < 32 ? from + t * (to - from) : to, color); /* not beyond the end by rounding */
+    hl_add_color(w, step < 32 ? from + t * (to - from) : to, color); /* the last point lies exactly at `to`,
+                                                                      * not beyond it by rounding */
   }
 }
 

@@ -17,7 +17,8 @@ typedef struct hl_function_writer {
 /* Begins the function of a volume. The analysis must outlive the writer. */
 void hl_begin_function(hl_function_writer *w, const hl_volume *volume, const hl_data_analysis *analysis);
 
-/* These two functions add a point. Distances must rise; points beyond the arrays' ends are left out. */
+/* hl_add_opacity() and hl_add_color() add a point to the function. Distances must rise from point to point;
+ * points for which the arrays have no room are left out. */
 void hl_add_opacity(hl_function_writer *w, double distance, double opacity);
 void hl_add_color(hl_function_writer *w, double distance, const double color[3]); /* linear RGB */
 /* Adds a part of a named colormap, from start to end (0 to 1), over the distances from..to. */

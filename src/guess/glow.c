@@ -1,6 +1,6 @@
 /* guess/glow.c - see glow.h.
  *
- * The light that was not scattered is followed from each cell to each light. The light that was scattered is
+ * Light that was not scattered is followed from each cell to each light source. Light that was scattered is
  * taken to be diffuse. Its mean over all directions, J, obeys
  *
  *     div (grad J / (3 e)) = (e - s) J - s I,
@@ -16,8 +16,8 @@
 #include "core/memory.h"
 #include "elementary/elementary.h"
 
-/* LONGEST: the number of cells along the longest side of the box. SUBDIVIDED: the number of places along each
- * side of a cell at which matter is looked up. SWEEPS: the number of times that all cells are relaxed. */
+/* LONGEST: the number of cells along the box's longest side. SUBDIVIDED: the number of places along each side
+ * of a cell at which matter is looked up. SWEEPS: the number of times that all cells are relaxed. */
 enum { LONGEST = 24, SUBDIVIDED = 3, SWEEPS = 150 };
 
 /* Successive over-relaxation changes a cell by this multiple of the change that solves its own equation. */
@@ -31,7 +31,8 @@ typedef struct glow_grid {
   double *extinction;  /* owned; per world unit */
   double *scattering;  /* owned; per world unit */
   double *unscattered; /* owned */
-  double thinnest; /* the extinction that stands for empty cells, so that light crosses the box in one go */
+  double thinnest;     /* the extinction that stands for empty cells, low enough for light to cross the whole
+                        * box */
 } glow_grid;
 
 static size_t cell_of(const hl_glow *glow, int i, int j, int k) {

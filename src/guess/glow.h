@@ -26,7 +26,7 @@ typedef struct hl_glow_request {
   double sky; /* the mean radiance of the sky */
 } hl_glow_request;
 
-/* The estimated light. Released by hl_glow_release(), which accepts an empty one. */
+/* The estimated light. hl_glow_release() releases it, and accepts an empty struct. */
 typedef struct hl_glow {
   int count[3];
   double low[3], size[3]; /* the grid's corner and the size of a cell, in index space */

@@ -1,7 +1,7 @@
 /* guess/holders.c - finds the holders of a scanned object, as bodies of cells, and planes that cut them off.
  *
- * All lengths are in the world of the volume's file. How far a body reaches follows from the two end cells of
- * each row of its cells alone, because half spaces are convex. */
+ * All lengths are in the world of the volume's file. A body's reach along a direction follows from the two
+ * end cells of each of its rows of cells alone, because half spaces are convex. */
 #include "guess/holders.h"
 
 #include <string.h>
@@ -31,15 +31,15 @@
 #define RIM_LEVEL 0.3  /* cells of rims have at least this fraction of the level's optical depth */
 
 enum { DIRECTIONS = 1000 };
-enum { SAMPLE = 4096 }; /* most cells or voxels of a body that are examined */
-enum { FOR_EACH = 4 };  /* most planes that cut off one holder */
+enum { SAMPLE = 4096 }; /* greatest number of cells or voxels of a body that are examined */
+enum { FOR_EACH = 4 };  /* greatest number of planes that cut off one holder */
 /* The number that cells of holders and rims have in place of a body's number. */
 static const uint32_t BESIDE = UINT32_MAX;
 
 /* The levels of mean optical depth, as fractions of the greatest cell's depth, beyond which cells belong to
  * bodies. At the first level even faint holders are seen. At the second level, foam and clothes no longer
- * join a holder to the object. Each level is searched, because one part of a holder may be free at the first
- * level, while foam joins another part to the object there. */
+ * join a holder to the object. Each level is searched, because at the first level one part of a holder may be
+ * free, while foam joins another part to the object. */
 static const double levels[] = {0.02, 0.1};
 
 /* A list of cells of a body: either the two end cells of each of the body's rows of cells, or all of its
@@ -53,8 +53,8 @@ typedef struct body_cells {
 /* A direction, and the lengths that are measured along it. */
 typedef struct side {
   vec3 direction;
-  double cell_width; /* of one cell */
-  double hull;       /* reach of the object's cell centres */
+  double cell_width; /* width of one cell */
+  double hull;       /* reach of the centres of the object's cells */
 } side;
 
 typedef struct search {
@@ -151,9 +151,9 @@ static side side_along(const search *s, vec3 direction, double *width) {
   return along;
 }
 
-/* Looks at the voxels in the middle of a body's cells. Finds a quantile of their distances from the
- * background; with a limit, finds the fraction of the voxels whose distance reaches the limit. Fails for lack
- * of memory. */
+/* Looks at the voxels in the middle of a body's cells. Without a limit, finds a quantile of the voxels'
+ * distances from the background; with a limit, finds the fraction of the voxels whose distance reaches the
+ * limit. Fails for lack of memory. */
 static hl_status look_at_matter(const search *s, uint32_t body, const double *limit, double *found,
                                 hl_error *error) {
   const hl_seen *seen = s->seen;
@@ -180,8 +180,8 @@ static hl_status look_at_matter(const search *s, uint32_t body, const double *li
 
 /* ---- the object ---- */
 
-/* Finds the bodies at a level, and the object, which is the largest of them. *is_one: set to whether nearly
- * everything that is seen is the object. */
+/* Finds the bodies at a level, and the object, which is the largest of them. *is_one: set to whether the
+ * object is nearly everything that is seen. */
 static hl_status find_object(search *s, double level, bool *is_one, hl_error *error) {
   const hl_seen *seen = s->seen;
   const size_t cells = (size_t)seen->size[0] * (size_t)seen->size[1] * (size_t)seen->size[2];
@@ -226,7 +226,7 @@ static size_t count_beyond(const body_cells *cells, const side *plane) {
   return count;
 }
 
-/* Takes the cells beyond a plane out. */
+/* Removes the cells beyond a plane from a list. */
 static void take_out(body_cells *cells, const side *plane) {
   size_t left = 0;
   for (size_t n = 0; n < cells->count; n++)
@@ -234,14 +234,15 @@ static void take_out(body_cells *cells, const side *plane) {
   cells->count = left;
 }
 
-/* Tilts a plane, by smaller and smaller angles, so that it cuts off more of a body. *most: as for
- * best_plane(). The first angle is that between neighbouring sides (derived: each side has 4 pi / DIRECTIONS
- * of the sphere). The last angle moves no cell of the grid by more than half a cell. */
+/* Tilts a plane, by smaller and smaller angles, so that it cuts off more of a body. *most: the number of
+ * examined cells that the plane cuts off. The first angle is the angle between neighbouring sides (derived:
+ * each side has 4 pi / DIRECTIONS of the sphere). The last angle moves no cell of the grid by more than half
+ * a cell. */
 static side tilt(const search *s, const body_cells *cells, side plane, size_t *most) {
   const double first = sqrt(4 * HL_PI / DIRECTIONS);
   for (double angle = first; angle * s->grid_length > plane.cell_width / 2; angle /= 2) {
     const vec3 from = plane.direction, across = vec3_perpendicular(from), along = vec3_cross(from, across);
-    for (int way = 0; way < 9; way++) { /* eight ways, and none */
+    for (int way = 0; way < 9; way++) { /* eight directions of tilting, and no tilting */
       const vec3 to = vec3_add(vec3_scale(across, way % 3 - 1), vec3_scale(along, way / 3 - 1));
       double width;
       const side tilted = side_along(s, vec3_normalise(vec3_add(from, vec3_scale(to, angle))), &width);
@@ -264,9 +265,9 @@ static side best_plane(const search *s, const body_cells *cells, size_t *most) {
   return *most > 0 ? tilt(s, cells, plane, most) : plane;
 }
 
-/* Adds planes that cut off a body, until there are `most_planes`. Each new plane cuts off the greatest
- * possible number of the remaining cells. *left: the fraction of the body that remains in the end. Fails for
- * lack of memory. */
+/* Adds planes that cut off a body, until s->plane_count is `most_planes`. Each new plane cuts off the
+ * greatest possible number of the remaining cells. *left: the fraction of the body that remains in the end.
+ * Fails for lack of memory. */
 static hl_status cut_off(search *s, uint32_t body, size_t most_planes, double *left, hl_error *error) {
   body_cells cells;
   hl_status status = find_cells(s, body, &cells, error);
@@ -317,7 +318,7 @@ static hl_status is_holder(search *s, uint32_t body, bool *is_one, hl_error *err
   return status;
 }
 
-/* Finds whether one of the planes would cut a body that is no holder. */
+/* Finds whether one of the planes found at this level would cut a body that is no holder. */
 static hl_status is_met(const search *s, uint32_t body, bool *met, hl_error *error) {
   body_cells ends;
   hl_status status = find_ends(s, body, &ends, error);
@@ -338,8 +339,9 @@ static bool is_beside(const search *s, vec3 point) {
   return beside;
 }
 
-/* Removes cells from the holders and rims (BESIDE) if no plane could cut them off. In each row, these cells
- * are neighbours, because the points that lie beyond no side form a convex shape. */
+/* Removes cells from the holders and rims (BESIDE) if no plane could cut them off. In each row, the cells
+ * that no plane could cut off are neighbours, because the points that lie beyond no side form a convex shape.
+ */
 static void drop_what_is_within(search *s) {
   const int *n = s->seen->size;
   for (int k = 0; k < n[2]; k++)
@@ -381,7 +383,8 @@ static hl_status find_holders(search *s, unsigned char *other, bool *any, hl_err
   return status;
 }
 
-/* Finds further planes at one level. In doubt, there are none. */
+/* Finds further planes at one level. If one of the planes would cut a body that is no holder, no plane is
+ * added. */
 static hl_status find_planes(search *s, double level, hl_error *error) {
   bool is_one = false, any = false, doubt = false;
   hl_status status = find_object(s, level, &is_one, error);
@@ -411,7 +414,7 @@ static void set_out(search *s, affine3 index_to_world) {
     s->grid_length += s->seen->size[a] * vec3_length(mat3_column(s->cell_to_world.linear, a));
 }
 
-/* Makes the cells clear whose centres the planes of the last level cut off, and keeps these planes. */
+/* Keeps the planes of the last level, and makes those cells clear whose centres these planes cut off. */
 static void keep_planes(search *s) {
   const int *n = s->seen->size;
   float *mean = s->seen->mean;

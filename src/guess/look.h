@@ -12,7 +12,7 @@ typedef struct hl_look_light {
 } hl_look_light;
 
 /* The light of opaque surfaces, of matter that is seen through, and of media without surfaces. All looks that
- * show matter in one of these ways have its light, whether the data or the user chose the look. */
+ * show matter in one of these three ways have the same light, whether the data or the user chose the look. */
 #define HL_LIGHT_OF_SURFACES \
   { 1.45, 0.06, 0.50, false }
 #define HL_LIGHT_OF_SHELLS \

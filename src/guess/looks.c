@@ -86,7 +86,7 @@ static bool ends_with(const char *text, const char *end) {
 static bool is_anatomical(const char *file) { return ends_with(file, ".nii") || ends_with(file, ".nii.gz"); }
 
 /* Returns true if more than two fifths of the voxels denser than air are tissue: from -200 to 200 Hounsfield
- * units. Few voxels of metal, stone and wood have these values. */
+ * units. Few voxels of metal, stone and wood have values of tissue. */
 static bool is_mostly_tissue(const hl_volume *volume) {
   double width = (volume->maximum - volume->minimum) / HL_HISTOGRAM_BINS, tissue = 0, matter = 0;
   for (int bin = 0; bin < HL_HISTOGRAM_BINS; bin++) {
@@ -137,8 +137,8 @@ void hl_look_material(const hl_look *look, hl_scene_volume *volume) {
                                    .shininess = look->glossy ? 40 : 24};
 }
 
-/* Keeps the colours of voxels with colours of their own, which white does not change. A voxel's alpha is its
- * opacity, unless there is a style. */
+/* Makes the function's colour white, so that the voxels of a volume with voxel colours keep their colours. A
+ * voxel's alpha becomes its opacity, unless a style gives the opacities. */
 static void keep_colors(hl_function_writer *w, const hl_volume *volume, const hl_look *style) {
   static const double white[3] = {1, 1, 1};
   const double background = w->analysis->background;
@@ -153,15 +153,15 @@ static void keep_colors(hl_function_writer *w, const hl_volume *volume, const hl
 }
 
 /* The window of values in which a file shows the channel that the volume was read from (omero, ImageJ). Null
- * if the file tells none. */
+ * if the file tells no window. */
 static const double *channel_window(const hl_volume *volume) {
   const double *window = volume->channels != NULL ? volume->channels[volume->selection.channel].window : NULL;
   return window != NULL && window[0] < window[1] ? window : NULL;
 }
 
 /* Narrows the visible values of a function to the window of a channel. Values that the file shows black
- * become transparent, and values that it shows at full brightness become opaque. Ends of the window beyond
- * the visible values change nothing, because many files state the whole range of their type. */
+ * become transparent, and values that it shows at full brightness become opaque. An end of the window beyond
+ * the visible values changes nothing, because many files state the whole range of their voxel type. */
 static hl_status narrow(hl_context *context, const hl_volume *volume, hl_transfer_function *function,
                         hl_error *error) {
   const double *window = channel_window(volume);
@@ -263,11 +263,10 @@ hl_status hl_transfer_function_look(hl_context *context, const char *look, const
 /* ---- presets: named transfer functions that adapt to the volume.
  *
  * CT presets are written in Hounsfield units. For volumes in other units (8 bit, 0 to 1) a piecewise linear
- * map through four landmarks replaces them: -1000 (air) is the background, -400 (half way to tissue) the
- * distance `solid`, 350 (where bone begins) `dense`, and 2000 (dense bone) `top`. Where much of the objects
- * is dense there is no tissue around the bone: bone then begins about at `solid`. The other presets are
- * written in these landmarks.
- */
+ * map through four landmarks gives the distances: -1000 (air) is the background, -400 (half way to tissue) is
+ * the distance `solid`, 350 (where bone begins) is `dense`, and 2000 (dense bone) is `top`. If much of the
+ * objects is dense, no tissue surrounds the bone, and bone begins at about the distance `solid`. The other
+ * presets are written in distances from the background, such as `solid`. */
 
 /* A row of a CT preset: Hounsfield units, opacity per voxel edge, sRGB colour. */
 typedef struct hounsfield_row {
@@ -289,8 +288,8 @@ static const hounsfield_row soft_tissue[] = {
     {60, 0.07, {0.78, 0.30, 0.24}},  {150, 0.12, {0.82, 0.36, 0.26}},   {250, 0.35, {0.92, 0.76, 0.60}},
     {500, 0.90, {0.97, 0.92, 0.84}}, {2000, 0.97, {1.00, 0.98, 0.95}}};
 
-/* The distance of a value in Hounsfield units from the background. hounsfield: whether the volume has these
- * units; if not, a value's distance is guessed from the thresholds. */
+/* The distance of a value in Hounsfield units from the background. hounsfield: whether the volume's values
+ * are Hounsfield units; if not, the thresholds of the volume's analysis give the distance. */
 static double distance_of(const hl_function_writer *w, bool hounsfield, double value) {
   const hl_data_analysis *a = w->analysis;
   if (hounsfield) return value - a->background;
@@ -369,8 +368,8 @@ static void write_electron_density(hl_function_writer *w, const hl_volume *volum
   hl_add_colormap(w, "plasma", 0.6 * a->faint, core, 0.25, 0.95);
 }
 
-/* A value that at most one voxel in a hundred thousand exceeds. It is used in place of the greatest value, so
- * that a single bright voxel does not darken all others. */
+/* A value that at most one voxel in a hundred thousand exceeds. A projection uses this value in place of the
+ * greatest value, so that a single bright voxel does not darken all others. */
 static double almost_greatest(const hl_volume *volume) {
   uint64_t voxels = 0, above = 0;
   for (int bin = 0; bin < HL_HISTOGRAM_BINS; bin++) voxels += volume->histogram[bin];
@@ -381,7 +380,7 @@ static double almost_greatest(const hl_volume *volume) {
              : volume->minimum + (volume->maximum - volume->minimum) * bin / HL_HISTOGRAM_BINS;
 }
 
-/* The part of the voxels that lie above a value, by whole bins of the histogram. */
+/* The fraction of the voxels that lie above a value, by whole bins of the histogram. */
 static double share_above(const hl_volume *volume, double value) {
   double width = (volume->maximum - volume->minimum) / HL_HISTOGRAM_BINS, above = 0, voxels = 0;
   for (int bin = 0; bin < HL_HISTOGRAM_BINS; bin++) {
@@ -391,8 +390,8 @@ static double share_above(const hl_volume *volume, double value) {
   return voxels > 0 ? above / voxels : 0;
 }
 
-/* The value that a maximum projection shows in white: almost the greatest one. In Hounsfield units this is
- * dense bone at most, so that a little metal does not darken the bones. */
+/* The value that a maximum projection shows in white: almost the greatest value. In Hounsfield units with a
+ * little metal, the value is that of dense bone, so that the metal does not darken the bones. */
 static double projected_white(const hl_volume *volume) {
   enum { DENSE_BONE = 2000 };
   double white = almost_greatest(volume);
@@ -409,18 +408,18 @@ static bool is_window_for_projections(const hl_volume *volume) {
          (isfinite(volume->window[1]) && share_above(volume, volume->window[1]) < 0.005);
 }
 
-/* The distance above the background that noise reaches. A projection has the greatest of some hundred values,
- * so that noise around the objects would be seen as a grey box. Derived: noise lies to both sides of the
- * background alike, so that it reaches as far above the background as the least value lies below. Objects
- * begin at `faint` at the latest. */
+/* The distance above the background that noise reaches. A pixel of a projection has the greatest of some
+ * hundred values, so that noise around the objects would be seen as a grey box. Derived: noise lies on both
+ * sides of the background alike, so that noise reaches as far above the background as the least value lies
+ * below the background. The distance is at most `faint`, at which objects begin. */
 static double noise_above(const hl_volume *volume, const hl_data_analysis *a) {
   return fmin(fmax(a->background - volume->minimum, 0), a->faint);
 }
 
 /* Writes the greys of a maximum projection: from the noise of the background, which is not shown, to almost
- * the greatest value. If objects lie below the background, or on both sides of it, the greys begin at the
- * least value. If the file asks for a window of values that suits projections, the greys have only this
- * range. */
+ * the greatest value. If objects have values below the background, or on both sides of it, the greys begin at
+ * the least value. If the file asks for a window of values that suits projections, the greys cover only this
+ * window. */
 static void write_maximum(hl_function_writer *w, const hl_volume *volume) {
   const hl_data_analysis *a = w->analysis;
   bool above = a->direction > 0 && a->kind != HL_DATA_SIGNED;

@@ -1,9 +1,9 @@
 /* guess/materials.c - finds the materials of scanned objects: peaks of the histogram with valleys between
  * them.
  *
- * A voxel at the boundary of two kinds of matter has a value between theirs. Flat faces along the grid's axes
- * give many such voxels the same value, so that the histogram has a peak that is no material. Such a voxel
- * lies between a lighter and a denser neighbour. */
+ * A voxel at the boundary of two kinds of matter has a value between the values of the two. Flat faces along
+ * the grid's axes give many such voxels the same value, so that the histogram has a peak that is no material.
+ * A voxel at a boundary lies between a lighter and a denser neighbour. */
 #include <stdbool.h>
 #include <string.h>
 
@@ -17,8 +17,9 @@ static const double DEEPEST = 0.35;
 static const double LEAST_SHARE = 0.03;
 
 /* A peak is no material if more than this fraction of its voxels lies between a lighter and a denser
- * neighbour. Of a material, those voxels do at which it is one or two voxels thin. Materials of four scans
- * have at most .24, and the two boundaries of a casting .54 and .94 (measured). */
+ * neighbour. Voxels of a material lie so only where the material is one or two voxels thin. In four scans,
+ * the fraction is at most .24 for materials; for the two boundaries of a casting, it is .54 and .94
+ * (measured). */
 static const double MOST_BETWEEN = 0.4;
 
 enum {
@@ -27,7 +28,7 @@ enum {
 };
 
 /* The distance, in bins, between neighbouring values of quantised data: at least half of the voxels have a
- * value whose next higher value is at most as far away. */
+ * value from which the next higher value of the data is at most this distance away. */
 static int value_step(const double *raw, int count) {
   double voxels[BINS] = {0}, all = 0; /* voxels: [distance to the next higher value] */
   for (int n = 0, last = -1; n < count; n++) {
@@ -40,9 +41,10 @@ static int value_step(const double *raw, int count) {
   return step;
 }
 
-/* Counts the objects' voxels in bins of rising distance. A tent smooths the counts. Its ends are a multiple
- * of the distance of quantised values from its middle, so that it closes the gaps between these values
- * exactly. Returns the number of bins. *first: the distance of the first bin. */
+/* Counts the objects' voxels in bins of rising distance. A tent smooths the counts. The distance from the
+ * tent's middle to its ends is a multiple of the distance between quantised values, so that the tent closes
+ * the gaps between these values exactly. Returns the number of bins. *first: the distance of the first bin.
+ */
 static int object_bins(const hl_volume *volume, const hl_data_analysis *a, double counts[BINS],
                        double *first) {
   double width = (volume->maximum - volume->minimum) / BINS, raw[BINS];
@@ -121,8 +123,8 @@ static int peak_of(const hl_data_analysis *a, double value) {
   return peak;
 }
 
-/* Returns whether a voxel lies between a neighbour of a lower peak and one of a higher peak, which are on
- * opposite sides of it. */
+/* Returns whether a voxel lies between a neighbour of a lower peak and a neighbour of a higher peak, which
+ * are on opposite sides of the voxel. */
 static bool lies_between(const hl_volume *volume, const hl_data_analysis *a, const size_t at[3], int peak) {
   for (int axis = 0; axis < 3; axis++) {
     size_t before[3] = {at[0], at[1], at[2]}, behind[3] = {at[0], at[1], at[2]};

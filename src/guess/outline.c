@@ -1,7 +1,7 @@
 /* guess/outline.c - finds the outermost visible voxels of a scene, and the range of visible values.
  *
- * Only the first and the last visible voxel of a row can be outermost, and among these only the corners of
- * each slice's convex hull. */
+ * Only the first and the last visible voxel of a row can be outermost. Of the first and last voxels of a
+ * slice's rows, only the corners of the slice's convex hull can be outermost. */
 #include "guess/outline.h"
 
 #include <string.h>
@@ -80,8 +80,8 @@ static hl_status add_slices(hl_outline *outline, const hl_seen *seen, affine3 pl
   return status;
 }
 
-/* The fraction of cells with visible matter in a face of the grid. end: 0 or 1, the face at the begin or at
- * the end of an axis. */
+/* The fraction of the cells in a face of the grid that hold visible matter. end: 0 for the face at the
+ * beginning of an axis, 1 for the face at its end. */
 static double share_of_face(const hl_seen *seen, int axis, int end) {
   const int across = (axis + 1) % 3, along = (axis + 2) % 3;
   int at[3], count = 0;
@@ -92,8 +92,8 @@ static double share_of_face(const hl_seen *seen, int axis, int end) {
   return (double)count / ((double)seen->size[across] * seen->size[along]);
 }
 
-/* Adds the matter that the transfer function shows. share: receives the shares of the grid's faces; null if
- * nobody asks for them. */
+/* Adds the matter that the transfer function shows. share: receives hl_outline.share of each of the grid's
+ * six faces; null if the fractions are not wanted. */
 static hl_status add_shown(hl_outline *outline, const hl_scene_volume *volume, double *share,
                            hl_error *error) {
   hl_seen seen;
@@ -169,7 +169,8 @@ vec3 hl_even_direction(int n, int count) {
   return (vec3){across * hl_cos(angle), across * hl_sin(angle), z};
 }
 
-/* A box around up to POINTS_A_BOX consecutive points, and the greatest of their radii. */
+/* A box around up to POINTS_A_BOX consecutive points of an outline, and the greatest radius of these points.
+ */
 enum { POINTS_A_BOX = 64 };
 typedef struct points_box {
   double low[3], high[3], radius;
@@ -200,7 +201,8 @@ static double farthest_of_box(const points_box *box, vec3 along) {
   return sum + 1e-12 * size;
 }
 
-/* The index of the point that reaches farthest along a direction; of equally far points, the first. */
+/* The index of the point that reaches farthest along a direction; of equally far points, the index of the
+ * first. */
 static size_t farthest(const hl_outline *outline, const points_box *boxes, vec3 along) {
   size_t best = 0;
   double most = -INFINITY;
@@ -233,7 +235,7 @@ hl_status hl_outline_thin(const hl_outline *outline, hl_outline *thinned, hl_err
 }
 
 /* AXES: the number of coordinate axes and diagonals. The struct holds the points of a mesh that lie farthest
- * along each of them, in both directions. */
+ * along each axis and diagonal, in both directions. */
 enum { AXES = 13 };
 typedef struct farthest_points {
   vec3 along[AXES], point[2][AXES];
@@ -293,8 +295,8 @@ static hl_status add_farthest(hl_outline *outline, const hl_scene_mesh *mesh, hl
   return status;
 }
 
-/* Adds the outermost vertices and spheres of a mesh, which lie farthest in many directions. Of a large mesh,
- * only some vertices are compared. */
+/* Adds the vertices and spheres of a mesh that lie farthest in any of many directions. Of a large mesh, only
+ * some vertices are compared. */
 static hl_status add_mesh(hl_outline *outline, const hl_scene_mesh *mesh, hl_error *error) {
   enum { MOST_CORNERS = 60000 };
   const hl_mesh_description *d = hl_mesh_describe(mesh->mesh);
@@ -347,9 +349,9 @@ double hl_outline_reach(const hl_outline *outline, vec3 along, vec3 forward, dou
 
 /* ---- the range of values that a transfer function shows, from any side.
  *
- * Voxels within opaque matter are hidden from every side; a surface is seen by its outer voxels. So a voxel
- * counts with its opacity times the light that its most transparent neighbour lets through, in and out again.
- */
+ * Voxels within opaque matter are hidden from every side; of a surface, the outer voxels are seen. So a voxel
+ * counts with its opacity times the fraction of light that its most transparent neighbour lets through on the
+ * way in and out. */
 
 #define TAIL 0.01 /* fraction of the counts that is left out at each end of the range */
 

@@ -12,9 +12,9 @@ typedef struct hl_outline {
   vec3 *point;    /* owned; [count]; world */
   double *radius; /* owned; [count] */
   size_t count, capacity;
-  /* The fraction of cells with visible matter in each face of the first volume's grid, which may cut matter
-   * off there: the face before the first voxel along x, the face behind the last voxel along x; along y;
-   * along z. 0 if the scene has no volume. */
+  /* The fraction of the cells in each face of the first volume's grid that hold visible matter, which the
+   * face may cut off. Order: the face before the first voxel along x, the face behind the last voxel along x;
+   * then the two faces along y and along z. 0 if the scene has no volume. */
   double share[6];
 } hl_outline;
 
@@ -24,7 +24,7 @@ typedef struct hl_outline {
 hl_status hl_outline_find(const hl_scene_description *description, hl_outline *outline, hl_error *error);
 void hl_outline_release(hl_outline *outline);
 
-/* *Thins an outline: keeps the points that reach farthest in 400 directions. In any other direction the
+/* Thins an outline: keeps the points that reach farthest in 400 directions. In any other direction the
  * thinned outline may reach less far than the whole one, by at most half a per cent of the extent. */
 hl_status hl_outline_thin(const hl_outline *outline, hl_outline *thinned, hl_error *error);
 

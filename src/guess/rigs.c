@@ -1,8 +1,8 @@
 /* guess/rigs.c - makes light rigs: named sets of lights that are placed around the object as a photographer
  * would place them.
  *
- * In: a name, and a scene with its light. Out: new lights and a new sky, together about as strong as the
- * scene's light was. */
+ * In: a name, and a scene with its light. Out: new lights and a new sky, which together are about as strong
+ * as the scene's light before. */
 #include <math.h>
 #include <string.h>
 
@@ -50,12 +50,12 @@ static const rig rigs[RIGS] = {
     [RIM] = {3, {{-112, 30, 8, 1.70, HL_COOL_LIGHT, true},
                    { 118, 18, 8, 1.50, HL_WARM_LIGHT, true},
                    { -25, 35, 24, 0.16, WHITE, true}}, 0.275, false},
-    /* only light from a cloudy sky: folds and hollows are darker, and no shadow has an edge */
+    /* light almost only from a cloudy sky: folds and hollows are darker, and no shadow has an edge */
     [OVERCAST] = {1, {{0, 80, 60, 0.30, WHITE, true}}, 2.75, true}};
 /* clang-format on */
 
-/* The sky's strength that a rig gives to scenes without a sky, divided by the key light's intensity. It is
- * the ratio in scenes of bare volumes. */
+/* The sky's strength that a rig gives to scenes without a sky, divided by the key light's intensity. Scenes
+ * of bare volumes have this ratio. */
 #define SKY_OVER_KEY 0.345
 
 const char *hl_light_rig_name(size_t index) { return index < RIGS ? hl_light_rig_choices[index].name : NULL; }
@@ -67,7 +67,7 @@ static const rig *rig_named(const char *name) {
 }
 
 /* The intensity of which the rig's lights get fractions: the intensity of the scene's strongest light. For a
- * scene without lights it is the intensity of the light that is chosen for such scenes. */
+ * scene without lights, the intensity of hl_scene_key_light(), which such scenes get. */
 static double key_intensity(const hl_scene_description *description) {
   hl_light key;
   double strongest = 0;

@@ -5,6 +5,6 @@
 
 #include <halflight/settings.h>
 
-extern const hl_setting_choice hl_light_rig_choices[]; /* the last one has a null name */
+extern const hl_setting_choice hl_light_rig_choices[]; /* the last choice has a null name */
 
 #endif

@@ -1,9 +1,9 @@
 /* guess/rim.c - finds whether the thresholds of scanned objects lie within the values of their outer matter.
  *
  * A surface between two materials has about the same area for any value between them. A surface at the value
- * of a material follows the material's noise, so that its area is much larger. So if the area has a maximum
- * between the thresholds faint and solid, the value of the maximum is the value of an outer material. The rim
- * of the objects then lies half way from the background to this value. */
+ * of a material follows the material's noise, so that its area is much larger. So if the area as a function
+ * of the value has a maximum between the thresholds faint and solid, an outer material has the value at the
+ * maximum. The rim of the objects then lies half way from the background to this value. */
 #include <math.h>
 
 #include "guess/analysis.h"
@@ -12,8 +12,8 @@ enum {
   LEVELS = 64
 }; /* number of levels, between the background and the threshold solid, at which areas are counted */
 
-/* The least ratio of the area at an outer material's value to the areas on both sides of it. Measured: a head
- * whose skin is dark has 1.31; the greatest ratio of eight other scans is 1.05. */
+/* The least ratio of the area at an outer material's value to the areas on both sides of it. Measured: the
+ * ratio is 1.31 in a head whose skin is dark, and at most 1.05 in eight other scans. */
 #define MAXIMUM 1.2
 
 static double level_of(int level, double solid) { return (level + 0.5) / LEVELS * solid; }
@@ -23,9 +23,9 @@ static int levels_below(double distance, double solid) {
   return (int)fmin(fmax(ceil(distance / solid * LEVELS - 0.5), 0), LEVELS);
 }
 
-/* Counts, for each level, the pairs of neighbours that have values on both sides of the level: this number
- * stands for the surface's area. Along each axis, every second place of the sample is enough for 64
- * levels. */
+/* Counts, for each level, the pairs of neighbours whose values lie on both sides of the level. The number of
+ * pairs stands for the area of the surface at the level. Along each axis, every second place of the sample is
+ * enough for 64 levels. */
 static void count_areas(const hl_volume *volume, const hl_sample *sample, const hl_data_analysis *a,
                         double areas[LEVELS]) {
   const size_t *n = volume->dimension, step = 2 * sample->step;

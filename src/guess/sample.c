@@ -9,8 +9,8 @@
 #include "core/memory.h"
 #include "elementary/elementary.h"
 
-/* An unsigned integer that sorts as the float does. The bits of a negative float are inverted; other floats
- * get the highest bit set. */
+/* An unsigned integer whose order among such integers is the order of the floats. The bits of a negative
+ * float are inverted; other floats get the highest bit set. */
 static uint32_t key_of(float value) {
   uint32_t bits;
   memcpy(&bits, &value, sizeof bits);

@@ -1,7 +1,7 @@
 /* guess/sample.h - takes a sorted sample of a volume's voxels, from which automatic choices are made.
  *
- * Values are relative to the volume's range, where 0 is its least value and 1 its greatest. So the data's
- * units do not matter. */
+ * Values are relative to the volume's range, where 0 is its least value and 1 its greatest. So automatic
+ * choices do not depend on the data's units. */
 #ifndef HL_GUESS_SAMPLE_H
 #define HL_GUESS_SAMPLE_H
 
@@ -20,15 +20,17 @@ typedef struct hl_sample {
   size_t step; /* number of voxels from one sample to the next along each axis */
 } hl_sample;
 
-/* Takes a sample of a volume. Fails only for lack of memory. Either array may be empty if voxels are NaN. */
+/* Takes a sample of a volume. The arrays `values` and `border` may be empty if voxels are NaN. Fails only for
+ * lack of memory. */
 hl_status hl_sample_make(const hl_volume *volume, hl_sample *sample, hl_error *error);
 void hl_sample_release(hl_sample *sample);
 
-/* The quantile of an ascending array: `fraction` (0 to 1) of its elements are below it. */
+/* The quantile of an ascending array: the fraction `fraction` (0 to 1) of the array's elements lies below the
+ * quantile. */
 double hl_quantile(const float *ascending, size_t count, double fraction);
 
-/* The commonest value of an ascending array. It is found by taking the densest half of the array again and
- * again (half-sample mode; Bickel and Fruehwirth 2006). */
+/* The commonest value of an ascending array. The function takes the densest half of the array again and again
+ * (half-sample mode; Bickel and Fruehwirth 2006). */
 double hl_mode(const float *ascending, size_t count);
 
 /* The threshold, among values greater than `above`, for which the variance between the two classes on its
@@ -42,17 +44,17 @@ double hl_threshold_cross_entropy(const float *ascending, size_t count, double f
 
 /* The roughness of objects: the sum of |second differences| divided by the sum of |first differences|, over
  * the voxels whose relative value differs from `background` by more than `distance`. Smooth simulations have
- * less than about 0.5, turbulence and noise more than about 0.7. */
+ * a roughness of less than about 0.5, turbulence and noise of more than about 0.7. */
 double hl_roughness(const hl_volume *volume, const hl_sample *sample, double background, double distance);
 
-/* The noise of objects, relative to the range: the standard deviation of white noise with the same median
- * difference. This difference is of second order along each of the three axes, so that it is 0 for linear and
- * quadratic changes (after Immerkaer 1996). Objects have relative values beyond `from` in the direction (+1:
- * above; -1: below). Fails only for lack of memory. */
+/* The noise of objects, relative to the range: the standard deviation of white noise with the same median of
+ * the mixed difference. The mixed difference is of second order along each of the three axes, so that values
+ * which change linearly along an axis have the difference 0 (after Immerkaer 1996). Objects have relative
+ * values beyond `from` in the direction (+1: above; -1: below). Fails only for lack of memory. */
 hl_status hl_noise(const hl_volume *volume, const hl_sample *sample, double from, double direction,
                    double *noise, hl_error *error);
 
-/* Sorts in ascending order; false where there is no memory. */
+/* Sorts values in ascending order. Returns false if memory is lacking. */
 bool hl_sort(hl_context *context, float *values, size_t count);
 
 #endif

@@ -5,12 +5,13 @@
 
 #include "volume/scraps.h"
 
-/* Bodies with fewer voxels than this part of the largest body's are scraps. */
+/* A body is a scrap if it has fewer voxels than this fraction of the largest body's voxels. */
 #define LEAST (1.0 / 500)
-/* The greatest part of all bodies' voxels that may be scraps. Where small bodies have more, they are what was
- * scanned: gravel, foam, cells. */
+/* The greatest fraction of all bodies' voxels that may be scraps. If small bodies have more of the voxels,
+ * the small bodies are the scanned object itself: gravel, foam, cells. */
 #define SHARE 0.05
-/* The part of the way from the first matter that is seen to solid matter, from which on matter is firm. */
+/* Matter is firm beyond this fraction of the way from the value of the faintest visible matter to the value
+ * of solid matter. */
 #define RIM 0.35
 
 /* The value at which the function begins to show matter; NAN if it has no such value. */
@@ -24,8 +25,8 @@ static double find_faint(const hl_transfer_function *function, double direction)
   return NAN;
 }
 
-/* The value from which on matter is firm. Vessels thin out until only faint matter is left of them, so that
- * all matter of vessels counts. */
+/* The value from which on matter is firm. Vessels thin out until only faint matter is left, so that all
+ * visible matter of vessels counts as firm. */
 static double find_firm(const hl_data_analysis *analysis, double faint) {
   const double solid = analysis->background + analysis->direction * analysis->solid;
   return analysis->vessels > 0 ? faint : faint + RIM * (solid - faint);
@@ -33,7 +34,7 @@ static double find_firm(const hl_data_analysis *analysis, double faint) {
 
 hl_status hl_scraps_choose(const hl_scene_volume *volume, const hl_data_analysis *analysis,
                            hl_scene_volume *shown, hl_error *error) {
-  /* values without any noise were computed, and each of their bodies was meant */
+  /* values without any noise were computed, not scanned, so that every body is there on purpose */
   if (analysis->kind != HL_DATA_SURFACES || !(analysis->grain > 0) || !hl_scraps_apply(volume->volume))
     return HL_OK;
   hl_scraps_rule chosen = {.least = LEAST};

@@ -13,18 +13,18 @@
 #include "scene/label/label_table.h"
 #include "volume/store/pages.h"
 
-/* voxels at the rim do not count if their opacity is below this fraction of the greatest opacity */
+/* a voxel beside seen cells does not count if its opacity is below this fraction of the greatest opacity */
 #define FAINT  0.02
 #define LOST   0.04   /* least optical depth of a column whose cells count as seen */
-#define OPAQUE 0.9999 /* limit of opacities; it is below 1, because an opacity of 1 has an infinite depth */
-/* The greatest fraction of the seen cells that may be specks. If small bodies have more cells, they are
- * matter. */
+#define OPAQUE 0.9999 /* limit of opacities; an opacity of 1 would have an infinite optical depth \ */
+/* The greatest fraction of the seen cells that may be specks. If small bodies have a greater fraction of the
+ * cells, the small bodies count as matter. */
 #define SPECKS_AT_MOST 0.03
 #define FAINT_RATIO    200 /* a body is a speck if another body has this many times its optical depth */
 
-#define TISSUE        (-300) /* a limit in Hounsfield units: tissue is denser, foam and clothes are not */
+#define TISSUE        (-300) /* a limit in Hounsfield units: tissue is denser, foam and clothes are not \ */
 #define BODY_AT_LEAST 0.8    /* least fraction of the dense cells that a patient's body has */
-/* The cells of a holder, as a fraction of the body's cells: from this number to HOLDER_AT_MOST. */
+/* The least and the greatest number of a holder's cells, as a fraction of the body's cells. */
 #define HOLDER_AT_LEAST (1.0 / 500)
 #define HOLDER_AT_MOST  (1.0 / 30)
 
@@ -101,7 +101,7 @@ typedef struct voxel_row {
   size_t cells; /* the row's first cell */
 } voxel_row;
 
-/* The optical depth per length of a voxel as it is seen: as the transfer function and the mask have it. */
+/* The optical depth per length of a voxel, after the transfer function and the mask. */
 static float seen_depth(const hl_seen *seen, const voxel_row *row, ptrdiff_t i) {
   const float depth = depth_at(seen, row->voxels, i);
   return seen->mask == NULL || !(depth > 0) ? depth
@@ -276,7 +276,8 @@ static bool has_holder(const hl_bodies *bodies) {
 }
 
 /* In CT scans whose transfer function shows tissue, marks the holders of the patient as not seen. Only dense
- * cells are used, between which air or foam separates a holder from the body. */
+ * cells are looked at, because air or foam separates the dense cells of a holder from the dense cells of the
+ * body. */
 static hl_status forget_holders(hl_seen *seen, hl_error *error) {
   hl_context *context = seen->volume->context;
   size_t cells = (size_t)seen->size[0] * (size_t)seen->size[1] * (size_t)seen->size[2];

@@ -3,8 +3,8 @@
  *
  * A cell counts as seen if its columns along at least two of the grid's axes absorb light. Cells that share
  * faces form bodies. Specks, which are bodies much smaller than the largest one, do not count, unless all
- * specks together have many cells. Holders of a patient in a CT scan do not count, either. So faint matter
- * and single voxels of noise do not widen the picture. */
+ * specks together have many cells. Holders of a patient in a CT scan do not count, either. By these rules,
+ * faint matter and single voxels of noise do not widen the picture. */
 #ifndef HL_GUESS_SEEN_CELLS_H
 #define HL_GUESS_SEEN_CELLS_H
 
@@ -18,10 +18,11 @@ enum { HL_SEEN_NOTHING = 0, HL_SEEN_BESIDE = 1, HL_SEEN = 2 }; /* BESIDE: the ce
 
 typedef struct hl_seen {
   const hl_volume *volume;
-  cut_shape *cuts; /* owned; [cut_count]; matter that they remove is not seen */
+  cut_shape *cuts; /* owned; [cut_count]; matter that the cuts remove is not seen */
   size_t cut_count;
-  const hl_mask *mask;        /* borrowed; matter that it hides is not seen; null if there is no mask */
-  affine3 index_to_mask;      /* maps the volume's index space to that of the mask's label map */
+  const hl_mask *mask;        /* borrowed; matter that the mask hides is not seen; null if the volume has no
+                               * mask */
+  affine3 index_to_mask;      /* maps the volume's index space to the index space of the mask's label map */
   ptrdiff_t first[3], end[3]; /* voxels inside the volume's box */
   size_t step;                /* number of voxels along each edge of a cell */
   size_t stride;              /* along y and z, every stride-th row is examined */
@@ -42,23 +43,23 @@ typedef struct hl_seen {
   float faint; /* least depth per length with which voxels beside seen cells count */
 } hl_seen;
 
-/* Finds the cells of a volume. *any: false where nothing of the volume can be seen. Fails only for lack of
- * memory; release the result in any case. */
+/* Finds the cells of a volume. *any: set to whether anything of the volume can be seen. Fails only for lack
+ * of memory; release the result in any case. */
 hl_status hl_seen_find(const hl_scene_volume *volume, hl_seen *seen, bool *any, hl_error *error);
 void hl_seen_release(hl_seen *seen);
 
-/* The first and the last voxel that counts in the row (j, k). Returns false if there is none. */
+/* The first and the last voxel that counts in the row (j, k). Returns false if no voxel of the row counts. */
 bool hl_seen_row(const hl_seen *seen, ptrdiff_t j, ptrdiff_t k, ptrdiff_t *first, ptrdiff_t *last);
 
 /* ---- bodies: marked places of a lattice that are connected by their faces ---- */
 
 typedef struct hl_bodies {
-  uint32_t *body;   /* owned; [size[2]][size[1]][size[0]]; number of the body, from 1 to count; 0 if there is
-                     * none */
+  uint32_t *body;   /* owned; [size[2]][size[1]][size[0]]; number of the place's body, from 1 to count; 0 if
+                     * the place is not marked */
   uint32_t *places; /* owned; [count + 1]; each body's number of places */
   uint32_t count;
-  uint32_t largest; /* the body with the most places; of equally large bodies, the first; 0 if there is
-                     * none */
+  uint32_t largest; /* number of the body with the most places; of equally large bodies, the first; 0 if there
+                     * are no bodies */
 } hl_bodies;
 
 /* Finds the bodies. marked: not 0 where a place belongs to a body. Fails only for lack of memory; release the

@@ -1,9 +1,9 @@
 /* guess/smoothing.c - hl_volume_smooth(), and the choice of the bare volumes that are smoothed by default.
  *
- * A brain without its skull was cut out voxel by voxel: around it all voxels have one value, and the first
- * voxel inside is as bright as the matter within. No kernel makes a smooth surface of such a cliff. Where
- * voxels stand further apart than the scanner resolves, as thick slices do, surfaces have terraces. A
- * scanner's noise makes grain. */
+ * A brain without its skull was cut out voxel by voxel: around the brain all voxels have one value, and the
+ * first voxel inside is as bright as the matter within. No reconstruction kernel makes a smooth surface of
+ * such a cliff. Where voxels stand further apart than the scanner resolves, as thick slices do, surfaces have
+ * terraces. A scanner's noise makes surfaces grainy. */
 #include "guess/smoothing.h"
 
 #include <math.h>
@@ -15,17 +15,19 @@
 #include "volume/store/gathered.h"
 #include "volume/unsmoothed.h"
 
-/* The standard deviation, in voxels, of the Gaussian for all three kinds of volumes that are smoothed. It is
- * the least one that leaves no stairs on the gyri of real brains. */
+/* The standard deviation, in voxels, of the Gaussian for all three kinds of volumes that are smoothed. This
+ * is the least deviation that leaves no stairs on the gyri of real brains. */
 #define SIGMA 0.8
 /* The greatest accepted standard deviation. */
 #define GREATEST_SIGMA 16
 /* The sharpness from which surfaces have terraces. Derived: a step that a Gaussian of half a voxel has
- * blurred has .614 in the mean over its places between the voxels (equations: sharpness). Sharper steps keep
- * more than .29 of their waves of two voxels, the shortest ones that voxels carry. */
+ * blurred has the sharpness .614, in the mean over the step's places between the voxels (equations:
+ * sharpness). Sharper steps keep more than .29 of their waves that are two voxels long, the shortest waves
+ * that voxels carry. */
 #define TERRACED 0.614
-/* Surfaces are grainy if noise moves them by this part of a voxel edge. Four scans in which grain is seen
- * have .09 to .19, and eleven others at most .03 (measured). */
+/* Surfaces are grainy if noise moves them by this fraction of a voxel edge. Measured: noise moves the
+ * surfaces of four scans in which grain is seen by .09 to .19, and the surfaces of eleven other scans by at
+ * most .03. */
 #define GRAINY 0.05
 
 double hl_smoothing_for(const hl_volume *volume, const char *file, const hl_data_analysis *analysis) {
@@ -33,7 +35,8 @@ double hl_smoothing_for(const hl_volume *volume, const char *file, const hl_data
       atomic_load(&volume->smoothing_chosen))
     return 0;
   const bool stairs = analysis->cliffs >= HL_CUT_OUT && hl_is_body(volume, file, analysis);
-  /* Values without any noise were computed, and not scanned. Their edges are meant to be sharp. */
+  /* Values without any noise were computed, and not scanned. The edges of computed data are meant to be
+   * sharp. */
   const bool terraces = analysis->sharpness >= TERRACED && analysis->grain > 0;
   return stairs || terraces || analysis->grain >= GRAINY ? SIGMA : 0;
 }

@@ -1,5 +1,5 @@
-/* guess/styles.c - see styles.h. Opacities are per smallest voxel edge. They lie at distances from the
- * background that the analysis has found. */
+/* guess/styles.c - see styles.h. Opacities are per smallest voxel edge. Opacities are given at distances from
+ * the background that the analysis has found. */
 #include "guess/styles.h"
 
 #include <math.h>
@@ -12,7 +12,7 @@ typedef struct opacity_step {
   double distance, opacity;
 } opacity_step;
 
-/* Adds the steps; if objects lie on both sides of the background, adds them on each side. */
+/* Adds the steps to the function, on both sides of the background if objects have values on both sides. */
 static void add_steps(hl_function_writer *w, const opacity_step *steps, int count) {
   w->opacity_count = 0;
   if (w->analysis->kind == HL_DATA_SIGNED) {
@@ -36,8 +36,8 @@ static void write_surface(hl_function_writer *w) {
   add_steps(w, steps, 3);
 }
 
-/* Writes the outside of matter, and the walls of all holes in it, as shells. Voxels at such a boundary have
- * values half way to the values of the matter. The matter within is nearly clear. */
+/* Writes the outside of matter, and the walls of all holes in it, as shells. Voxels at the boundary of matter
+ * have values half way from the background to the value of the matter. The matter within is nearly clear. */
 static void write_shells(hl_function_writer *w) {
   const hl_data_analysis *a = w->analysis;
   double veil = hl_opacity_for(a, 0.2);
@@ -94,8 +94,8 @@ static void write_smoke(hl_function_writer *w) {
 
 /* Writes only the brightest matter, in colours from red to cream, as vessels with a contrast medium show it.
  * If vessels were found, opacity begins a little below their values, because voxels at their edges also
- * contain the matter around them. Metal, such as a stent, is brighter than vessels: they are then the solid
- * matter below metal. */
+ * contain the matter around them. Metal, such as a stent, is brighter than vessels: in a scan with metal, the
+ * vessels are the solid matter darker than the metal. */
 static void write_vessels(hl_function_writer *w) {
   static const double wall[3] = {0.42, 0.03, 0.02}, blood[3] = {0.75, 0.10, 0.05},
                       bright[3] = {0.95, 0.75, 0.50};
@@ -115,7 +115,7 @@ static void write_vessels(hl_function_writer *w) {
   hl_add_color(w, top, bright);
 }
 
-/* Rows are as in looks.c. */
+/* The columns of the table are the columns of the table in looks.c. */
 static const hl_look styles[] = {
     {"surface", write_surface, HL_SHADING_PHONG, HL_KERNEL_BSPLINE, HL_LIGHT_OF_SURFACES, 0.72, false,
      "translucent", false, "surface"},

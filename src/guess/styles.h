@@ -5,7 +5,8 @@
 
 #include "guess/look.h"
 
-/* A style of looks, by number or by name; null if there is no such style. */
+/* A style by its number (hl_style) or its name (hl_style_find); null if no style has the number or the name.
+ */
 const hl_look *hl_style(size_t index);
 const hl_look *hl_style_find(const char *name);
 

@@ -1,9 +1,10 @@
 /* guess/vessels.c - finds bright tubes within other matter, as angiography shows vessels.
  *
- * A scan may have a few voxels that are far brighter than all others. If these form tubes, the scan was made
- * for the tubes, and not for the object around them. In Hounsfield units such voxels are bone, not vessels. A
- * voxel lies in a tube if straight lines through it stay among bright voxels for long in only one or two
- * directions. In a sheet there are four or more such directions, in a ball and in noise there are none. */
+ * A scan may have a few voxels that are far brighter than all others. If these bright voxels form tubes, the
+ * scan was made to show the tubes, and not the object around them. In Hounsfield units the brightest voxels
+ * are bone, not vessels. A voxel lies in a tube if straight lines through it stay among bright voxels for
+ * long in only one or two directions. In a sheet, lines in four or more directions stay among bright voxels
+ * for long; in a ball and in noise, lines in no direction do. */
 #include <math.h>
 
 #include "guess/analysis.h"
@@ -22,7 +23,7 @@
 enum { LONG = 5 /* a long line has at least this many voxels */, REACH = 32, DIRECTIONS = 13, LEVELS = 4 };
 enum { MOST_SEEDS = 4000, LEAST_SEEDS = 60 };
 
-/* The directions to the 26 neighbours; of two opposite directions, only one. */
+/* The directions to the 26 neighbours of a voxel, without the opposites of listed directions. */
 static const int directions[DIRECTIONS][3] = {{1, 0, 0},  {0, 1, 0},  {0, 0, 1}, {1, 1, 0},  {1, -1, 0},
                                               {1, 0, 1},  {1, 0, -1}, {0, 1, 1}, {0, 1, -1}, {1, 1, 1},
                                               {1, 1, -1}, {1, -1, 1}, {-1, 1, 1}};
@@ -83,7 +84,7 @@ static bool is_in_tube(const vessel_search *s, const size_t seed[3]) {
 }
 
 /* Counts the object's voxels, the bright voxels and the voxels in tubes, at the places of the sample. every:
- * one of this number of bright voxels is examined. */
+ * of this number of bright voxels, one is examined for lying in a tube. */
 static void look(const vessel_search *s, size_t every, met *things, met *bright, met *tubes) {
   const size_t *n = s->volume->dimension, step = s->sample->step;
   *things = *bright = *tubes = (met){0};
@@ -107,7 +108,7 @@ static bool are_spread(const met *tubes, const met *things) {
 }
 
 /* Returns true if the voxels beyond the level are vessels. expected: the approximate number of these voxels
- * in the sample. *few: whether they are few enough to be vessels. */
+ * in the sample. *few: set to whether the voxels beyond the level are few enough to be vessels. */
 static bool are_vessels(const vessel_search *s, size_t expected, bool *few) {
   met things, bright, tubes;
   size_t every = expected / MOST_SEEDS + 1;

@@ -1,4 +1,4 @@
-/* guess/view.c - finds which way is up in a volume whose file does not say it, and views from a side.
+/* guess/view.c - finds which way is up in a volume whose file does not say it, and makes views from a side.
  *
  * Only the default camera depends on these guesses, never a coordinate. */
 #include "guess/view.h"
@@ -30,8 +30,8 @@ typedef struct shape {
   int size[3];           /* places of the lattice along each axis */
   unsigned char *solid;  /* owned; [size[2]][size[1]][size[0]]; 1 where an object is */
   double *area[3];       /* owned; [size[a]]; solid places in each slice across axis a */
-  int first[3], last[3]; /* first and last slice of the objects, without 0.2 % of their places at either
-                          * end */
+  int first[3], last[3]; /* first and last slice of the objects along each axis, leaving out 0.2 % of the
+                          * objects' places at either end */
 } shape;
 
 static bool is_oriented(const hl_volume *volume) {
@@ -96,8 +96,8 @@ static void fill(const hl_volume *volume, const hl_data_analysis *analysis, size
       }
 }
 
-/* Keeps only the largest connected body, so that a board beside it, for example, does not count. If all
- * bodies are small, all are kept. */
+/* Keeps only the largest connected body, so that a board beside the body, for example, does not count. If all
+ * bodies are small, the function keeps all of them. */
 static hl_status forget_others(hl_context *context, shape *s, hl_error *error) {
   hl_bodies bodies;
   hl_status status = hl_bodies_find(context, s->solid, s->size, &bodies, error);
@@ -159,8 +159,8 @@ static double bluntness(const shape *s, int axis, int end) {
   return sum / slices / greatest;
 }
 
-/* The similarity of the objects to their mirror image: the number of places that belong to both, divided by
- * the number of places that belong to at least one. */
+/* The similarity of the objects to their mirror image across an axis: the number of places that belong to the
+ * objects and to the image, divided by the number of places that belong to the objects or to the image. */
 static double symmetry(const shape *s, int axis) {
   double both = 0, either = 0;
   int n[3];
@@ -177,7 +177,7 @@ static double symmetry(const shape *s, int axis) {
 }
 
 /* The number of places from one end of an axis to the first solid place, in the row (u, v) of the other two
- * axes; -1: the row has no solid place. */
+ * axes; -1 if the row has no solid place. */
 static int depth_at(const shape *s, int axis, int end, int u, int v) {
   int n[3];
   n[(axis + 1) % 3] = u;
@@ -206,8 +206,8 @@ static double relief(const shape *s, int axis, int end) {
   return sum;
 }
 
-/* The axis along which the objects are their own mirror image, as a head is from left to right; -1: there is
- * none, or more than one. */
+/* The axis along which the objects are their own mirror image, as a head is from left to right; -1 if no
+ * axis, or more than one, is such an axis. */
 static int mirror_axis(const shape *s) {
   for (int a = 0; a < 3; a++) {
     double own = symmetry(s, a), others = fmax(symmetry(s, (a + 1) % 3), symmetry(s, (a + 2) % 3));
@@ -217,15 +217,16 @@ static int mirror_axis(const shape *s) {
 }
 
 /* The way up of objects without a bottom. If left and right lie along z, -y is up, because rows of pictures
- * run downwards; otherwise z is up. A head's vault is smooth, and its jaw is not. So if objects with a left
- * and a right have clearly more relief on the upper side than on the lower one, they are upside down. */
+ * run downwards; otherwise z is up. A head's vault is smooth, and its jaw is rough. So if objects with a left
+ * and a right have clearly more relief on the upper side than on the lower side, the objects are upside down.
+ */
 static int up_without_bottom(const shape *s) {
   const int mirror = mirror_axis(s), up = mirror == 2 ? -2 : 3, axis = abs(up) - 1;
   const bool overturned = mirror >= 0 && relief(s, axis, up > 0) > CLEARLY * relief(s, axis, up < 0);
   return overturned ? -up : up;
 }
 
-/* The axis that points up, as +-(axis + 1). It is +3 (z) if nothing indicates another axis. */
+/* The axis that points up, as +-(axis + 1). The result is +3 (z) if nothing indicates another axis. */
 static int up_of(const shape *s, const hl_volume *volume) {
   double extent[3], most = 0;
   int bottom = 0;
@@ -257,7 +258,7 @@ static int axis_of(vec3 v, int *end) {
   return axis;
 }
 
-/* Returns true if the side that v points to has clearly less relief than the opposite one. */
+/* Returns true if the side of the objects that v points to has clearly less relief than the opposite side. */
 static bool opposite_shows_more(const shape *s, vec3 v) {
   int end, axis = axis_of(v, &end);
   return relief(s, axis, !end) > CLEARLY * relief(s, axis, end);
@@ -297,9 +298,9 @@ hl_status hl_scene_upright(const hl_scene_volume *volume, const hl_data_analysis
 
 static vec3 left_of(hl_space space) { return (vec3){space == HL_SPACE_RAS ? -1 : 1, 0, 0}; }
 
-/* Returns true if the first volume decides which way is up: it is the only volume and the scene does not
- * rotate it, or no volume is made of shapes, rotated or moved by the scene. In other scenes z counts as
- * up. */
+/* Returns true if the first volume decides which way is up: the first volume is the only one and the scene
+ * does not rotate it, or no volume is made of shapes, rotated or moved by the scene. In other scenes z counts
+ * as up. */
 static bool first_decides(const hl_scene_description *description) {
   if (description->volume_count == 1) return description->volumes[0].rotate_angle_deg == 0;
   for (size_t v = 0; v < description->volume_count; v++) {
@@ -319,8 +320,8 @@ hl_status hl_view_automatic(const hl_scene_description *description, hl_outline 
   hl_data_analysis analysis;
   hl_status status = hl_data_analyse(first->volume, &analysis, error);
   if (status != HL_OK) return status;
-  /* Programs write left-posterior-superior for data of any kind, so that this space says little unless the
-   * file is DICOM. */
+  /* Programs write the space left-posterior-superior for data of any kind, so that the space tells the
+   * anatomy only in DICOM files. */
   const bool decides = !hl_scene_is_anatomical(description) && first_decides(description);
   if (decides) {
     hl_upright upright;
@@ -342,9 +343,9 @@ static double azimuth_of_left(const hl_scene_description *description, const hl_
   return vec3_dot(vec3_cross(vec3_of(view->up), vec3_of(view->front)), left_of(space)) > 0 ? 90 : -90;
 }
 
-/* Finds the azimuth of the front, in degrees. For most volumes it is 0. A scanned body whose file does not
- * tell its directions has its face on the side with more relief, which the automatic view shows. If this is
- * the side behind, the azimuth is 180. */
+/* Finds the azimuth of the front, in degrees. For most volumes the azimuth is 0. A scanned body whose file
+ * does not tell the anatomy has its face on the side with more relief, which the automatic view shows. If the
+ * automatic view shows the back of the grid, the azimuth is 180. */
 static hl_status find_front(const hl_scene_description *description, const hl_view *automatic,
                             double *azimuth_deg, hl_error *error) {
   *azimuth_deg = 0;
@@ -356,14 +357,14 @@ static hl_status find_front(const hl_scene_description *description, const hl_vi
   return status;
 }
 
-/* Whether the view's up is the direction of a body's head, as its file tells. */
+/* Returns whether the view's up is the direction to a body's head, as the volume's file tells. */
 static bool stands_on_feet(const hl_scene_description *description, const hl_view *view) {
   return hl_scene_space(description) != HL_SPACE_UNKNOWN && view->up[2] > 0.999;
 }
 
-/* Turns a view to a side. front: the azimuth of the front, 0 or 180 degrees. The front of a body is at the
- * picture's upper edge, from its head as from its feet, as atlases show it; other tops are seen as somebody
- * sees them who stands before the volume and bends over it. */
+/* Turns a view to a side. front: the azimuth of the front, 0 or 180 degrees. Seen from its head or from its
+ * feet, a body has its front at the picture's upper edge, as in atlases. The top of another volume is seen as
+ * by somebody who stands before the volume and bends over it. */
 static void look_from(const hl_scene_description *description, hl_side side, double front, hl_view *view) {
   const double left = azimuth_of_left(description, view), isometric = hl_atan(sqrt(0.5)) * 180 / HL_PI;
   const double azimuth[] = {[HL_SIDE_BACK] = 180,

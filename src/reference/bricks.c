@@ -1,6 +1,6 @@
-/* reference/bricks.c - evaluates a field in bricks (bricks/bricks.h) at a point. Such a field is stored as
- * B-spline coefficients. The field's value is a weighted sum of the 64 coefficients around the point, at the
- * level of the brick that contains the point. */
+/* reference/bricks.c - evaluates a field in bricks (bricks/bricks.h) at a point. A field in bricks is stored
+ * as B-spline coefficients. The field's value at a point is a weighted sum of the 64 coefficients around the
+ * point, at the level of the brick that contains the point. */
 #include "bricks/bricks.h"
 
 #include "core/memory.h"

@@ -19,8 +19,8 @@ static void bounds_of(const hl_scene_volume *other, affine3 world_to_index, doub
   }
 }
 
-/* Removes from a volume's clip faces the faces of its box that touch the other volume's box. At these faces
- * matter goes on in the other volume. */
+/* Removes from a volume's clip faces the faces of its box that touch the other volume's box. Beyond these
+ * faces, matter goes on in the other volume. */
 static void join(const hl_scene_volume *other, reference_volume *volume) {
   double low[3], high[3];
   bounds_of(other, volume->world_to_index, low, high);

@@ -6,13 +6,14 @@
 
 enum {
   TERMS = 40 /* number of terms of the sum over z^k s. Each term is at most 0.268 times the term before, so
-              * that all left-out terms together are about 1e-22 */
+              * that the terms beyond this number add up to about 1e-22 */
 };
 
 /* Filters a line of voxels. Unser, Aldroubi and Eden 1993: with the pole z = sqrt(3) - 2, the forward filter
- * is p[k] = s[k] + z p[k-1], the backward filter q[k] = z (q[k+1] - p[k]), and the gain is 6. The line goes
- * on, beyond each end, as its mirror image, in which the voxel at the end occurs a second time. Derived: the
- * sequence p begins with the sum of z^k s over the mirrored line, and q with z / (z - 1) p. */
+ * is p[k] = s[k] + z p[k-1], the backward filter q[k] = z (q[k+1] - p[k]), and the gain is 6. Beyond each
+ * end, the line of voxels is continued by its mirror image, in which the voxel at the end occurs a second
+ * time. Derived: the sequence p begins with the sum of z^k s over the mirrored line, and q with z / (z - 1)
+ * p. */
 static void filter_line(double *line, size_t count, size_t stride) {
   const double z = sqrt(3) - 2;
   if (count < 2) return;

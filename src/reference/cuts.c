@@ -2,8 +2,8 @@
  * the world of the volume's file, or in the scene's world. The point is converted to the same world before it
  * is tested.
  *
- * The height of a point over a cut's face is positive outside the cut's shape, and negative inside. Heights
- * have the length unit of the cut's world. */
+ * The height of a point over a cut's face is positive outside the cut's shape, and negative inside the shape.
+ * Heights have the length unit of the cut's world. */
 #include "reference/reference.h"
 
 typedef struct height {
@@ -93,9 +93,9 @@ double hl_reference_next_face(const reference_volume *volume, vec3 origin, vec3 
   return next;
 }
 
-/* The normal, in the world, of a cut's face. Among several cuts, the one whose face is nearest to the point
- * counts. Derived: if M maps index space to the world, a height h rises by |(M^-1)^T grad h| per world
- * unit. */
+/* The normal, in the world, of a cut's face. Among several cuts, the cut whose face is nearest to the point
+ * counts. Derived: if M maps index space to the world, a height h rises by |(M^-1)^T grad h| per world unit.
+ */
 vec3 hl_reference_cut_normal(const reference_volume *volume, vec3 point) {
   const hl_scene_volume *described = volume->described;
   vec3 face = {0, 0, 0};
@@ -112,9 +112,9 @@ vec3 hl_reference_cut_normal(const reference_volume *volume, vec3 point) {
 }
 
 /* Finds the distance along a ray from a point that no cut removes to the place where matter removed by a cut
- * begins. The function looks behind each face that hl_reference_next_face() finds, because this function
- * treats the faces of a box as endless planes: matter may go on behind such a plane. direction: in index
- * coordinates, but of unit length in the world. */
+ * begins. The function tests the point behind each face that hl_reference_next_face() finds, because
+ * hl_reference_next_face() treats the faces of a box as endless planes, behind which matter may go on.
+ * direction: in index coordinates, but of unit length in the world. */
 static double way_to_removed(const reference_volume *volume, vec3 point, vec3 direction) {
   const double beyond = 1e-4 * volume->smallest_edge;
   double way = 0;
@@ -125,15 +125,15 @@ static double way_to_removed(const reference_volume *volume, vec3 point, vec3 di
 
 /* The face of a cut or of the box through which a ray leaves a volume's matter. */
 typedef struct left_face {
-  vec3 outward;  /* outward normal of the face; a unit vector in the world */
+  vec3 outward;  /* outward normal of the face; a unit vector of the world */
   vec3 crossing; /* the point where the ray crosses the face; index space */
   double skin;   /* the fraction of the matter at the ray's beginning that belongs to the face: 1 up to one
-                  * voxel behind the face, falling to 0 at two voxels behind it */
+                  * voxel behind the face, falling to 0 at two voxels behind the face */
 } left_face;
 
 static left_face find_left_face(const reference_volume *volume, vec3 point, vec3 direction, bool uncut) {
-  static const double FACE_VOXELS = 2; /* matter deeper than this behind a face, in voxels, is lit as if there
-                                        * were no face */
+  static const double FACE_VOXELS = 2; /* matter deeper than this behind a face, in voxels, is lit as if the
+                                        * face did not exist */
   const vec3 along = mat3_apply(volume->world_to_index.linear, direction);
   left_face face = {.skin = 0};
   double way = hl_reference_leaves_box(volume, point, along, &face.outward);
@@ -155,7 +155,7 @@ double hl_reference_lit_face(const reference_volume *volume, vec3 point, vec3 to
 }
 
 /* A point is seen through the face that the ray from the point to the eye crosses first. The face counts only
- * if matter is visible at the place where the ray crosses it. */
+ * if matter is visible at the place where the ray crosses the face. */
 double hl_reference_cut_face(const reference_volume *volume, vec3 point, vec3 to_eye, vec3 *normal,
                              double *surface) {
   const hl_scene_volume *described = volume->described;

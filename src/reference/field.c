@@ -2,9 +2,9 @@
  * bricks in which the volume is transparent.
  *
  * The field f at a point p is the sum over the 4 x 4 x 4 voxels around p, weighted by a tensor-product
- * kernel. Beyond the grid, the voxels at its borders are repeated. Every sample of a march (march.c) is such
- * a sum. The three kernels are written out here on purpose, because the reference shares no code with the
- * renderer. */
+ * kernel. Beyond the grid, the voxels at its borders are repeated. Every sample of a march (march.c) is a sum
+ * of this kind. This file defines the three kernels again on purpose, because the reference shares no code
+ * with the renderer. */
 #include <string.h>
 
 #include "bricks/bricks.h"
@@ -56,8 +56,8 @@ static void bspline_slope(double t, double slope[4]) {
   slope[3] = t * t / 2;
 }
 
-/* The weights of the Gaussian exp(-2 d^2), cut off at |d| = 2, for the four taps. They are divided by their
- * sum, so that a constant field stays constant. */
+/* The weights of the Gaussian exp(-2 d^2), cut off at |d| = 2, for the four taps. The weights are divided by
+ * their sum, so that a constant field stays constant. */
 static void gaussian(double t, double weight[4]) {
   double sum = 0;
   for (int tap = 0; tap < 4; tap++) {
@@ -123,7 +123,7 @@ static inline void find_taps(const reference_volume *volume, vec3 point, bool sl
 
 /* The weighted sum of the 64 voxels around a point. A voxel's weight is the product of its three taps'
  * weights. storage: the type of the stored voxels. Each caller passes a constant, so that the compiler makes
- * a loop of its own for each type. */
+ * a separate loop for each type. */
 static inline double weigh_stored(const reference_volume *volume, hl_storage storage,
                                   const size_t voxel[3][4], const double *x, const double *y,
                                   const double *z) {
@@ -203,10 +203,11 @@ double hl_reference_extinction(const reference_volume *volume, double value, vec
 
 /* ---- where the volume is transparent ----
  *
- * Index space is cut into bricks of 4 cells a side. Cell c of an axis holds the points p with floor(p) = c -
- * 1. So bricks start at p = -1, and cover the half cell before the first voxel. A weighted mean with weights
- * of one sign lies within the range of the weighted voxels. So every sample in a brick is transparent if the
- * transfer function is transparent over the range of all voxels that the brick's samples depend on. */
+ * Index space is cut into bricks of 4 cells a side. Cell c of an axis holds the points p with floor(p) = c
+ * - 1. So the first brick of an axis starts at p = -1, and covers the half cell before the first voxel. A
+ * weighted mean with positive weights lies within the range of the weighted voxels. So every sample in a
+ * brick is transparent if the transfer function is transparent over the range of all voxels that the brick's
+ * samples depend on. */
 
 enum { BRICK_CELLS = 4, FARTHEST = 255 };
 
@@ -214,7 +215,7 @@ static size_t least(size_t a, size_t b) { return a < b ? a : b; }
 
 /* Finds the voxels, along an axis of n voxels, on which the samples in brick number `brick` depend. In the
  * brick, floor(p) goes from 4 brick - 1 to 4 brick + 2, and the taps of p go from one voxel before floor(p)
- * to two after it. */
+ * to two voxels after floor(p). */
 static void brick_voxels(size_t brick, size_t n, size_t *first, size_t *last) {
   size_t corner = BRICK_CELLS * brick;
   *first = least(corner < 2 ? 0 : corner - 2, n - 1);
@@ -265,7 +266,8 @@ static bool brick_visible(const reference_volume *volume, size_t i, size_t j, si
          holds_iso(volume->described, fmin(a, b), fmax(a, b));
 }
 
-/* Sets the clearance of the bricks in layer k: 0 for visible bricks. */
+/* Sets the clearance of the bricks in layer k to 0 for bricks that may be visible, and to FARTHEST for other
+ * bricks. */
 static void mark_visible(void *data, size_t k, int worker) {
   (void)worker;
   const reference_volume *volume = data;
@@ -275,9 +277,9 @@ static void mark_visible(void *data, size_t k, int worker) {
 }
 
 /* Lowers the distance of brick (i, j, k) to one more than the least distance of its neighbours on one side.
- * side -1: the neighbours that come before the brick in memory; +1: the neighbours that come after it. Two
- * sweeps over all bricks, one in each direction, give the exact chessboard distance (Rosenfeld and Pfaltz,
- * "Distance functions on digital pictures", 1968). */
+ * side: -1 for the neighbours that come before the brick in memory, +1 for the neighbours that come after the
+ * brick. Two sweeps over all bricks, one in each direction, give the exact chessboard distance (Rosenfeld and
+ * Pfaltz, "Distance functions on digital pictures", 1968). */
 static void relax_brick(const reference_volume *volume, ptrdiff_t i, ptrdiff_t j, ptrdiff_t k, int side) {
   const ptrdiff_t n[3] = {(ptrdiff_t)volume->bricks[0], (ptrdiff_t)volume->bricks[1],
                           (ptrdiff_t)volume->bricks[2]};
@@ -395,8 +397,8 @@ hl_status hl_reference_volume_create(const reference *all, const hl_scene_volume
       !hl_reference_bricks_ranges(all->context, grid->bricks, made->empty_stored, &made->ranges))
     return hl_fail_memory(error, grid->bricks->slots * sizeof *made->ranges,
                           "the ranges of a volume's bricks");
-  /* If the transfer function makes no value transparent, the empty value lies below all values of the volume.
-   * The empty value then means that there is no matter. */
+  /* If the transfer function makes no value of the volume transparent, the empty value lies below all values
+   * of the volume, and stands for space without matter. */
   bool opaque_everywhere = hl_transfer_function_opacity(&described->transfer_function, made->empty_value) > 0;
   made->transparent_below = opaque_everywhere ? (made->empty_value + grid->minimum) / 2 : -INFINITY;
   if (made->kernel == HL_KERNEL_INTERPOLATING) {

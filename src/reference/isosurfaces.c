@@ -1,9 +1,9 @@
 /* reference/isosurfaces.c - finds the points at which rays meet isosurfaces. A ray meets an isosurface where
- * the field along the ray has the surface's value. It also meets the surface at faces of the volume's box and
- * cuts, where such a face cuts through the inside of the surface. */
+ * the field along the ray has the surface's value. A ray also meets the surface at a face of the volume's box
+ * or of a cut that cuts through the inside of the surface. */
 #include "reference/reference.h"
 
-/* A stretch of a ray. At one end the field is above an isosurface's value, at the other end below it. */
+/* A part of a ray at whose ends the field lies on different sides of an isosurface's value. */
 typedef struct bracket {
   double from, to; /* distances along the ray */
   bool rises;
@@ -55,7 +55,7 @@ static void meet_volume(const reference *all, const crossing *part, reference_hi
   }
 }
 
-/* Returns whether the ray's point at this distance lies in the volume's box and is not removed by a cut. */
+/* Returns whether the ray's point at this distance lies in the volume's box, and no cut removes the point. */
 static bool is_there(const crossing *part, double distance) {
   const vec3 here = vec3_add(part->origin, vec3_scale(part->direction, distance));
   const double at[3] = {here.x, here.y, here.z};

@@ -15,12 +15,12 @@
 /* ---- the light texture, eq. (2), and the emission image ----
  *
  * The light texture is an image on a screen, a parallelogram in space. A ray from a point of the light meets
- * the screen or passes beside it. Images are interpolated bilinearly between the middles of their pixels.
- * Beyond the outermost middles, up to the image's borders, they are constant. */
+ * the screen or passes beside the screen. Images are interpolated bilinearly between the middles of their
+ * pixels. Between the middles of the outermost pixels and the image's borders, images are constant. */
 
-/* Finds where a ray crosses the plane of the texture's screen: at s times right and t times up from the
- * screen's centre. On the screen both numbers are from -1 to 1. Returns false if the ray does not cross the
- * plane. */
+/* Finds where a ray crosses the plane of the texture's screen: at s times screen_right and t times screen_up
+ * from the screen's centre. On the screen, s and t are from -1 to 1. Returns false if the ray does not cross
+ * the screen. */
 static bool meet_screen(const hl_light_texture *texture, bool far, vec3 light, vec3 point, double *s,
                         double *t) {
   vec3 right = vec3_of(texture->screen_right), up = vec3_of(texture->screen_up),
@@ -76,8 +76,8 @@ static void emission_color(const hl_light_emission *emission, const emission_pla
 
 /* ---- points on the lights ---- */
 
-/* The fractional part of 1/2 + i step. With the golden section as the step, the results for the first n
- * numbers i lie evenly between 0 and 1, for any n. */
+/* The fractional part of 1/2 + i step. With the golden section as the step, the results for i from 0 to n - 1
+ * lie evenly between 0 and 1, for any n. */
 static double spread(size_t i, double step) {
   double x = 0.5 + (double)i * step;
   return x - floor(x);
@@ -99,7 +99,7 @@ static vec3 point_of_disk(vec3 centre, vec3 normal, double radius, size_t i, siz
 }
 
 /* Fills the points of a rectangle. The first edge is cut into n strips of equal width, each of which has one
- * point. Along the second edge, consecutive points differ by a golden section of the edge (modulo the edge's
+ * point. Along the second edge, consecutive points are a golden section of the edge apart (modulo the edge's
  * length). */
 static void fill_rect(const hl_light *light, vec3 centre, size_t n, vec3 *points) {
   vec3 edge1 = vec3_of(light->edge1), edge2 = vec3_of(light->edge2);
@@ -109,7 +109,7 @@ static void fill_rect(const hl_light *light, vec3 centre, size_t n, vec3 *points
   }
 }
 
-/* Returns whether a point in the polygon's plane is inside the polygon. It is inside if the ray from the
+/* Returns whether a point in the polygon's plane is inside the polygon. A point is inside if the ray from the
  * point along u crosses an odd number of the polygon's edges. */
 static bool inside_polygon(const hl_light *light, vec3 point, vec3 u_axis, vec3 v_axis) {
   bool inside = false;
@@ -200,7 +200,7 @@ static vec3 offset_of(const reference_light *light, vec3 light_point) {
 enum { MEAN_POINTS = 1 << 14 };
 
 /* Finds the emission image's mean colour over the light's points. A light that counts as a single point has
- * this colour. */
+ * the mean colour. */
 static hl_status find_mean(hl_context *context, reference_light *light, hl_error *error) {
   reference_light dense = *light;
   vec3 facing = light->directional ? vec3_scale(light->towards, -1) : (vec3){0, 0, 1};
@@ -300,9 +300,9 @@ double hl_reference_light_phase(const reference_light *light, double g, vec3 to_
   return light->extent != NULL ? sum : hl_reference_phase(g, to_eye, facing);
 }
 
-/* The fraction of a spot light's brightness in a direction. It is a smooth step of the cosine of the angle to
- * the light's axis. The fraction is 0 from half the opening angle on, and 1 up to half the opening angle less
- * the falloff angle. */
+/* The fraction of a spot light's brightness in a direction. The fraction is a smooth step of the cosine of
+ * the angle to the light's axis. The fraction is 0 from half the opening angle on, and 1 up to half the
+ * opening angle less the falloff angle. */
 static double spot_brightness(const hl_light *light, vec3 towards) {
   double cosine = -vec3_dot(towards, vec3_normalise(vec3_of(light->direction)));
   double outer = hl_cos(light->opening_angle_deg * HL_PI / 360);
@@ -327,10 +327,10 @@ void hl_reference_light_arrive(const reference_light *light, vec3 point, arrival
   for (int c = 0; c < 3; c++) arrived->incoming[c] = light->color[c] * factor;
 }
 
-/* Finds the colour that the light's images give to the ray from a point of the light to `point`. An image is
- * the texture that the light projects, or the emission image on its surface. Returns false if the colour is
- * black. light_point: the point of the light; for a directional light, a direction. plane: the plane of the
- * emission image; if null, each point of the light has the image's mean colour. */
+/* Finds the colour that the light's images give to the ray from a point of the light to `point`. The light's
+ * images are the texture that the light projects and the emission image on its surface. Returns false if the
+ * colour is black. light_point: the point of the light; for a directional light, a direction. plane: the
+ * plane of the emission image; if null, each point of the light has the image's mean colour. */
 static bool find_pattern(const reference_light *light, const emission_plane *plane, vec3 light_point,
                          vec3 point, double pattern[3]) {
   pattern[0] = pattern[1] = pattern[2] = 1;

@@ -1,9 +1,9 @@
 /* reference/march.c - follows a ray through the boxes of several volumes.
  *
  * The ray is divided into stretches. A stretch ends where the ray enters or leaves a box, or crosses the face
- * of a cut. So the ray is in the same volumes over the whole length of a stretch. A stretch is divided into
- * equal steps, no longer than the requested step, and each step is sampled at its middle. A homogeneous box
- * is therefore integrated exactly, wherever its faces lie. */
+ * of a cut. So the volumes that the ray is in do not change within a stretch. A stretch is divided into equal
+ * steps, no longer than the requested step, and each step is sampled at its middle. A homogeneous box is
+ * therefore integrated exactly, wherever its faces lie. */
 #include "reference/reference.h"
 
 /* Finds the distances at which the ray enters and leaves the volume's box in index space, by the slab
@@ -108,8 +108,8 @@ bool hl_reference_march_next(march *walk) {
     double clear = hl_reference_march_place(walk, walk->start + (walk->next + 0.5) * walk->length);
     walk->next++;
     if (clear <= 0) return true;
-    /* Skips the samples that lie strictly inside the stretch without visible bricks. The small margin keeps
-     * rounding from skipping one sample too many. */
+    /* Skips the samples that lie strictly inside the stretch without visible bricks. The small margin of 1e-6
+     * prevents that rounding skips one sample too many. */
     walk->next += floor(fmax(clear / walk->length - 1e-6, 0));
   }
 }

@@ -52,7 +52,8 @@ double hl_reference_mask_factor(const reference_volume *volume, vec3 point) {
   return factor_of(mask->volume, &found);
 }
 
-/* The gradient of the mask's factor: linear between the slopes that are stored at the lattice's points. */
+/* The gradient of the mask's factor, interpolated linearly between the slopes that are stored at the
+ * lattice's points. */
 vec3 hl_reference_mask_slope(const reference_volume *volume, vec3 point) {
   const hl_volume *mask = volume->described->mask.volume;
   double slope[3] = {0, 0, 0};

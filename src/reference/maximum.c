@@ -32,8 +32,8 @@ static bool is_shown(const crossing *part, double value) {
 }
 
 /* Notes the volume's value at this distance along the ray if the transfer function shows the value. Returns
- * whether the function shows it. Beyond the walls of a mesh of cells, where a mask takes more than half of
- * the matter away, nothing is shown. */
+ * whether the value is shown. Where a mask takes more than half of the matter away, as beyond the walls of a
+ * mesh of cells, no value is shown. */
 static bool ask(search *found, double at) {
   double value = value_at(found->part, at);
   if (!is_shown(found->part, value) ||
@@ -46,7 +46,8 @@ static bool ask(search *found, double at) {
   return true;
 }
 
-/* Searches for the last shown distance between a shown and a hidden distance, to the precision of doubles. */
+/* Searches for the last shown distance between a shown and a hidden distance, to about the precision of
+ * doubles. */
 static void ask_at_end(search *found, double shown, double other) {
   for (int i = 0; i < HALVINGS; i++) {
     double middle = (shown + other) / 2;
@@ -76,7 +77,7 @@ static double greatest_between(const crossing *part, double step) {
   for (double next = 1; next <= steps; next++) {
     double at = part->enter + next * length;
     double clear = hl_reference_clearance(part->volume, point_at(part, at), part->direction);
-    /* jumps over the samples in bricks without visible values */
+    /* skips the samples in bricks without visible values */
     next += floor(fmax(clear / length - 1e-6, 0));
     bool shown = clear <= 0 && ask(&found, at);
     if (shown && !before) ask_at_end(&found, at, at - length);
@@ -105,8 +106,8 @@ static double greatest_along(const crossing *whole, double step) {
   return greatest;
 }
 
-/* Returns whether the colours of all visible volumes begin bright. They then darken each other; else they
- * brighten each other. */
+/* Returns whether the colours of all visible volumes begin bright. Volumes whose colours all begin bright
+ * darken each other; other volumes brighten each other. */
 static bool all_begin_bright(const hl_scene_description *scene) {
   bool bright = true;
   for (size_t v = 0; v < scene->volume_count; v++) {

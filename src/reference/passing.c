@@ -2,17 +2,17 @@
  * goes to a point, or to the outside of the volume's surface in which the point lies.
  *
  * A volume's surface is lit by the light that arrives at the surface's outside. So the matter of a surface
- * does not shade the deeper parts of the same surface. A ray is followed from the point to the light. T is
- * the light that is left on the ray, and A is the light that the surface has taken. Each step changes T and A
- * linearly. So two factors hold the effect of all steps between the ray's current place and the point. */
+ * does not shade deeper parts of this surface. A ray is followed from the point to the light. T is the light
+ * that is left on the ray, and A is the light that the surface has taken. Each step changes T and A linearly.
+ * So two factors describe the effect of all steps between the ray's current place and the point. */
 #include <stdlib.h>
 
 #include "core/memory.h"
 #include "elementary/elementary.h"
 #include "reference/reference.h"
 
-/* A light counts as dark if the optical depth to it is greater than this in all channels: exp(-18) is
- * 2e-8. */
+/* A light counts as hidden if the optical depth on the way to the light is greater than this in all channels:
+ * exp(-18) is 2e-8. */
 static const double DARK_DEPTH = 18;
 
 void hl_reference_transmittance(const reference *all, const reference_ray *ray, crossing *scratch,
@@ -38,7 +38,7 @@ void hl_reference_transmittance(const reference *all, const reference_ray *ray, 
 /* ---- where surfaces begin ---- */
 
 /* The optical depth of matter with this value over one unit distance of the transfer function. For a function
- * of two numbers, it is the greatest optical depth over all second numbers. */
+ * of two numbers, the result is the greatest optical depth over all second numbers. */
 static double extinction_at(const reference_volume *volume, double value) {
   if (value < volume->transparent_below) return 0;
   double opacity = hl_transfer_function_opacity(&volume->described->transfer_function, value);
@@ -54,13 +54,13 @@ static int index_of_value(const reference_volume *volume, double value) {
   return (int)fmin(fmax(place, 0), HL_REFERENCE_FEET - 1);
 }
 
-/* Returns the value at which the surface begins that matter with the given value belongs to. */
+/* Matter with a value belongs to a surface. Returns the value at which this surface begins. */
 static double foot_of(const reference_volume *volume, double value) {
   return volume->feet[index_of_value(volume, value)];
 }
 
-/* The integral of extinction over the values from feet_low to the given value. It is interpolated in a
- * table. */
+/* The integral of extinction over the values from feet_low to the given value. The integral is interpolated
+ * in a table. */
 static double depth_to(const reference_volume *volume, double value) {
   double place = (value - volume->feet_low) / (volume->feet_high - volume->feet_low) * HL_REFERENCE_FEET;
   place = fmin(fmax(place, 0), HL_REFERENCE_FEET);
@@ -118,16 +118,16 @@ hl_status hl_reference_feet_create(hl_context *context, reference_volume *volume
 
 /* The fractions of the surface's light that still count as the surface's after one step of the light. before:
  * the fraction of the light that the surface took before the step. within: the fraction of the light that the
- * surface takes in the step. second: in this step, the light comes from another surface into this surface. A
- * part of the light that the other surface took may then count as taken by this one. */
+ * surface takes in the step. second: whether the light comes, in this step, from another surface into this
+ * surface. A part of the light that the other surface took may then count as taken by this surface. */
 typedef struct kept_light {
   double before, within;
   bool second;
 } kept_light;
 
-/* Raises a kept fraction towards 1 where matter belongs to the skin of a cut face, whose own matter does not
- * shade it: returns kept to the power 1 - skin. Because skin is in the exponent, the product over all steps
- * does not depend on the steps' length. */
+/* Returns the fraction `kept` to the power 1 - skin. The power raises the fraction towards 1 where matter
+ * belongs to the skin of a cut face, because the skin's own matter does not shade the skin. Because skin is
+ * in the exponent, the product over all steps does not depend on the steps' length. */
 static double kept_in_skin(double kept, double skin) { return skin > 0 ? hl_pow(kept, 1 - skin) : kept; }
 
 /* Finds the fractions of the light taken by a surface that still count as taken by this surface after one
@@ -149,7 +149,8 @@ static kept_light kept_of_step(const reference_volume *volume, double from, doub
 }
 
 /* A layer is another surface that the ray has entered, on its way to the light, after it left the point's own
- * surface. While a layer is pending, it is not known whether it counts as part of the point's surface. */
+ * surface. A layer is pending as long as the march has not decided whether the layer counts as part of the
+ * point's surface. */
 typedef struct pending_layer {
   bool any;
   /* depth: the other surface's optical depth so far. rise: the change of the volume's values per length where
@@ -159,8 +160,8 @@ typedef struct pending_layer {
 } pending_layer;
 
 /* The factors by which all steps between the ray's current place and the point multiply the light and the
- * light taken by the surface. kept_light and kept_taken are these factors for the case that the light taken
- * by the pending layer counts as taken by the surface. */
+ * light taken by the surface. kept_light and kept_taken are the factors for the case that the light taken by
+ * the pending layer counts as taken by the surface. */
 typedef struct light_factors {
   double light[3], kept_light[3], kept_taken;
 } light_factors;
@@ -174,7 +175,8 @@ static double ramp_depth(const reference_volume *volume, double from, double to)
 
 /* Decides whether a pending layer is part of the point's surface. The layer's optical depth is compared with
  * the depth of a straight ramp of values. Up to 1.2 times the ramp's depth, the layer counts fully as part of
- * the surface. From 1.6 times on, it does not count. Between these ratios, the layer counts in part. */
+ * the surface. From 1.6 times the ramp's depth on, the layer does not count. Between these ratios, the layer
+ * counts in part. */
 static void settle(light_factors *all, pending_layer *layer) {
   double ratio = layer->depth * layer->rise / fmax(layer->ramp, 1e-300),
          kept = fmin(fmax((1.6 - ratio) / 0.4, 0), 1);
@@ -229,7 +231,10 @@ void hl_reference_outside(const reference *all, const reference_ray *ray, const 
       total += here;
       if (volume->described->shading != HL_SHADING_PHONG || !beside) continue;
       const vec3 along = mat3_apply(volume->world_to_index.linear, ray->direction),
-                 between = vec3_add(part->here, vec3_scale(along, -0.5 * walk.length)); /* value and nearer */
+                 between = vec3_add(part->here, vec3_scale(along, -0.5 * walk.length)); /* the middle between
+                                                                                         * the places of
+                                                                                         * `value` and
+                                                                                         * `nearer` */
       const double skin = hl_reference_lit_face(volume, between, ray->direction, part->uncut);
       kept_light own = kept_of_step(volume, value, known ? nearer : value, walk.length, skin);
       kept.before += here * own.before;

@@ -1,17 +1,18 @@
 /* reference/paths.c - estimates the light that media scatter more than once, by following random paths from
  * the eye.
  *
- * A path flies until it has passed a random optical depth. At this place, the collision, the path is turned
- * by the medium's phase function, and flies on. At its second and every later collision the path collects the
- * unscattered light that the lights and the sky send to the collision. This is an unbiased estimate of the
- * light that was scattered at least twice. Light that was scattered once is integrated in shade.c. Meshes and
- * isosurfaces on a path absorb their part of the light and scatter none. Random numbers depend on the pixel
- * and the path alone. Paths treat the volumes' extinction as equal in all channels. */
+ * A path flies until it has passed a random optical depth. At this place, which is called a collision, the
+ * medium's phase function turns the path, and the path flies on. At its second and every later collision the
+ * path collects the unscattered light that the lights and the sky send to the collision. The sum is an
+ * unbiased estimate of the light that was scattered at least twice. Light that was scattered once is
+ * integrated in shade.c. Meshes and isosurfaces on a path absorb a fraction of the light and scatter none.
+ * Random numbers depend on the pixel and the path alone. Paths treat the volumes' extinction as equal in all
+ * channels. */
 #include "elementary/elementary.h"
 #include "reference/reference.h"
 
-/* A path has at least SURE_TURNS turns. After these turns it ends with some probability at each collision,
- * and at the latest after MOST_TURNS turns. */
+/* A path has at least SURE_TURNS turns. After SURE_TURNS turns, a path ends with some probability at each
+ * collision, and at the latest after MOST_TURNS turns. */
 enum { SURE_TURNS = 8, MOST_TURNS = 100000 };
 
 /* Returns a random number from 0 to 1 (Steele, Lea and Flood, "Fast splittable pseudorandom number
@@ -50,7 +51,8 @@ static void choose_volume(const march *walk, double total, uint64_t *random, col
   }
 }
 
-/* Follows the path along a ray until its next collision. Returns false if there is none. */
+/* Follows the path along a ray to the path's next collision. Returns false if the path leaves all volumes
+ * without a collision. */
 static bool fly(const reference *all, reference_role role, const reference_ray *ray, reference_worker *worker,
                 uint64_t *random, collision *met) {
   march walk;
@@ -86,8 +88,8 @@ static void take_surfaces(const reference *all, reference_role role, reference_r
   for (int c = 0; c < 3; c++) weight[c] *= passing[c];
 }
 
-/* Chooses a random direction. Its angle to the previous direction is distributed by Henyey and Greenstein's
- * phase function. */
+/* Chooses a random direction. The angle between the new and the previous direction is distributed by Henyey
+ * and Greenstein's phase function. */
 static vec3 turn(vec3 way, double g, uint64_t *random) {
   double a = uniform(random), angle = 2 * HL_PI * uniform(random), cosine = 2 * a - 1;
   if (fabs(g) > 1e-6) {
@@ -101,7 +103,7 @@ static vec3 turn(vec3 way, double g, uint64_t *random) {
                                                                    vec3_scale(v, sine * hl_sin(angle)))));
 }
 
-/* Adds the light that goes from the scene's lights to a collision and is scattered there into the path. A
+/* Adds the light that goes from the scene's lights to a collision, at which it is scattered into the path. A
  * single random point represents each light. way: the path's direction, away from the eye; a unit vector. */
 static void add_lights(const reference *all, const collision *met, vec3 way, const double weight[3],
                        reference_worker *worker, uint64_t *random, double sum[3]) {

@@ -2,7 +2,7 @@
  *
  * In: the scene and the boxes of its volumes' visible bricks. Out: the number of rays along each side of a
  * pixel. Where voxels are smaller than pixels, the renderer averages over a pixel's area (docs/decisions.md).
- * A reference with a single ray through the pixel's centre would make another picture. */
+ * A reference with a single ray through each pixel's centre would make a different picture. */
 #include "elementary/elementary.h"
 #include "reference/reference.h"
 
@@ -60,8 +60,8 @@ static void add_volume(const reference_volume *volume, vec3 position, vec3 forwa
 }
 
 /* The length of a pixel's edge in the world at the depth 1; for an orthographic camera, at any depth.
- * Derived: it is the picture's height divided by the number of rows. At the depth 1, the height of a
- * perspective picture is 2 tan(fovy / 2). */
+ * Derived: the length is the picture's height in the world divided by the number of rows. At the depth 1, the
+ * height of a perspective picture is 2 tan(fovy / 2). */
 static double pixel_edge(const hl_scene_description *scene) {
   bool orthographic = scene->camera.type == HL_CAMERA_ORTHOGRAPHIC;
   return (orthographic ? scene->camera.height : 2 * hl_tan(scene->camera.fovy_deg * HL_PI / 360)) /

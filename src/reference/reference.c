@@ -20,10 +20,10 @@ static const double OPAQUE = 1 - 1e-5;
 /* The alpha that a ray must reach for its first depth (halflight/layers.h). */
 static const double FIRST_OPACITY = 0.01;
 
-/* The greatest opacity that one sample may add to a pixel. It is small, because light that grazes a dense
- * volume fades within a small fraction of a step. The error grows linearly with this bound, and with the
- * square of the step. So a step coarser than the default allows more opacity: the bound grows with the square
- * of the step, up to COARSEST_OPACITY. */
+/* The greatest opacity that one sample may add to a pixel. The bound is small, because light that grazes a
+ * dense volume fades within a small fraction of a step. The picture's error grows linearly with this bound,
+ * and with the square of the step. So a step coarser than the default allows more opacity: the bound grows
+ * with the square of the step, up to COARSEST_OPACITY. */
 static const double MOST_OPACITY = 0.02, USUAL_STEP = 0.25, COARSEST_OPACITY = 0.1;
 
 enum { RUN_PIXELS = 16 };
@@ -40,11 +40,11 @@ typedef struct picture {
   eye_rays eye;
   reference_worker *workers; /* [threads] */
   float *pixels;             /* the caller's pixels */
-  const hl_layers *layers;   /* the caller's layers; null if there are none */
+  const hl_layers *layers;   /* the caller's layers; null if the caller wants none */
   size_t row_stride;         /* number of floats from one row to the next */
   size_t runs_per_row, runs; /* number of runs of pixels in a row, and in the picture */
-  size_t stride;             /* successive work items take runs that are this many runs apart, modulo
-                              * `runs` */
+  size_t stride;             /* the distance, in runs and modulo `runs`, between the runs that successive work
+                              * items take */
   atomic_size_t runs_done;
 } picture;
 
@@ -103,9 +103,9 @@ static void sample(const reference *all, const march *walk, vec3 point, vec3 to_
   made->depth = made->weight * walk->at;
 }
 
-/* Adds the samples of all volumes at the march's position, for a step of the given length. Returns their
- * extinction. Samples are composited front to back: C += (1-A) a c, A += (1-A) a, with a = 1 - exp(-sigma
- * dt). This is the exact integral if nothing varies in the step. */
+/* Adds the samples of all volumes at the march's position, for a step of the given length. Returns the sum of
+ * the volumes' extinctions. Samples are composited front to back: C += (1-A) a c, A += (1-A) a, with a = 1 -
+ * exp(-sigma dt). This sum is the exact integral if nothing varies in the step. */
 static double composite(const reference *all, const march *walk, double length, vec3 origin, vec3 direction,
                         reference_worker *worker) {
   vec3 point = vec3_add(origin, vec3_scale(direction, walk->at));
@@ -123,10 +123,10 @@ static double first_within(double before, double extinction, double start) {
   return start + hl_ln((1 - before) / (1 - FIRST_OPACITY)) / extinction;
 }
 
-/* Marches along a part of a camera ray. Every step is cut into pieces that each add at most most_opacity to
- * the ray's opacity. The length of a piece follows from the extinction of the piece before it. Adds the
- * contributions of the part's samples to worker->ray. Sets *first to the first depth if the first depth lies
- * in this part. */
+/* Marches along a part of a camera ray. Every step is cut into pieces, each of which adds at most
+ * most_opacity to the ray's opacity. The length of a piece follows from the extinction of the piece before
+ * it. Adds the contributions of the part's samples to worker->ray. Sets *first to the first depth if the
+ * first depth lies in this part. */
 static void trace_part(const reference *all, const reference_ray *way, reference_worker *worker,
                        double *first) {
   march walk;
@@ -209,8 +209,8 @@ static void follow_paths(const picture *all, size_t x, size_t y, reference_worke
   }
 }
 
-/* Returns the number that occurs most often in the array. Of several such numbers it returns the least.
- * Returns 0 if the array is empty. */
+/* Returns the number that occurs most often in the array. Of several numbers that occur equally often, the
+ * function returns the least. Returns 0 if the array is empty. */
 static int most_frequent(const int *numbers, size_t count) {
   size_t most = 0;
   int found = 0;
@@ -263,10 +263,10 @@ static void project_pixel(const picture *all, size_t x, size_t y, int worker) {
 }
 
 /* Returns the stride between runs of pixels that are rendered one after the other. The stride has no common
- * divisor with the number of runs, so that each run is rendered once. It is near the golden section of this
- * number, so that any successive runs are spread evenly over the picture. A picture's border is mostly empty
- * and quick to render. Because of the even spread, the fraction of runs that are done tells the fraction of
- * time that has passed. */
+ * divisor with the number of runs, so that each run is rendered once. The stride is near the golden section
+ * of the number of runs, so that successive runs are spread evenly over the picture. A picture's border is
+ * mostly empty and quick to render. Because of the even spread, the fraction of runs that are done tells the
+ * fraction of time that has passed. */
 static size_t stride_for(size_t count) {
   size_t stride = (size_t)(0.6180339887498949 * (double)count);
   for (bool common = true; common; stride += common) {

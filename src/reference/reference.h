@@ -46,21 +46,21 @@ typedef struct reference_volume {
   affine3 index_to_world, world_to_index;
   mat3 gradient_to_world;           /* maps a gradient in index space to a gradient in the world: the inverse
                                      * transpose of index_to_world's linear part */
-  double low[3], high[3];           /* the box, in index space */
+  double low[3], high[3];           /* the volume's box, in index space */
   double clip_low[3], clip_high[3]; /* the faces of the box at which the volume's matter ends; infinite where
                                      * another volume continues the matter */
   double empty_value;               /* the data value that stands for voxels that are not finite */
   double empty_stored;              /* empty_value as a stored value */
-  double transparent_below; /* There is no matter where the data value is below this number. -infinity: there
-                             * is matter at every data value */
+  double transparent_below; /* space with a data value below this number holds no matter; -infinity if the
+                             * transfer function alone decides */
   double surface_gradient;  /* the least gradient at which matter counts fully as a surface, in data values
                              * per world unit */
   double smallest_edge;     /* the length of a voxel's shortest edge, world units */
   size_t bricks[3];         /* number of bricks along i, j, k */
   double *coefficients;     /* owned; [k][j][i], stored values; the coefficients that the interpolating kernel
                              * sums in place of voxels; null for other kernels */
-  double least, greatest;   /* set only if there are coefficients: the range of the data values; a value
-                             * beyond the range counts as the nearer end */
+  double least, greatest;   /* the range of the data values, set only if the volume has coefficients; a value
+                             * beyond the range counts as the nearer end of the range */
   double (*ranges)[2];      /* owned; [slots]; for a field in bricks, the least and greatest coefficient of
                              * each brick; null for voxels */
   double *feet; /* owned; [HL_REFERENCE_FEET]; the range of data values from feet_low to feet_high is divided
@@ -71,7 +71,8 @@ typedef struct reference_volume {
                    * values from feet_low to the beginning of step i */
   const struct reference_volume *second; /* the second volume, if the transfer function takes its second
                                           * number from another volume; else null */
-  affine3 index_to_second;               /* maps the volume's index space to the second volume's */
+  affine3 index_to_second;               /* maps the volume's index space to the second volume's index
+                                          * space */
   affine3 index_to_mask;    /* maps the volume's index space to its mask's index space, if it has a mask */
   unsigned char *clearance; /* owned; [k][j][i], one number for each brick: 0 if the brick may be visible;
                              * else the chessboard distance, in bricks, to the nearest brick that may be
@@ -83,15 +84,16 @@ typedef struct reference_volume {
 typedef struct reference_light {
   const hl_light *described;
   bool directional;
-  bool sphere;                       /* whether the light is a sphere; its points depend on the sample, and
+  bool sphere;                       /* whether the light is a sphere, whose points depend on the sample and
                                       * are computed for each sample */
-  vec3 centre;                       /* world; not for directional lights */
+  vec3 centre;                       /* the light's centre, world; not for directional lights */
   vec3 towards;                      /* unit vector towards the light; only for directional lights */
   double color[3];                   /* color * intensity */
-  double least_distance;             /* world units; at smaller distances, a light with falloff is as bright
-                                      * as at this distance */
-  const hl_light_texture *texture;   /* null if absent */
-  const hl_light_emission *emission; /* the image on the light's surface; null if the light has none */
+  double least_distance;             /* the distance, in world units, within which a light with falloff gets
+                                      * no brighter */
+  const hl_light_texture *texture;   /* null if the light projects no texture */
+  const hl_light_emission *emission; /* the image on the light's surface; null if the light has no such
+                                      * image */
   double mean[3];                    /* mean of the emission image over the light's surface */
   vec3 *points;                      /* owned; null for lights without shadows; a sphere's points are not
                                       * used */
@@ -114,8 +116,8 @@ typedef struct reference_triangle {
   double opacity;
 } reference_triangle;
 
-/* A node of the tree of boxes, by which rays find triangles: a box around some of the triangles. second is 0
- * in a leaf. */
+/* A node of the tree of boxes by which rays find triangles: a box around some of the triangles. A leaf has
+ * the second child 0. */
 typedef struct reference_node {
   double low[3], high[3];
   size_t first, count; /* the index of the first triangle in the box, and the number of triangles */
@@ -139,7 +141,7 @@ typedef struct reference_sky_cell {
 } reference_sky_cell;
 
 typedef struct reference_sky {
-  reference_sky_cell *cells; /* owned; [count]; null if there is no sky */
+  reference_sky_cell *cells; /* owned; [count]; null if the scene has no sky */
   size_t count;
   double solid_angle; /* solid angle of each cell, steradians */
 } reference_sky;
@@ -152,10 +154,10 @@ typedef struct reference {
   reference_light *lights;   /* owned; [scene->light_count] */
   reference_surfaces surfaces;
   reference_sky sky;
-  double step;  /* world units */
+  double step;  /* length of a step along a ray, world units */
   int rays;     /* number of rays along each side of a pixel */
-  int paths;    /* number of paths from each pixel for light that is scattered more than once; 0 if no volume
-                 * scatters light more than once */
+  int paths;    /* number of random paths from each pixel, for light that is scattered more than once; 0 if no
+                 * volume scatters light more than once */
   float *error; /* the caller's; [height][width][3]: receives the standard error of the light that paths
                  * estimate; null if the error is not wanted */
   double most_opacity; /* greatest opacity that one sample may add to a pixel */
@@ -184,8 +186,8 @@ typedef struct crossing {
                                * the volume yet */
 } crossing;
 
-/* A march along a ray. A stretch is the part of the ray between two successive faces of boxes or cuts. It is
- * divided into equal steps. */
+/* A march along a ray. A stretch is the part of the ray between two successive faces of boxes or cuts. A
+ * stretch is divided into equal steps. */
 typedef struct march {
   crossing *crossings; /* borrowed; [count] */
   size_t count;
@@ -200,8 +202,8 @@ typedef struct march {
 /* A receiver of light: either a point, or the outside of the volume's surface that the point belongs to. */
 typedef struct reference_receiver {
   vec3 point;                         /* world */
-  const reference_volume *surface_of; /* the volume whose surface's outside receives the light; if null, the
-                                       * point itself receives it */
+  const reference_volume *surface_of; /* the volume whose surface's outside receives the light; null if the
+                                       * point itself receives the light */
   double value;                       /* the value of surface_of at the point */
 } reference_receiver;
 
@@ -212,14 +214,15 @@ typedef struct arrival {
                        * (1) */
   double pattern[3];  /* mean over the light's points of the colour that the light texture or emission image
                        * gives to their light; 1 if the light has neither; eq. (2) */
-  double shadowed[3]; /* mean over the light's points of the same colour times the transmittance from the
-                       * point of the light to the sample */
+  double shadowed[3]; /* mean over the light's points of the colour of `pattern` times the transmittance from
+                       * the point of the light to the sample */
   double outside[3];  /* like `shadowed`, but for the light that reaches the outside of the surface in which
                        * the sample lies */
   bool pattern_known, shadowed_known, outside_known;
 } arrival;
 
-/* The contribution of one light: its light that is sent to the eye, and the transmittance towards it. */
+/* The contribution of one light: the light of this source that is sent to the eye, and the transmittance
+ * towards the source. */
 typedef struct light_part {
   double picture[3], shadow[3];
 } light_part;
@@ -247,7 +250,7 @@ typedef struct reference_sample {
   vec3 to_eye; /* unit vector */
 } reference_sample;
 
-/* The state of one thread. hl_reference_render owns all of its arrays. */
+/* The state of one thread. hl_reference_render() owns all arrays of the struct. */
 typedef struct reference_worker {
   int number;             /* number in the pool */
   crossing *eye, *shadow; /* [volume_count] */
@@ -257,8 +260,8 @@ typedef struct reference_worker {
 
 hl_status hl_reference_volume_create(const reference *all, const hl_scene_volume *described, hl_pool *pool,
                                      reference_volume *made, hl_error *error);
-/* Finds the number of rays along each side of a pixel, at most HL_REFERENCE_RAYS. It is more than one if
- * voxels are smaller than pixels. edge: the length of a voxel's edge, world units. */
+/* Finds the number of rays along each side of a pixel, at most HL_REFERENCE_RAYS. The number is more than one
+ * if voxels are smaller than pixels. edge: the length of a voxel's edge, world units. */
 enum { HL_REFERENCE_RAYS = 8 };
 int hl_reference_rays(const reference *all, double edge);
 /* The distance over which a ray from `point` stays in transparent bricks, in units of the length of
@@ -276,16 +279,16 @@ bool hl_reference_left(const reference_volume *volume, vec3 point);
 /* Returns whether a point of a mesh remains after the scene's own cuts. point: world. */
 bool hl_reference_mesh_left(const hl_scene_description *scene, const hl_scene_mesh *mesh, vec3 point);
 /* The least distance greater than `after` at which a ray crosses the face of one of the volume's cuts;
- * infinite if there is none. origin, direction: index space. */
+ * infinite if the ray crosses no further face. origin, direction: index space. */
 double hl_reference_next_face(const reference_volume *volume, vec3 origin, vec3 direction, double after);
 /* Changes the normal and the surface fraction of a sample near the face of a cut or of the clip box. *normal,
- * *surface: on entry, as they follow from the volume's data. Returns the weight of the face: 1 at the face, 0
- * from two voxels behind the face on. */
+ * *surface: on entry, the normal and the surface fraction that follow from the volume's data. Returns the
+ * weight of the face: 1 at the face, 0 from two voxels behind the face on. */
 double hl_reference_cut_face(const reference_volume *volume, vec3 point, vec3 to_eye, vec3 *normal,
                              double *surface);
 /* The fraction of the matter at a point that belongs to the face of a cut or of the box through which the
- * light reaches the point: 1 at the face, 0 from two voxels behind it on. to_light: a unit vector of the
- * world. uncut: only the faces of the box count, and the faces of cuts do not. */
+ * light reaches the point: 1 at the face, 0 from two voxels behind the face on. to_light: a unit vector of
+ * the world. uncut: whether only the faces of the box count, and not the faces of cuts. */
 double hl_reference_lit_face(const reference_volume *volume, vec3 point, vec3 to_light, bool uncut);
 
 /* Finds the weights of the four taps along an axis, and the weights' derivatives (slope; may be null). The
@@ -307,28 +310,28 @@ void hl_reference_bricks_range(const struct hl_bricks *bricks, double empty, dou
 
 double hl_reference_stored_value(const reference_volume *volume, const size_t voxel[3]);
 double hl_reference_value(const reference_volume *volume, vec3 point);
-/* Multiplies a colour by the colour of the volume's own voxels, if they have colours. Then mixes the colour
- * with the mask's colour. */
+/* Multiplies a colour by the colour of the volume's own voxels, if they have colours, and then mixes the
+ * product with the mask's colour. */
 void hl_reference_tint(const reference_volume *volume, vec3 point, double color[3]);
 /* The factor by which the volume's mask multiplies extinction, at a point of the volume's index space; 1
  * without a mask. */
 double hl_reference_mask_factor(const reference_volume *volume, vec3 point);
-/* The gradient, per world unit, of the mask's factor at a point of index space. It is 0 if matter gets no
- * faces where the mask hides the matter beside it. */
+/* The gradient, per world unit, of the mask's factor at a point of index space. The gradient is 0 if matter
+ * gets no faces where the mask hides the matter beside it. */
 vec3 hl_reference_mask_slope(const reference_volume *volume, vec3 point);
-/* Finds the mask's colour at a point. Returns the fraction of this colour, from 0 to 1, that the matter
- * takes. */
+/* Finds the mask's colour at a point. Returns the fraction of the mask's colour, from 0 to 1, that is mixed
+ * into the matter's colour. */
 double hl_reference_mask_color(const reference_volume *volume, vec3 point, double color[3]);
 /* The field's gradient, in data values per world unit. */
 vec3 hl_reference_gradient(const reference_volume *volume, vec3 point);
-/* Finds the faces of the volume's box at which its matter ends, because no other volume continues it there.
- * The box must be known. */
+/* Finds the faces of the volume's box at which the volume's matter ends, because no other volume continues
+ * the matter there. The volume's box must have been found before. */
 void hl_reference_find_clip_faces(const hl_scene_description *scene, reference_volume *volume);
 /* The outward normal, in the world, of the cut whose face is nearest to a point of index space. */
 vec3 hl_reference_cut_normal(const reference_volume *volume, vec3 point);
 /* The distance from a point of index space to the face at which a ray leaves the volume's box, in units of
- * the length of `direction`. It is negative if another volume continues the matter at this face. *outward:
- * the face's normal, in the world. */
+ * the length of `direction`. The distance is negated if another volume continues the matter at this face.
+ * *outward: the face's normal, in the world. */
 double hl_reference_leaves_box(const reference_volume *volume, vec3 point, vec3 direction, vec3 *outward);
 /* The extinction sigma at a point, 1 / world length: sigma(f) = -ln(1 - alpha(f)) / u, times gradient
  * opacity. value: the value at the point. */
@@ -361,8 +364,8 @@ hl_status hl_reference_light_create(const reference *all, const hl_light *light,
 /* The light that arrives at a point of the world if no volume attenuates it. */
 void hl_reference_light_arrive(const reference_light *light, vec3 point, arrival *arrived);
 /* The mean over the light's points of the transmittance times the colour of the light texture or emission
- * image. The colour is 1 if the light has neither. If `attenuated` is false, the transmittance counts as
- * 1. */
+ * image. The colour is 1 if the light has neither image. If `attenuated` is false, the transmittance counts
+ * as 1. */
 void hl_reference_light_reach(const reference *all, const reference_light *light,
                               const reference_receiver *at, bool attenuated, reference_worker *worker,
                               double reach[3]);
@@ -387,24 +390,24 @@ hl_status hl_reference_feet_create(hl_context *context, reference_volume *volume
 double hl_reference_phase(double anisotropy, vec3 to_eye, vec3 towards);
 
 /* Adds the light that one random path from the eye finds: light that was scattered at least twice. seed:
- * starts the random numbers; it must differ from path to path. */
+ * starts the random numbers, and must differ from path to path. */
 void hl_reference_path(const reference *all, vec3 origin, vec3 direction, uint64_t seed,
                        reference_worker *worker, double sum[3]);
 
 /* A point that the sky lights. */
 typedef struct reference_sky_receiver {
-  vec3 point, normal, to_eye; /* world; unit vectors; the normal is 0 in a medium */
-  double surface;             /* the point in the world; unit vectors: the normal, which is 0 in a medium, and
+  vec3 point, normal, to_eye; /* the point in the world; unit vectors: the normal, which is 0 in a medium, and
                                * the direction to the eye */
-  double diffuse;             /* a surface's factor of diffuse colour */
-  double anisotropy;          /* the material's diffuse reflectance; for a surface */
+  double surface;             /* the fraction of the sample that is surface: 0 in a medium, 1 on a surface */
+  double diffuse;             /* the material's diffuse reflectance, for a surface */
+  double anisotropy;          /* the anisotropy of a medium's phase function */
   const double *albedo;       /* [3]; the scattering albedo of a medium; null stands for 1 in each channel */
   bool receives_shadow;
 } reference_sky_receiver;
 
-/* The sky's light at a receiver: the light that would reach it if nothing hid the sky, the part of this light
- * that reaches the receiver, and the light that the receiver sends on. In a medium, a sky of radiance 1 in
- * all directions gives the light 1. */
+/* The sky's light at a receiver: the light that would reach the receiver if nothing hid the sky, the part of
+ * this light that reaches the receiver, and the light that the receiver sends on. In a medium, a sky of
+ * radiance 1 in all directions gives the light 1. */
 typedef struct reference_sky_light {
   double open[3], reaching[3], sent[3];
 } reference_sky_light;
@@ -435,8 +438,8 @@ typedef struct reference_hit {
                                    * coordinates) */
   const hl_isosurface *iso;       /* null for a triangle */
   const reference_volume *volume; /* the isosurface's volume */
-  vec3 face;                      /* the face's unit normal, if the hit is on a face of the box or of a cut
-                                   * that closes the isosurface; else 0 */
+  vec3 face;                      /* the unit normal of the face of the box or of a cut, if the hit is on such
+                                   * a face, which closes the isosurface; else 0 */
   double opacity;
 } reference_hit;
 
@@ -450,14 +453,14 @@ typedef struct reference_surface_point {
 } reference_surface_point;
 
 /* Finds the first triangle, sphere or isosurface on the ray that is farther than `after` and nearer than
- * ray->farthest. Returns false if there is none. */
+ * ray->farthest. Returns false if the ray meets no such surface. */
 bool hl_reference_surface_next(const reference *all, reference_role role, const reference_ray *ray,
                                double after, reference_hit *hit);
 /* Sets *hit to the first isosurface on the ray that is farther than `after` and nearer than hit->distance.
- * Without such an isosurface *hit stays as it is. */
+ * Without such an isosurface *hit does not change. */
 void hl_reference_iso_next(const reference *all, reference_role role, const reference_ray *ray, double after,
                            reference_hit *hit);
-/* The unit normal of an isosurface at a point of the world. It points to the side where values are
+/* The unit normal of an isosurface at a point of the world. The normal points to the side where values are
  * smaller. */
 vec3 hl_reference_iso_normal(const reference_hit *hit, vec3 point);
 /* The colour of an isosurface at a point of the world. */
@@ -469,12 +472,13 @@ void hl_reference_surfaces_passing(const reference *all, const reference_ray *ra
 void hl_reference_surface_shade(const reference *all, const reference_hit *hit, const reference_ray *ray,
                                 reference_worker *worker);
 
-/* A surface at which a ray begins is not met again by the ray: hits nearer than this fraction of a step do
- * not count. */
+/* Hits nearer to a ray's beginning than this fraction of a step do not count, so that a ray does not meet the
+ * surface at which it begins. */
 #define LEAST_GAP 1e-3
 
-/* Three functions for contributions to samples and rays (layers.c). They set contributions to zero, add other
- * contributions times `scale`, and write one pixel of the caller's layers. */
+/* Functions for contributions to samples and rays (layers.c): hl_reference_parts_clear() sets contributions
+ * to zero, hl_reference_parts_add() adds other contributions times `scale`, and hl_reference_parts_write()
+ * writes one pixel of the caller's layers. */
 void hl_reference_parts_clear(reference_parts *parts, size_t light_count);
 void hl_reference_parts_add(reference_parts *parts, const reference_parts *other, double scale,
                             size_t light_count);

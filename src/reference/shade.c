@@ -15,8 +15,9 @@
 #include "elementary/elementary.h"
 #include "reference/reference.h"
 
-/* Finds the fraction of a light that reaches a sample. This fraction takes by far the most time of all that a
- * sample needs. So it is computed only when it is first needed, and is then kept in worker->arrivals. */
+/* Finds the fraction of a light that reaches a sample. Finding this fraction takes by far the greatest part
+ * of the time for a sample. So the fraction is computed only when it is first needed, and is then kept in
+ * worker->arrivals. */
 static const double *light_reach(const reference *all, const reference_sample *at, size_t light, bool surface,
                                  reference_worker *worker) {
   arrival *arrived = &worker->arrivals[light];
@@ -36,8 +37,8 @@ static const double *light_reach(const reference *all, const reference_sample *a
 }
 
 /* Finds a sample's outward normal, and the fraction of the sample that is surface. Outward means towards the
- * empty value. So regions with values above the empty value and regions with values below it are both lit
- * from outside. */
+ * empty value. So regions with values above the empty value are lit from outside, and so are regions with
+ * values below the empty value. */
 static vec3 find_normal(const reference_volume *volume, vec3 index_point, double value, double *surface) {
   *surface = 0;
   if (volume->described->shading != HL_SHADING_PHONG) return (vec3){0, 0, 0};
@@ -126,10 +127,10 @@ static void shade_light(const reference *all, const reference_sample *at, const 
                        arrived->incoming[c];
 }
 
-/* Finds the place on a surface sample's normal where the matter of the surface begins. It is assumed that
- * values along the normal change at a constant rate, the gradient's length, until the transfer function shows
- * nothing. The place is at most 8 voxels away. Just behind the face of a cut, the place is the sample's
- * own. */
+/* Finds the place on a surface sample's normal where the matter of the surface begins. The function assumes
+ * that values along the normal change at a constant rate, the gradient's length, until the transfer function
+ * shows nothing. The place is at most 8 voxels away. Just behind the face of a cut, the result is the
+ * sample's own place. */
 static vec3 outside_of_surface(const reference_sample *at, const surface *here, double behind_face) {
   const reference_volume *volume = at->volume;
   double empty = volume->empty_value, outside = empty,
@@ -164,8 +165,8 @@ static void shade_sky(const reference *all, const reference_sample *at, const su
   }
 }
 
-/* Adds full light to the shadow layers for a volume of flat shading, because flat colours receive no
- * shadow. */
+/* Adds full light to the shadow layers for a sample of a volume with flat shading, because flat colours
+ * receive no shadow. */
 static void add_no_light(const reference *all, double weight, reference_parts *sample) {
   for (size_t l = 0; l < all->scene->light_count && all->all_shadows; l++)
     for (int c = 0; c < 3; c++) sample->lights[l].shadow[c] += weight;

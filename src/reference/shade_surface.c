@@ -4,8 +4,8 @@
 #include "mesh/mesh.h"
 #include "reference/reference.h"
 
-/* The normal, of any length, at a corner of a triangle. At a crease of the mesh it is the corner's own
- * normal, elsewhere the normal of the vertex. */
+/* The normal, of any length, at a corner of a triangle. At a crease of the mesh, the corner has a normal of
+ * its own; elsewhere the corner has the normal of the vertex. */
 static vec3 corner_normal(const reference *all, const hl_scene_mesh *mesh, size_t triangle, int i) {
   const hl_mesh *of = mesh->mesh;
   const vec3 *normals = all->surfaces.normals + all->surfaces.first_normal[mesh - all->scene->meshes];
@@ -94,7 +94,7 @@ static void add_sky(const reference *all, const reference_surface_point *at, ref
 }
 
 /* Finds the normal, the colour and the material at the point where the ray meets a triangle or a sphere.
- * Returns whether the ray meets the back. */
+ * Returns whether the ray meets the back of the triangle or sphere. */
 static bool find_mesh_point(const reference *all, const reference_hit *hit, reference_surface_point *at) {
   const hl_scene_mesh *mesh = hit->triangle->mesh;
   vec3 flat = flat_normal(hit, at->point);

@@ -2,10 +2,11 @@
  * integrated over cells of equal solid angle.
  *
  * The sky's sphere, or its upper hemisphere, is cut into rings about the axis `up`. Each ring is cut into
- * cells with sides of nearly equal length. A cell has the mean radiance of its directions. The cell's shadow
- * is cast by a single ray to the cell's middle. If the sky is an image, the ray goes to the middle of the
- * light in the cell. The cell's cosine is taken with the mean of its directions. This is the exact mean of
- * the cosine, unless a part of the cell is below the surface's horizon. */
+ * cells with sides of nearly equal length. A cell has the mean radiance of its directions. A single ray to
+ * the cell's middle finds the shadow for the whole cell. If the sky is an image, the ray goes to the middle
+ * of the light in the cell. The cosine between a surface's normal and the mean of the cell's directions
+ * stands for the whole cell. This cosine is the exact mean over the cell, unless a part of the cell is below
+ * the surface's horizon. */
 #include "core/memory.h"
 #include "elementary/elementary.h"
 #include "reference/reference.h"
@@ -16,7 +17,7 @@ enum { PIXEL_SAMPLES = 3, MOST_SAMPLES = 256 };
 
 /* A ring of cells. Heights are cosines of the angle to the axis `up`. */
 typedef struct sky_ring {
-  double low, high; /* heights of its borders */
+  double low, high; /* heights of the ring's lower and upper border */
   size_t cells;
   double turn; /* angle at which the ring's first cell begins, as a fraction of the full circle */
 } sky_ring;
@@ -29,8 +30,8 @@ static vec3 direction_of(const sky_axes *axes, double height, double turn) {
 }
 
 /* Finds the mean of the radiance over a cell that begins at the angle `turn`, and the mean of the cell's
- * directions. If the sky is an image, each direction is weighted by its brightness. So a sun in the cell
- * shines from its own direction. */
+ * directions. If the sky is an image, each direction is weighted by its brightness. So the light of a sun in
+ * the cell comes from the sun's own direction. */
 static void find_means(const hl_sky *sky, const sky_axes *axes, const sky_ring *ring, double turn,
                        reference_sky_cell *cell) {
   double wide = sky->type == HL_SKY_IMAGE ? ceil(PIXEL_SAMPLES * (double)sky->width / (double)ring->cells)

@@ -102,8 +102,8 @@ static void add_mesh(reference_surfaces *all, const hl_scene_mesh *mesh) {
   }
 }
 
-/* Adds the normals of a mesh's vertices, in the world. They are the mesh's own normals; a mesh without
- * normals gets the sums of the triangles' cross products. */
+/* Adds the normals of a mesh's vertices, in the world. A mesh without normals of its own gets, at each
+ * vertex, the sum of the cross products of the triangles around the vertex. */
 static void add_normals(const hl_scene_mesh *mesh, vec3 *normals) {
   const hl_mesh_description *d = &mesh->mesh->description;
   affine3 placement = hl_scene_mesh_to_world(mesh);
@@ -187,7 +187,8 @@ static vec3 along(const reference_ray *ray, double distance) {
   return vec3_add(ray->origin, vec3_scale(ray->direction, distance));
 }
 
-/* The distance of the first hit, beyond a given distance, at a place that the scene's cuts leave. */
+/* The distance of the first hit beyond the distance `after` that lies at a place which the scene's cuts do
+ * not remove. */
 static double meet(const hl_scene_description *scene, const reference_triangle *triangle,
                    const reference_ray *ray, double after, double weight[3]) {
   if (triangle->radius == 0) {

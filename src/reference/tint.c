@@ -1,6 +1,6 @@
-/* reference/tint.c - finds the colour of a volume's own voxels at a point. It is the trilinear mean of the
- * voxels' linear colours times their weights, divided by the trilinear mean of the weights. The mask's colour
- * is applied afterwards. */
+/* reference/tint.c - finds the colour of a volume's own voxels at a point. The colour is the trilinear mean
+ * of the voxels' linear colours times their weights, divided by the trilinear mean of the weights. The mask's
+ * colour is mixed in afterwards. */
 #include "elementary/elementary.h"
 #include "reference/reference.h"
 
