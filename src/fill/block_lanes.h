@@ -20,8 +20,8 @@ typedef struct block_points {
   lanes_int inside;  /* lanes whose point lies in the grid, or at most GRID_MARGIN outside the grid */
 } block_points;
 
-/* Finds the lanes that may be visible. Their density is above all densities that stand before the first
- * visible one in the classifier's table. */
+/* Finds the lanes that may be visible. A lane may be visible if its density stands behind all densities that
+ * come before the first visible density in the classifier's table. */
 LANES_INLINE lanes_int may_show(const fill_source *source, lanes density) {
   const classifier *classifier = source->classifier;
   if (classifier == NULL) return lanes_set_int(-1);
@@ -47,7 +47,7 @@ LANES_INLINE block_points find_points(const fill_source *source, int x, int y) {
 }
 
 /* Finds the least cell of a block along each axis. Along a row or a column of pixels, cells only rise or only
- * fall. So the least cell is at a corner of the block, up to rounding. */
+ * fall. So the least cell along an axis is the cell of a pixel at a corner of the block, up to rounding. */
 LANES_INLINE void lowest_of_block(const lanes_int cell[3], int32_t low[3]) {
 #if defined(__AVX512BW__)
   const __m512i of_two = _mm512_set_epi32(0, 0, 0, 0, 15, 12, 3, 0, 31, 28, 19, 16, 15, 12, 3, 0);
@@ -76,7 +76,7 @@ LANES_INLINE void lowest_of_block(const lanes_int cell[3], int32_t low[3]) {
 
 /* Returns whether the taps (the voxels that a sample sums) of all pixels of a tile lie in the grid, with a
  * margin for rounding. The area of the sheet that a tile covers has straight edges. So all of the tile's
- * points lie between the points at its corners, unless some points lie behind the view's origin. */
+ * points lie between the points at the tile's corners, unless some points lie behind the view's origin. */
 LANES_INLINE int tile_is_inside(const fill_source *source, int x, int y) {
   const sheet_rays *rays = &source->rays;
   const float spare = 1.0f / 64;
@@ -108,8 +108,8 @@ LANES_INLINE lanes_int bit_of_cell(lanes_int x, lanes_int y, lanes_int z) {
   return lanes_set_int(1) << ((x & 3) | (y & 3) << 2 | (z & 1) << 4);
 }
 
-/* Returns whether any of the cells may show something, in whatever bricks they lie. One word of bits is
- * loaded for each cell. */
+/* Returns whether any of sixteen cells may show something. The cells may lie in any bricks, so one word of
+ * bits is loaded for each cell. */
 static __attribute__((noinline)) int cells_visible_anywhere(const grid *grid, const lanes_int cell[3]) {
   lanes_int x = cell[0] + 1, y = cell[1] + 1, z = cell[2] + 1;
   lanes_int brick = ((z >> 2) * grid->brick_count[1] + (y >> 2)) * grid->brick_count[0] + (x >> 2);
@@ -118,10 +118,11 @@ static __attribute__((noinline)) int cells_visible_anywhere(const grid *grid, co
 }
 
 #if defined(__AVX2__) && !defined(__AVX512F__)
-/* Returns whether any of sixteen cells may show something. All of these cells lie in the 2x2x2 bricks from
- * `first_brick` on. within: the cells' coordinates counted from the first cell of these bricks, a byte each.
- * The bits of two neighbouring bricks along x are sixteen bytes; each byte holds the bits of four cells along
- * x and two along y. A byte shuffle looks up, for each cell, the byte that holds its bit. */
+/* Returns whether any of sixteen cells may show something. All sixteen cells lie in the 2x2x2 bricks from
+ * `first_brick` on. within: the cells' coordinates counted from the first cell of these bricks, a byte for
+ * each coordinate. The bits of two neighbouring bricks along x are sixteen bytes; each byte holds the bits of
+ * four cells along x and two cells along y. A byte shuffle looks up, for each cell, the byte that holds the
+ * cell's bit. */
 LANES_INLINE int cells_visible_in_bricks(const grid *grid, size_t first_brick, const __m128i within[3]) {
   size_t row = (size_t)grid->brick_count[0], layer = row * (size_t)grid->brick_count[1];
   const uint64_t *bits = grid->cell_bits + first_brick;
@@ -144,7 +145,7 @@ LANES_INLINE int cells_visible_in_bricks(const grid *grid, size_t first_brick, c
 }
 
 /* Returns whether all cells of a block lie in the 2x2x2 bricks whose first cell is `first`. Sets `within` to
- * the cells' coordinates counted from `first`, a byte each. */
+ * the cells' coordinates counted from `first`, a byte for each coordinate. */
 LANES_INLINE int cells_in_bricks(const lanes_int cell[3], const int32_t first[3], __m128i within[3]) {
   for (int axis = 0; axis < 3; axis++) within[axis] = narrow_bytes(cell[axis] - first[axis]);
   __m128i all = _mm_or_si128(_mm_or_si128(within[0], within[1]), within[2]);

@@ -1,7 +1,7 @@
 /* fill/face_skin_lanes.h - finds how much of the matter that a light's rays reach belongs to a face that cuts
- * the matter. The face is a face of the volume's box, or of a cut. In: a run's rays, box and cuts (fill.h).
- * Out: a number from 0 to 1, the skin. The skin is 1 at a face and up to a voxel behind the face, and 0 from
- * FACE_VOXELS behind the face on. Only faces through which light comes in count. */
+ * the matter. Faces are faces of the volume's box and of cuts. In: a run's rays, box and cuts (fill.h). Out:
+ * a number from 0 to 1, the skin. The skin is 1 up to a voxel behind a face, and 0 from FACE_VOXELS behind
+ * the face on. Only faces through which light comes in count. */
 #ifndef HL_FILL_FACE_SKIN_LANES_H
 #define HL_FILL_FACE_SKIN_LANES_H
 
@@ -10,17 +10,17 @@
 #include "grid/faces.h"
 #include "view/rays_lanes.h"
 
-/* The skin of one face: the fraction of a ray's matter in a slab that belongs to the face. It is found in the
- * middle of the ray's part that lies behind the face. before, depth: the distances, in voxels, by which the
- * ray is behind the face on the slab's first and last sheet. */
+/* The skin of one face: the fraction of a ray's matter in a slab that belongs to the face. The skin is found
+ * in the middle of the ray's part that lies behind the face. before, depth: the ray's distances behind the
+ * face, in voxels, on the slab's first and last sheet. */
 LANES_INLINE lanes skin_of_depth(lanes before, lanes depth) {
   lanes middle = (lanes_max(before, lanes_set(0)) + depth) * 0.5f;
   return lanes_keep(depth > before, lanes_clamp(FACE_VOXELS - middle, 0, 1));
 }
 
-/* The greater one of the skins of two opposite faces. The faces lie at the coordinates low and high of an
- * axis. from, to: the coordinates of the rays on the slab's first and last sheet. scale: voxels per unit of
- * the axis. */
+/* The greater of the skins of two opposite faces. The faces lie at the coordinates low and high of an axis.
+ * from, to: the coordinates of the rays on the slab's first and last sheet. scale: voxels per unit of the
+ * axis. */
 LANES_INLINE lanes skin_of_axis(lanes from, lanes to, lanes low, lanes high, lanes scale) {
   return lanes_max(skin_of_depth((from - low) * scale, (to - low) * scale),
                    skin_of_depth((high - from) * scale, (high - to) * scale));
@@ -32,14 +32,15 @@ LANES_INLINE lanes3 point_in_shape(const run_cut *cut, lanes3 point) {
 }
 
 /* The distances of a point, given in a cut's own space, from the three pairs of faces of a box; in voxels.
- * They are negative between the faces. scale: voxels per unit of each axis of that space. */
+ * The distances are negative between the faces. scale: voxels per unit of each axis of the cut's space. */
 LANES_INLINE lanes3 distances_to_box(lanes3 at, const float scale[3]) {
   return (lanes3){(lanes_abs(at.x) - 1.0f) * scale[0], (lanes_abs(at.y) - 1.0f) * scale[1],
                   (lanes_abs(at.z) - 1.0f) * scale[2]};
 }
 
-/* The distance of a point from the shape of a cut, in voxels: positive outside the shape, negative inside.
- * The point is given in the cut's own space. scale: voxels per unit of each axis of that space. */
+/* The distance of a point from the shape of a cut, in voxels: positive outside the shape, negative inside the
+ * shape. The point is given in the cut's own space. scale: voxels per unit of each axis of the cut's space.
+ */
 LANES_INLINE lanes distance_to_shape(const run_cut *cut, lanes3 at, const float scale[3]) {
   if (cut->shape->type == HL_CUT_PLANE) return at.x * -scale[0];
   if (cut->shape->type == HL_CUT_SPHERE) return (lanes_sqrt(dot3(at, at)) - 1.0f) * scale[0];
@@ -47,9 +48,9 @@ LANES_INLINE lanes distance_to_shape(const run_cut *cut, lanes3 at, const float 
   return lanes_max(lanes_max(from_faces.x, from_faces.y), from_faces.z);
 }
 
-/* The skin of a cut: the fraction of the matter that belongs to one of the cut's faces. In a box whose inside
- * is left, light may come in through one face close to another face. So all faces of such a box are tested,
- * and not only the nearest one. */
+/* The skin of a cut: the fraction of the matter that belongs to one of the cut's faces. Into a box whose
+ * inside is left, light may come through one face close to another face. So the function tests all faces of
+ * such a box, and not only the nearest face. */
 LANES_INLINE lanes skin_of_cut(const run_cut *cut, lanes3 from, lanes3 to, float voxel) {
   const float scale[3] = {1.0f / (cut->size[0] * voxel), 1.0f / (cut->size[1] * voxel),
                           1.0f / (cut->size[2] * voxel)};

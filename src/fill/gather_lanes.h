@@ -1,8 +1,8 @@
-/* fill/gather_lanes.h - gathering: each pixel's density is the sum of the 4x4x4 voxels around its point,
+/* fill/gather_lanes.h - gathering: sums, for each pixel's density, the 4x4x4 voxels around the pixel's point,
  * weighted by the kernel.
  *
- * Four u8 voxels along x are loaded as one word of 32 bits. The order of the sum is fixed: pairs along x,
- * then y, then z. */
+ * Four u8 voxels along x are loaded as one word of 32 bits. Voxels are added in a fixed order: in pairs along
+ * x, then along y, then along z. */
 #ifndef HL_FILL_GATHER_LANES_H
 #define HL_FILL_GATHER_LANES_H
 
@@ -80,9 +80,10 @@ static __attribute__((noinline)) lanes sum_in_thin_grid(const grid *grid, const 
   return sums;
 }
 
-/* Moves taps that lie outside the grid into the grid, along one axis. Outside the grid the values at the
- * border continue. So the weights of outside taps are added to the border voxel's weight, and the four taps
- * move inside. Only the cells -1, 0, n-2 and n-1 of n voxels have taps outside. Returns the moved cells. */
+/* Moves taps that lie outside the grid into the grid, along one axis. Outside the grid, the values at the
+ * border continue. So the function adds the weights of outside taps to the border voxel's weight, and moves
+ * the four taps inside. Only the cells -1, 0, n-2 and n-1 of n voxels have taps outside. Returns the moved
+ * cells. */
 LANES_INLINE lanes_int fold_border(lanes_int cell, int32_t count, lanes weight[4]) {
   lanes zero = lanes_set(0);
   lanes_int first = cell == -1, second = cell == 0, last_but_one = cell == count - 2,
@@ -160,8 +161,8 @@ LANES_INLINE uint32_t lanes_in_page(const grid *grid, const lanes_int cell[3], u
   return lanes_bits(same);
 }
 
-/* The weighted sums of the taps, for voxels in pages, page by page. The sums are the same as if the voxels
- * were in memory, because no lane's sum depends on another lane. */
+/* The weighted sums of the taps, for voxels in pages, page by page. The sums equal the sums for voxels in
+ * memory, because no lane's sum depends on another lane. */
 static __attribute__((noinline)) lanes sum_in_pages(const grid *grid, const lanes_int cell[3],
                                                     uint32_t active, const lanes weight[3][4]) {
   lanes sum = lanes_set(0);
@@ -184,17 +185,17 @@ static __attribute__((noinline)) lanes sum_in_pages(const grid *grid, const lane
 typedef struct brick_lanes {
   const hl_brick_entry *entry;
   uint32_t bits;
-  /* the cells of the brick's level that hold the points. The brick's first cell has the number 1, so that tap
-   * 0 is at cell - 1 of the coefficients that the brick stores */
+  /* the cells that hold the points, at the brick's level. The brick's first cell has the number 1, so that
+   * tap 0 is at cell - 1 of the coefficients that the brick stores */
   lanes_int cell[3];
   lanes part[3]; /* the position of each point between its cell's corners, 0 to 1 */
   float step;    /* the edge of a cell of level 0 divided by the edge of a cell of the brick's level: 1 or
                   * less */
 } brick_lanes;
 
-/* Takes the first of the lanes `left`, and finds the brick that holds its point. Then finds all lanes of
- * `left` whose points lie in this brick. cell, part: the cells of level 0 that hold the lanes' points, and
- * the points' positions in these cells. */
+/* Finds the brick that holds the point of the first of the lanes `left`, and all lanes of `left` whose points
+ * lie in this brick. cell, part: the cells of level 0 that hold the lanes' points, and the points' positions
+ * in these cells. */
 LANES_INLINE void lanes_in_brick(const hl_bricks *bricks, const lanes_int cell[3], const lanes part[3],
                                  uint32_t left, brick_lanes *found) {
   int first = __builtin_ctz(left);
@@ -203,8 +204,8 @@ LANES_INLINE void lanes_in_brick(const hl_bricks *bricks, const lanes_int cell[3
     int32_t at = cell[a][first] >> bricks->shift, last = (int32_t)bricks->directory_size[a] - 1;
     at = at < 0      ? 0
          : at > last ? last
-                     : at; /* clamped so that the entry lies in the directory even if a ray's numbers are
-                            * impossible */
+                     : at; /* clamped, so that the entry lies in the directory even if a ray's numbers are not
+                            * finite */
     block = block * bricks->directory_size[a] + (size_t)at;
   }
   found->entry = &bricks->directory[block];
@@ -215,7 +216,7 @@ LANES_INLINE void lanes_in_brick(const hl_bricks *bricks, const lanes_int cell[3
   for (int a = 0; a < 3; a++) {
     same &= ((cell[a] ^ cell[a][first]) >> shift) == 0;
     found->cell[a] = ((cell[a] & ((1 << shift) - 1)) >> level) + 1;
-    /* at level 0 the sum adds 0 and the factor is 1, so that no bit changes */
+    /* at level 0, the sum adds 0 and the factor is 1, so that no bit of `part` changes */
     found->part[a] = (lanes_from_int(cell[a] & below) + part[a]) * found->step;
   }
   found->bits = lanes_bits(same);
@@ -233,16 +234,16 @@ LANES_INLINE void grid_of_brick(const hl_bricks *bricks, const hl_brick_entry *e
   for (int a = 0; a < 3; a++) view->dimension[a] = (int32_t)width;
 }
 
-/* The weights of a brick's taps along an axis. For a field of several levels they are the B-spline's
- * weights; for a field of one level they are the weights of the scene's kernel. */
+/* The weights of a brick's taps along an axis. A field of several levels has the B-spline's weights; a field
+ * of one level has the weights of the scene's kernel. */
 LANES_INLINE void weights_in_brick(const kernel *kernel, lanes part, lanes weight[4]) {
   if (kernel->degree == HL_BSPLINE_DEGREE) tap_weights(kernel, HL_BSPLINE_DEGREE, part, weight);
   else tap_weights(kernel, HL_KERNEL_DEGREE, part, weight);
 }
 
-/* Sums the weighted coefficients around sixteen positions of a field in bricks, brick by brick. In each brick
- * sum_in_memory() finds the sums. cell, part: the positions' cells in the grid, and the places in these
- * cells. */
+/* Sums the weighted coefficients around sixteen positions of a field in bricks, brick by brick. In each
+ * brick, sum_in_memory() finds the sums. cell, part: the cells of the grid that hold the positions, and the
+ * positions' places in these cells. */
 static __attribute__((noinline)) lanes sum_in_bricks(const grid *grid, const kernel *kernel,
                                                      const lanes_int cell[3], const lanes part[3],
                                                      uint32_t active) {
@@ -267,8 +268,8 @@ static __attribute__((noinline)) lanes sum_in_bricks(const grid *grid, const ker
   return sum;
 }
 
-/* The weighted sums of the active lanes of a block. inside: whether all lanes are active and all their taps
- * lie in the grid. */
+/* The weighted sums of the active lanes of a block. inside: whether all lanes are active and the taps of all
+ * lanes lie in the grid. */
 LANES_INLINE lanes gather_block(const fill_source *source, const block_points *points, uint32_t active,
                                 int degree, int inside) {
   const grid *grid = source->grid;
@@ -284,7 +285,7 @@ LANES_INLINE lanes gather_block(const fill_source *source, const block_points *p
   int outside = inside ? 0 : axes_to_fold(grid, cell, active);
   if (outside != 0) {
     /* weights are rounded before the weights of taps outside the grid are added to others; splatting rounds
-     * them in the same order */
+     * weights in this order, too */
     if (has_integer_weights(storage)) round_to_weights(weight[0]);
     if (grid->dimension[0] < 4 || grid->dimension[1] < 4 || grid->dimension[2] < 4)
       return sum_in_thin_grid(grid, cell, active, weights);
@@ -327,7 +328,7 @@ LANES_INLINE block_points points_in_tile(const fill_source *source, int tile_x, 
 
 /* Fills the blocks in `need`, and the blocks in `others` whose cells may show something. All cells are tested
  * before any block is filled. If tests and sums alternated, the processor would mispredict branches, and
- * would begin sums in vain. inside: the result of tile_is_inside(). */
+ * would begin sums that are not needed. inside: the result of tile_is_inside(). */
 LANES_INLINE filled_blocks gather_blocks(const fill_source *source, int tile_x, int tile_y, uint32_t need,
                                          uint32_t others, int inside, float *density) {
   block_points points[TILE_BLOCKS];

@@ -1,13 +1,14 @@
 /* fill/gradient_lanes.h - finds the gradient of a volume's density at points of index space. Each component
- * is a sum over the 4x4x4 voxels around the point, weighted by the kernel's derivative along one axis and by
- * the kernel along the other two. */
+ * of the gradient is a sum over the 4x4x4 voxels around the point, weighted by the kernel's derivative along
+ * one axis and by the kernel along the other two axes. */
 #ifndef HL_FILL_GRADIENT_LANES_H
 #define HL_FILL_GRADIENT_LANES_H
 
 #include "fill/gather_lanes.h"
 
 /* Sums the three components of the gradient. The three sums share the loads of voxels. Each row of voxels is
- * summed twice: once with its weights and once with its slopes, the weights' derivatives. */
+ * summed twice: once with the weights along x, and once with the slopes, which are the weights' derivatives.
+ */
 LANES_INLINE lanes3 sum_slopes(const grid *grid, hl_storage storage, const tap_window *window,
                                const tap_slope_weights *w) {
   lanes3 sum = {lanes_set(0), lanes_set(0), lanes_set(0)};

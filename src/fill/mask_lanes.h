@@ -52,7 +52,7 @@ LANES_INLINE lanes_int words_of_bricks(const mask_lattice *lattice, lanes_int br
   return lanes_gather_bytes((const unsigned char *)&lattice->bricks[0][word], bricks);
 }
 
-/* Interpolates the mask's factor linearly between the lattice's points. The result counts the steps in which
+/* Interpolates the mask's factor linearly between the lattice's points. The result is in the steps in which
  * factors are stored. */
 LANES_INLINE lanes steps_between_points(const mask_lattice *lattice, const mask_places *p) {
   lanes_int near[3], far[3];
@@ -73,9 +73,9 @@ LANES_INLINE lanes steps_between_points(const mask_lattice *lattice, const mask_
   return lanes_fma(plane[1] - plane[0], p->part[2], plane[0]);
 }
 
-/* The mask's factor at points of frame space: linear between the lattice's points, `rest` outside the
+/* The mask's factor at points of frame space: linear between the lattice's points, and `rest` outside the
  * lattice. Only active lanes get a result. If all factors of a brick are equal, the result is this factor,
- * because linear interpolation would give the same. */
+ * which linear interpolation would give, too. */
 LANES_INLINE lanes mask_factor(const mask_lattice *lattice, lanes3 point, uint32_t active) {
   mask_places p = places_in_mask(lattice, point);
   lanes_int words = words_of_bricks(lattice, bricks_of_places(lattice, &p), 0);
@@ -85,8 +85,8 @@ LANES_INLINE lanes mask_factor(const mask_lattice *lattice, lanes3 point, uint32
   return lanes_select(p.outside, lanes_set(lattice->rest), factor);
 }
 
-/* How far points of frame space lie behind the walls of a mesh of cells, whose depths the mask's lattice has:
- * the factor before it is held between 0 and 1, less 1/2. Negative beyond the walls. */
+/* The depth of points of frame space behind the walls of a mesh of cells, for a mask whose lattice stores
+ * this depth: the factor before it is clamped to [0, 1], less 1/2. The depth is negative beyond the walls. */
 LANES_INLINE lanes depth_behind_walls(const mask_lattice *lattice, lanes3 point) {
   mask_places p = places_in_mask(lattice, point);
   lanes depth = lanes_line(steps_between_points(lattice, &p), lattice->scale, lattice->offset) - 0.5f;

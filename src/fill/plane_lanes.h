@@ -62,8 +62,8 @@ static __attribute__((noinline)) lanes values_at(const grid *grid, const kernel 
 /* ---- the row of the second number ---- */
 
 /* Finds the row of the table of a function of two numbers that belongs to the second number at each of
- * sixteen points. slope: the volume's gradient at the points, in stored units per frame unit; it is not read
- * if the second number is the value of another volume. point: frame space. */
+ * sixteen points. slope: the volume's gradient at the points, in stored units per frame unit; `slope` is not
+ * read if the second number is the value of another volume. point: frame space. */
 LANES_INLINE lanes row_of_matter(const plane_table *table, const kernel *kernel, lanes3 slope, lanes3 point,
                                  uint32_t active, uint32_t starts) {
   lanes second, scale = lanes_set(table->row_scale);
@@ -103,12 +103,12 @@ LANES_INLINE lanes_int depends_on_row(const plane_table *table, lanes from, lane
 
 /* Finds two numbers of a row of the table at a column: sums[0] is the extinction, and sums[1] is the
  * extinction's integral over the columns before. Extinction is linear between columns. After the fraction f
- * of a column the integral has therefore grown by f e0 + f^2 (e1 - e0) / 2 (derived). */
+ * of a column, the integral has therefore grown by f e0 + f^2 (e1 - e0) / 2 (derived). */
 LANES_INLINE void sums_at_column(const plane_table *table, plane_row row, lanes column, lanes sums[2]) {
   lanes_int whole = lanes_truncate(column);
   lanes part = column - lanes_from_int(whole), of_row[2][2];
-  /* two numbers each at the column (`here`) and at the next column (`next`): the extinction and its integral
-   * in the row, and then both in the next row */
+  /* four numbers at the column (`here`) and at the next column (`next`): the extinction and its integral in
+   * the row, and the extinction and its integral in the next row */
   lanes here[4], next[4];
   lanes_gather_quad_pairs(&table->sums[0][0], row.start + whole, here, next);
   for (int r = 0; r < 2; r++) {
@@ -119,8 +119,9 @@ LANES_INLINE void sums_at_column(const plane_table *table, plane_row row, lanes 
   for (int i = 0; i < 2; i++) sums[i] = lanes_fma(of_row[1][i] - of_row[0][i], row.part, of_row[0][i]);
 }
 
-/* If two coordinates are closer than this number of columns, the mean extinction between them is the mean of
- * the extinctions at both. A difference of integrals would then lose digits, and the mean is as accurate. */
+/* If two coordinates are closer than this number of columns, the mean of the extinctions at the two
+ * coordinates stands for the mean extinction between them. A difference of integrals would lose digits, and
+ * this mean is as accurate. */
 static const float CLOSE_COLUMNS = 2;
 
 /* The mean extinction in a row between two coordinates in the classifier's tables. */
@@ -135,8 +136,8 @@ LANES_INLINE lanes extinction_in_row(const plane_table *table, lanes row, lanes 
   return lanes_select(far, lanes_max(mean, lanes_set(0)), (at_a[0] + at_b[0]) * 0.5f);
 }
 
-/* Finds two sums over the columns of a row from its start to a column: of colour times opacity, and of
- * opacity. */
+/* Finds two sums over the columns of a row, from the row's start to a column: the sum of colour times
+ * opacity, and the sum of opacity. */
 LANES_INLINE void colors_at_column(const plane_table *table, plane_row row, lanes column, lanes sums[4]) {
   lanes_int whole = lanes_truncate(column);
   lanes part = column - lanes_from_int(whole), of_row[2][4];
@@ -161,12 +162,13 @@ LANES_INLINE void colors_between(const plane_table *table, plane_row row, lanes 
 }
 
 /* The visible part of a way gets a colour of its own if the sum of opacities over its columns is at least
- * this number. Otherwise the colour is the mean over the whole way. */
+ * this number. Otherwise the colour of the visible part is the mean over the whole way. */
 static const float SOME_OPACITY = 1e-4f;
 
 /* The colour in a row where matter is visible, in linear RGB: the mean over the visible part of a way and one
- * column on either side. If the function shows nothing there, the colour is the mean over the whole way. The
- * way runs from one coordinate in the classifier's tables to another. Only active lanes get a result. */
+ * column on either side. If the function shows nothing in these columns, the colour is the mean over the
+ * whole way. The way runs from one coordinate in the classifier's tables to another. Only active lanes get a
+ * result. */
 static __attribute__((noinline, unused)) void color_in_row(const plane_table *table, lanes row,
                                                            const lanes shown[2], const lanes whole[2],
                                                            uint32_t active, lanes color[3]) {

@@ -1,6 +1,6 @@
 /* fill/relevant_blocks_lanes.h - finds which blocks of a tile may show something between two sheets. The box
- * around each block's rays is looked up among the visible cells, sixteen blocks at a time. Several
- * consecutive slabs are examined together, because neighbouring slabs share the boxes on their common sheet
+ * around each block's rays is looked up in the table of visible cells, sixteen blocks at a time. Several
+ * consecutive slabs are examined together, because neighbouring slabs share the boxes on their common sheet,
  * and mostly read the same cells. */
 #ifndef HL_FILL_RELEVANT_BLOCKS_LANES_H
 #define HL_FILL_RELEVANT_BLOCKS_LANES_H
@@ -12,13 +12,13 @@
 
 typedef struct lanes_box {
   lanes low[3], high[3];
-} lanes_box; /* sixteen boxes, one in each lane; index space */
+} lanes_box; /* sixteen boxes, one box in each lane; index space */
 
 /* The box around a block's points on a sheet. Derived: a pixel's point is base + P / H (sheet_rays). P and H
- * are linear functions of the pixel, which change by Pu and Hu from one pixel to the next. So the next
- * pixel's point lies (Pu - (Hu / H) P) / H further. The pixels' centres are at most 3/2 pixels from the
- * block's middle in either direction. The box is made a little larger than that, because H changes within the
- * block. */
+ * are linear functions of the pixel, and change by Pu and Hu from one pixel to the next. So the distance to
+ * the next pixel's point is (Pu - (Hu / H) P) / H. The pixels' centres are at most 3/2 pixels from the
+ * block's middle in either direction. The box is a little larger than these 3/2 pixels, because H changes
+ * within the block. */
 LANES_INLINE lanes_box box_on_sheet(const sheet_rays *rays, lanes u, lanes v) {
   const float reach = 1.5f * 1.02f;
   lanes3 p = rays_linear(rays->p0, rays->pu, rays->pv, u, v);
@@ -80,14 +80,14 @@ LANES_INLINE uint32_t visible_boxes(const grid *grid, const lanes_box *box) {
   return lanes_bits(inside & (visible | (wide & (visible_coarsely | too_wide))));
 }
 
-/* The blocks whose boxes lie within a cut's shape, and the blocks whose boxes lie outside it. */
+/* The blocks whose boxes lie within a cut's shape, and the blocks whose boxes lie outside the shape. */
 typedef struct sides_of_cut {
   lanes_int within, outside;
 } sides_of_cut;
 
-/* Finds on which side of a cut each box lies. A box is taken to the shape's own space, where planes, boxes
- * and spheres are simple, as its middle and half its extent along each axis. beside: the member of slab_run
- * with this name. */
+/* Finds on which side of a cut each box lies. A box, given by its middle and half its extent along each axis,
+ * is converted to the shape's own space, in which planes, boxes and spheres are simple. beside:
+ * slab_run.beside. */
 LANES_INLINE sides_of_cut sides_of_boxes(const run_cut *cut, const lanes_box *box, float beside) {
   lanes middle[3], half[3], farthest = lanes_set(0), nearest = lanes_set(0), far = farthest, near = nearest;
   for (int a = 0; a < 3; a++) {
@@ -110,8 +110,8 @@ LANES_INLINE sides_of_cut sides_of_boxes(const run_cut *cut, const lanes_box *bo
   return (sides_of_cut){far<1.0f, near> 1.0f};
 }
 
-/* Clears in `visible` the blocks that cuts remove, and in `uncut` the blocks near a cut's face. Once no block
- * is visible, the other cuts change nothing that counts. */
+/* Clears in `visible` the blocks that cuts remove, and in `uncut` the blocks near a cut's face. The loop ends
+ * when no block is visible any more. */
 LANES_INLINE void apply_cuts(const slab_run *run, const lanes_box *box, uint32_t *visible, uint32_t *uncut) {
   for (int i = 0; i < run->cut_count && *visible != 0; i++) {
     sides_of_cut sides = sides_of_boxes(&run->cuts[i], box, run->beside);
@@ -142,7 +142,7 @@ static void relevant_blocks_tile(const slab_run *run, int tile_x, int tile_y, ui
     lanes_box box = box_of_slab(&on_sheet[slab], &on_sheet[slab + 1]);
     uint32_t visible = visible_boxes(run->grid, &box), whole = uncut_blocks(run, &box);
     apply_cuts(run, &box, &visible, &whole);
-    /* blocks count as cut, too, if the eye lies in the slab, because their rays begin within the slab */
+    /* if the eye lies in the slab, blocks count as cut, too, because their rays begin within the slab */
     int uncut = rays[0].step * rays[1].step > 0 && (visible & ~whole) == 0;
     found->uncut = (uint16_t)((found->uncut & ~(1u << slab)) | (uint32_t)uncut << slab);
     found->blocks[slab] = (uint16_t)(visible & need);

@@ -9,7 +9,7 @@
 /* ---- weights as integers ---- */
 
 /* Weights and slopes are rounded to integers, in units of 1 / WEIGHT_UNITS and 1 / SLOPE_UNITS. These
- * constants turn them back into floats. */
+ * constants convert the integers to floats. */
 static const float WEIGHT_INVERSE = 1.0f / WEIGHT_UNITS, SLOPE_INVERSE = 1.0f / SLOPE_UNITS;
 
 typedef struct integer_weights {
@@ -17,15 +17,15 @@ typedef struct integer_weights {
 } integer_weights;
 
 /* Returns the product of x and `units`, rounded to the nearest integer. Results are below 2^22. The last bit
- * of a float from 2^23 to 2^24 stands for 1, so that adding 3 * 2^22 rounds to integers. */
+ * of a float from 2^23 to 2^24 stands for 1, so that adding 3 * 2^22 rounds x * units to an integer. */
 LANES_INLINE lanes_int round_to_units(lanes x, int units) {
   const float shift = 3 << 22;
   return (lanes_int)lanes_line(x, (float)units, shift) - (lanes_int)lanes_set(shift);
 }
 
-/* Rounds the four weights of a row of voxels to integers. The running sums of the weights are rounded, and
- * not each weight. So the error of a row of voxels is half a unit times the differences between neighbours,
- * and rows of equal voxels have no error. total: the sum of all four weights. */
+/* Rounds the four weights of a row of voxels to integers. The function rounds the running sums of the
+ * weights, and not each weight. So the error of a row of voxels is at most half a unit times the differences
+ * between neighbours, and rows of equal voxels have no error. total: the sum of all four weights. */
 LANES_INLINE integer_weights round_weights(const lanes weight[4], int units, int total) {
   lanes_int first = round_to_units(weight[0], units), two = round_to_units(weight[0] + weight[1], units);
   lanes_int last = round_to_units(weight[3], units);
@@ -46,9 +46,9 @@ LANES_INLINE void round_to_weights(lanes weight[4]) {
 #define HL_PERMUTES_BYTES 1
 
 /* A lane has four weights or slopes. Each of these numbers is two bytes: digit[0] holds the higher bytes of
- * the lane's four numbers, digit[1] the lower bytes. The processor multiplies unsigned bytes by signed bytes.
- * Weights are unsigned; they are multiplied by voxels reduced by 128, which are signed. Slopes are signed;
- * they are multiplied by unsigned voxels. */
+ * the lane's four numbers, and digit[1] the lower bytes. The processor multiplies unsigned bytes by signed
+ * bytes. Weights are unsigned, and are multiplied by voxels reduced by 128, which are signed. Slopes are
+ * signed, and are multiplied by unsigned voxels. */
 typedef struct byte_weights {
   __m512i digit[2];
 } byte_weights;
@@ -56,11 +56,11 @@ typedef struct byte_slopes {
   __m512i digit[2];
 } byte_slopes;
 
-/* Two functions that collect the lower bytes, or the higher bytes, of four 16-bit numbers in each lane, in
- * order. even: numbers 0 and 2. odd: numbers 1 and 3. */
+/* lower_bytes() and higher_bytes() collect the lower or the higher bytes of four 16-bit numbers in each lane,
+ * in order. even: numbers 0 and 2. odd: numbers 1 and 3. */
 LANES_INLINE __m512i lower_bytes(__m512i even, __m512i odd) {
   return _mm512_ternarylogic_epi32(_mm512_set1_epi32(0x00ff00ff), even, _mm512_slli_epi32(odd, 8),
-                                   0xca); /* selects a ? b : c */
+                                   0xca); /* the operation a ? b : c for each bit */
 }
 LANES_INLINE __m512i higher_bytes(__m512i even, __m512i odd) {
   return _mm512_ternarylogic_epi32(_mm512_set1_epi32(0x00ff00ff), _mm512_srli_epi32(even, 8), odd, 0xca);
@@ -75,7 +75,7 @@ LANES_INLINE byte_weights split_weights(const integer_weights *integers) {
   return (byte_weights){{higher_bytes(even, odd), lower_bytes(even, odd)}};
 }
 
-/* Splits slopes into bytes. A slope is d0 * 256 + d1, where both bytes are signed. Where d1 is negative, d0
+/* Splits slopes into bytes. A slope is d0 * 256 + d1, where d0 and d1 are signed bytes. If d1 is negative, d0
  * is 1 more than the slope's higher byte. */
 LANES_INLINE byte_slopes split_slopes(const integer_weights *integers) {
   const __m512i sign = _mm512_set1_epi16((short)0x8080);
@@ -85,7 +85,7 @@ LANES_INLINE byte_slopes split_slopes(const integer_weights *integers) {
       {_mm512_xor_si512(higher_bytes(even, odd), sign), _mm512_xor_si512(lower_bytes(even, odd), sign)}};
 }
 
-/* Subtracts 128 from unsigned voxels, or adds it back, by flipping the sign bits. */
+/* Subtracts 128 from unsigned voxels, or adds 128 to such reduced voxels, by flipping the sign bits. */
 LANES_INLINE lanes_int taps_with_sign(lanes_int taps) { return taps ^ (int32_t)0x80808080; }
 
 LANES_INLINE lanes_int weigh_signed_bytes(lanes_int less_128, const byte_weights *weights) {
@@ -143,8 +143,8 @@ LANES_INLINE lanes_int slope_of_bytes(lanes_int taps, const byte_slopes *slopes)
 /* The functions below weight and add four u16 taps, which are packed in two 32-bit words. */
 #if defined(__AVX2__)
 /* The weights of taps 0 and 1 share a word, and so do the weights of taps 2 and 3. One instruction multiplies
- * pairs of signed 16-bit numbers and adds the two products. Because these numbers are signed, 32768 is
- * subtracted from the voxels. */
+ * pairs of signed 16-bit numbers and adds the two products. Because the instruction's numbers are signed,
+ * 32768 is subtracted from the voxels. */
 typedef struct short_weights {
   lanes_int pair[2];
 } short_weights;
@@ -184,8 +184,8 @@ LANES_INLINE lanes_int weigh_shorts(lanes_int low, lanes_int high, const short_w
   return ((low & 65535) * weights->tap[0] + ((low >> 16) & 65535) * weights->tap[1]) +
          ((high & 65535) * weights->tap[2] + ((high >> 16) & 65535) * weights->tap[3]);
 }
-/* The voxels are reduced by 32768, so that all sums fit 32 bits. This does not change the result, because the
- * four slopes add up to 0. */
+/* The voxels are reduced by 32768, so that all sums fit 32 bits. The reduction does not change the result,
+ * because the four slopes add up to 0. */
 LANES_INLINE lanes_int slope_of_shorts(lanes_int low, lanes_int high, const short_slopes *slopes) {
   return (((low & 65535) - 32768) * slopes->tap[0] + (((low >> 16) & 65535) - 32768) * slopes->tap[1]) +
          (((high & 65535) - 32768) * slopes->tap[2] + (((high >> 16) & 65535) - 32768) * slopes->tap[3]);
@@ -204,7 +204,8 @@ typedef struct tap_slope_weights {
   lanes weight[3][4], slope[3][4];
 } tap_slope_weights;
 
-/* Weights along x and their slopes, in the form that fits the voxels' type: floats for f32, else integers. */
+/* Weights along x, and slopes along x, in the form that fits the voxels' type: floats for f32 voxels,
+ * integers for other voxels. */
 typedef struct row_weights {
   lanes real[4];
   byte_weights bytes;
@@ -238,7 +239,7 @@ LANES_INLINE row_slopes slopes_of_row(hl_storage storage, const lanes slope[4]) 
 }
 
 /* The weighted sum of four neighbouring voxels along x, for every lane. offsets: number of bytes from `row`
- * to each lane's first voxel. With integer weights the result is in units of the weights. */
+ * to each lane's first voxel. With integer weights, the sum is in units of the weights. */
 LANES_INLINE lanes row_f32(const unsigned char *row, const lanes_offsets *offsets, const lanes weight[4]) {
   return weigh_floats((lanes)lanes_load_words(row, offsets), (lanes)lanes_load_words(row + 4, offsets),
                       (lanes)lanes_load_words(row + 8, offsets), (lanes)lanes_load_words(row + 12, offsets),

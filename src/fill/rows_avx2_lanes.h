@@ -1,9 +1,9 @@
 /* fill/rows_avx2_lanes.h - sums along y and z with AVX2, and sums over u16 voxels that are read directly from
  * the volume.
  *
- * A tap is one of the 64 voxels that a lane sums. A register of 256 bits holds the taps of two lanes, lanes k
+ * A tap is one of the 64 voxels that a lane sums. A register of 256 bits holds the taps of two lanes: lanes k
  * and k + 4 of eight. The taps are weighted and summed along x, which leaves one number for each row of taps.
- * These numbers are transposed, so that lanes lie side by side. Then they are weighted and summed along y and
+ * These numbers are transposed, so that lanes lie side by side, and are then weighted and summed along y and
  * z. */
 #ifndef HL_FILL_ROWS_AVX2_LANES_H
 #define HL_FILL_ROWS_AVX2_LANES_H
@@ -24,7 +24,7 @@ typedef struct sums_of_rows {
 } sums_of_rows;
 
 /* Transposes four registers, which hold four rows of two lanes each, to four rows of eight lanes, and
- * converts them to floats. */
+ * converts the numbers to floats. */
 LANES_INLINE void turn_rows(const __m256i of_two[4], __m256 row[4]) {
   __m256i a = _mm256_unpacklo_epi32(of_two[0], of_two[1]), b = _mm256_unpacklo_epi32(of_two[2], of_two[3]);
   __m256i c = _mm256_unpackhi_epi32(of_two[0], of_two[1]), d = _mm256_unpackhi_epi32(of_two[2], of_two[3]);

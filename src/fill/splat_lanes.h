@@ -2,7 +2,7 @@
  * (steps 8 to 11 of the paper).
  *
  * The kernel is evaluated at each pixel's point on the sheet, and not looked up in a table of footprints. So
- * it is exact for any orientation, perspective and spacing of sheets. */
+ * splatting is exact for any orientation, perspective and spacing of sheets. */
 #ifndef HL_FILL_SPLAT_LANES_H
 #define HL_FILL_SPLAT_LANES_H
 

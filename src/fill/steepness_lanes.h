@@ -40,21 +40,22 @@ typedef struct matter_way {
   lanes from, to;          /* coordinates in the classifier's tables: the values where each way begins
                             * and ends */
   lanes extinction;        /* the mean extinction on the way, without the factor */
-  uint32_t active, starts; /* active: the lanes with extinction, of which there is at least one; starts:
-                            * the first lane of each block of pixels; both: one bit for each lane */
-  int wants_slope;         /* not 0 if the caller reads the slope, even if the factor does not depend on it */
+  uint32_t active, starts; /* one bit for each lane; active: the lanes with extinction, at least one lane;
+                            * starts: the first lane of each block of pixels */
+  int wants_slope;         /* not 0 if the caller reads the slope, even if the factor does not depend on the
+                            * slope */
 } matter_way;
 
 /* The factor by which a volume's extinction is multiplied. */
 typedef struct matter_factor {
   lanes factor;
-  lanes3 slope; /* the gradient at the point, in stored units per frame unit; 0 if the factor does not depend
-                 * on it */
+  lanes3 slope; /* the gradient at the point, in stored units per frame unit; 0 if neither the factor nor the
+                 * caller needs the gradient */
   lanes row;    /* the row of the second number in the table of a function of two numbers */
 } matter_factor;
 
 /* The factor for the matter on sixteen ways. This large function is not inlined, so that loops that do not
- * need it stay small. */
+ * call it stay small. */
 static __attribute__((noinline)) matter_factor factor_of_matter(const matter_way *way) {
   const classifier *classifier = way->classifier;
   const plane_table *plane = &classifier->plane;

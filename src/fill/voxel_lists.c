@@ -1,9 +1,9 @@
-/* fill/voxel_lists.c - sorts voxels by tile and by bucket of sheets. It is a counting sort in three passes:
- * count, write, order.
+/* fill/voxel_lists.c - sorts voxels by tile and by bucket of sheets. The sort is a counting sort in three
+ * passes: count, write, order.
  *
  * Voxels are numbered in a grid that is padded by two voxels on every side; in the padding, the values at the
- * border continue. Threads write the entries of a bucket in any order; sorting each bucket by index
- * afterwards makes the sums, and so the picture, independent of the threads. */
+ * border continue. Threads write the entries of a bucket in any order. The last pass sorts each bucket by
+ * index, so that the sums, and with them the picture, do not depend on the threads. */
 #include "fill/voxel_lists.h"
 
 #include <string.h>
@@ -18,7 +18,7 @@ typedef struct sort_job {
   double support; /* the kernel's radius in voxels */
   voxel_lists *lists;
   uint32_t *cursor; /* [tiles * buckets + 1]; in the first pass, the number of entries of each bucket; in the
-                     * second, the index of the bucket's next entry */
+                     * second pass, the index of the bucket's next entry */
   bool writing;     /* whether voxels are written (second pass); if not, they are only counted (first pass) */
 } sort_job;
 

@@ -9,9 +9,9 @@
 typedef struct voxel_lists {
   int tiles_x, tiles_y;
   int bucket_count; /* number of buckets of a tile: number of sheets + span - 1 */
-  int span; /* number of sheets that a kernel can touch. Sheet k reads the buckets k to k + span - 1. The
-             * value of a voxel at the grid's border continues outside the grid. So such a voxel touches more
-             * sheets, and is listed again every `span` sheets */
+  int span; /* number of sheets that a kernel can touch. Sheet k reads the buckets k to k + span - 1. A voxel
+             * at the grid's border touches more sheets, because its value continues outside the grid, and is
+             * listed again every `span` sheets */
   uint32_t *start; /* owned; [tiles * bucket_count + 1]; the index in `voxel` at which each bucket begins */
   uint32_t *voxel; /* owned; [start[last]]; indices of voxels in the grid padded by 2 voxels on every side */
 } voxel_lists;

@@ -39,8 +39,8 @@ LANES_INLINE window_taps taps_u8(const window_slice *slice, __m512i index) {
   return taps;
 }
 
-/* Weighs the four taps of every lane. The columns hold voxels from which 128 was subtracted, and so do the
- * taps. */
+/* Weighs the four taps of every lane. The columns, and so the taps, hold voxels from which 128 was
+ * subtracted. */
 LANES_INLINE lanes weigh_u8(const window_taps *taps, const byte_weights *weights) {
   return lanes_from_int(weigh_signed_bytes((lanes_int)taps->part[0], weights));
 }
@@ -53,7 +53,7 @@ LANES_INLINE window_lanes starting_u8(__m512i start, int slice) {
   return _mm512_cmpeq_epi8_mask(repeat_bytes(start), _mm512_set1_epi8((char)slice));
 }
 
-/* Replaces the taps of some lanes by taps from another slice of the window. some: these lanes. */
+/* Replaces the taps of the lanes `some` by taps from another slice of the window. */
 LANES_INLINE void replace_taps_u8(window_taps *taps, window_lanes some, const window_slice *slice,
                                   __m512i index) {
   taps->part[0] = _mm512_mask_permutexvar_epi8(taps->part[0], some, index, slice->part[0]);

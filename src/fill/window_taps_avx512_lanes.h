@@ -35,7 +35,7 @@ LANES_INLINE __m512i index_u16(__m512i x, __m512i y) {
 LANES_INLINE __m128i row_of_shorts(const unsigned char *row) { return _mm_loadu_si128((const __m128i *)row); }
 
 /* Loads a slice of a window of u16 voxels, and subtracts 32768 from the voxels. One register gets four rows,
- * another the three rows below them. */
+ * and another register gets the three rows below these rows. */
 LANES_INLINE window_slice slice_u16(const unsigned char *row, size_t row_bytes) {
   window_slice slice;
   __m512i upper = _mm512_castsi128_si512(row_of_shorts(row)),
@@ -50,8 +50,8 @@ LANES_INLINE window_slice slice_u16(const unsigned char *row, size_t row_bytes) 
   return slice;
 }
 
-/* The four rows from row y on. These rows hold tap row y of every lane, because the first tap of each lane
- * lies in one of the first four rows. */
+/* The four rows from row y on. The four rows hold tap row y of every lane, because the first tap of each lane
+ * lies in one of the slice's first four rows. */
 LANES_INLINE window_slice rows_u16(const window_slice *slice, int y) {
   window_slice rows;
   rows.part[0] = y == 0   ? slice->part[0]
@@ -79,7 +79,7 @@ LANES_INLINE window_lanes starting_u16(__m512i start, int slice) {
   return _mm512_cmpeq_epi16_mask(both, _mm512_set1_epi16((short)slice));
 }
 
-/* Replaces the taps of some lanes by taps from another slice of the window. some: these lanes. */
+/* Replaces the taps of the lanes `some` by taps from another slice of the window. */
 LANES_INLINE void replace_taps_u16(window_taps *taps, window_lanes some, const window_slice *rows,
                                    __m512i index) {
   taps->part[0] = _mm512_mask_permutexvar_epi16(taps->part[0], (__mmask32)some, index, rows->part[0]);

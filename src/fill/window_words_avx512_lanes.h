@@ -17,8 +17,8 @@ LANES_INLINE __m512i index_u8(__m512i x, __m512i y) {
 
 /* Joins a left and a right column to eight rows of eight voxels, as words of four voxels. The rows begin
  * `shift` bits after the left column's first voxel. Each row gives four words: the words that begin at its
- * voxels 0 and 1 go to the first register, the words that begin at its voxels 2 and 3 to the second. The four
- * taps of every lane are one of these 32 words. */
+ * voxels 0 and 1 go to the first register, the words that begin at its voxels 2 and 3 to the second. Each
+ * lane's four taps are one of these 32 words. */
 LANES_INLINE window_slice join_columns(__m512i left, __m512i right, __m512i shift) {
   const __mmask16 odd = 0xaaaa;
   __m512i rows = _mm512_or_si512(_mm512_srlv_epi64(left, shift),
@@ -55,7 +55,7 @@ LANES_INLINE window_lanes starting_u8(__m512i start, int slice) {
   return _mm512_cmpeq_epi32_mask(start, _mm512_set1_epi32(slice));
 }
 
-/* Replaces the taps of some lanes by taps from another slice of the window. some: these lanes. */
+/* Replaces the taps of the lanes `some` by taps from another slice of the window. */
 LANES_INLINE void replace_taps_u8(window_taps *taps, window_lanes some, const window_slice *slice,
                                   __m512i index) {
   taps->part[0] = _mm512_mask_mov_epi32(taps->part[0], (__mmask16)some, taps_u8(slice, index).part[0]);

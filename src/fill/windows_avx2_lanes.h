@@ -1,8 +1,8 @@
 /* fill/windows_avx2_lanes.h - sums over windows of u8 voxels with AVX2 (windows_lanes.h).
  *
- * A slice of a window has 8x8 voxels from the grid's columns. Three or five copies of a slice are made, each
- * four voxels wide. Each copy begins one voxel further along x than the copy before. So four rows of four
- * taps are sixteen consecutive bytes, which one load takes. Two lanes' taps share a register
+ * A slice of a window has 8x8 voxels from the grid's columns. The code makes three or five copies of a slice,
+ * each four voxels wide. Each copy begins one voxel further along x than the copy before. So four rows of
+ * four taps are sixteen consecutive bytes of a copy, which one load takes. Two lanes' taps share a register
  * (rows_avx2_lanes.h). */
 #ifndef HL_FILL_WINDOWS_AVX2_LANES_H
 #define HL_FILL_WINDOWS_AVX2_LANES_H
@@ -15,8 +15,8 @@ enum {
   WINDOW_SIDE = GRID_COLUMN,       /* width of a window, in voxels */
   WINDOW_SPREAD = WINDOW_SIDE - 4, /* the greatest distance, in voxels, between the first taps of two lanes of
                                     * a window */
-  USUAL_SPREAD = 2,                /* the greatest such distance in most blocks; because it is a constant, the
-                                    * compiler unrolls loops */
+  USUAL_SPREAD = 2,                /* the greatest distance, in most blocks, between the first taps of two
+                                    * lanes; because the number is a constant, the compiler unrolls loops */
   USUAL_SLICES = 4 + USUAL_SPREAD
 };
 enum { COPY_BYTES = 4 * WINDOW_SIDE, SLICE_BYTES = (WINDOW_SPREAD + 1) * COPY_BYTES };
@@ -156,8 +156,8 @@ LANES_INLINE pair_of_taps copied_taps_of_pair(const window_copies *copies, const
   return (pair_of_taps){&copies->slice[0][0] + at[0], &copies->slice[0][0] + at[NARROW_SECOND]};
 }
 
-/* One slice of two lanes' taps: four rows of four taps each, as 16-bit numbers. The numbers are paired like
- * the weights in byte_weights. */
+/* One slice of two lanes' taps: four rows of four taps each, as 16-bit numbers. The taps are paired like the
+ * weights in byte_weights. */
 typedef struct taps_of_two {
   __m256i pair[2];
 } taps_of_two;
@@ -235,9 +235,9 @@ static __attribute__((noinline)) lanes3 slopes_of_copies(const window_copies *co
 _Static_assert(LANES * sizeof(window_copies) <= INT16_MAX,
                "signed 16-bit numbers hold offsets in the copies of sixteen windows");
 
-/* Sums gradients over windows. Each window serves the greatest number of blocks of pixels that fits into it.
- * Then one sum takes taps from the copies of all windows. Returns false if a single block does not fit a
- * window. */
+/* Sums gradients over windows. Each window serves as many blocks of pixels as fit into the window. Afterwards
+ * one sum takes taps from the copies of all windows. Returns false if a single block does not fit a window.
+ */
 static __attribute__((unused)) int slopes_of_windows(const grid *grid, const lanes_int cell[3],
                                                      uint32_t active, uint32_t starts,
                                                      const tap_slope_weights *w, lanes3 *slope) {

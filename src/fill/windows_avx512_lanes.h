@@ -17,7 +17,7 @@ enum {
 };
 
 typedef struct voxel_window {
-  const unsigned char *first; /* the address of the window's first row; for u8 voxels, of this row in its
+  const unsigned char *first; /* the address of the window's first row; for u8 voxels, the row's address in a
                                * column */
   size_t row_bytes, slice_bytes;
   /* for u8 voxels: number of bytes from the column to the next column; 0 if the window lies within one
@@ -107,10 +107,10 @@ LANES_INLINE window_slice slice_of_window(hl_storage storage, const voxel_window
 
 /* ---- u8 and u16: each lane's own four slices ---- */
 
-/* Slices of a window. Each lane takes its taps from four of them: a lane whose first tap lies in slice s
- * takes the taps of tap slice z from slice s + z, where s is at most `spread`. For each tap row y and each z,
- * the taps of all lanes are collected first and then weighted once. This needs fewer sums than one sum for
- * each slice of the window would. */
+/* Slices of a window. Each lane takes its taps from four slices: a lane whose first tap lies in slice s takes
+ * the taps of tap slice z from slice s + z, where s is at most `spread`. For each tap row y and each z, the
+ * taps of all lanes are collected first and then weighted once. Collecting needs fewer sums than one sum for
+ * each slice of the window. */
 typedef struct own_slices {
   window_slice voxels[WINDOW_SIDE];
   window_lanes later[WINDOW_SPREAD + 1]; /* element s: the lanes whose first tap lies in slice s of the
@@ -183,7 +183,8 @@ static __attribute__((noinline)) lanes sum_window_u16(const voxel_window *window
 
 /* ---- f32: slice by slice ---- */
 
-/* Each lane's weight for a slice: the weight of its tap in this slice, or zero. */
+/* Each lane's weight for a slice: the weight of the lane's tap in this slice; 0 if the lane has no tap in the
+ * slice. */
 LANES_INLINE lanes weight_of_slice(const voxel_window *window, int slice, const lanes weight[4]) {
   __m512 found = _mm512_setzero_ps();
   for (int tap = 0; tap < 4; tap++) {
@@ -283,8 +284,8 @@ static __attribute__((noinline)) lanes3 slopes_of_window_f32(const voxel_window 
   return sum;
 }
 
-/* Sums gradients over windows. Each window serves the greatest number of blocks of pixels that fits into it.
- * Returns false if a single block does not fit a window. */
+/* Sums gradients over windows. Each window serves as many blocks of pixels as fit into the window. Returns
+ * false if a single block does not fit a window. */
 static __attribute__((unused)) int slopes_of_windows(const grid *grid, const lanes_int cell[3],
                                                      uint32_t active, uint32_t starts,
                                                      const tap_slope_weights *w, lanes3 *slope) {

@@ -1,15 +1,15 @@
-/* fill/windows_lanes.h - holds the voxels around a block of pixels in registers, or close by in memory, while
- * they are summed.
+/* fill/windows_lanes.h - holds the voxels around a block of pixels in registers, or close together in memory,
+ * while the voxels are summed.
  *
  * Sixteen neighbouring pixels of a sheet depend on few voxels. Most often these voxels fit in a window of 8x8
  * voxels and up to eight slices. With AVX-512, a slice of a window fills one to four registers, from which
- * permutations take four neighbouring taps of every lane. u8 voxels come from the grid's columns, others from
- * the volume's rows. A lane whose taps do not reach a slice gives the slice the weight zero, which changes no
- * bit of the lane's sum. With AVX2 alone, slices of u8 voxels are copied, so that one load takes many taps.
- * u16 voxels are read from the volume, a row of four taps in each load. All sums are the sums of
- * gather_lanes.h and gradient_lanes.h, in the same order. This header defines HL_WINDOWS if the instruction
- * set has windows, and HL_SHORT_ROWS if u16 voxels are read by rows of four. A file for one instruction set
- * has the name of this set in its own name. */
+ * permutations take four neighbouring taps of every lane. u8 voxels come from the grid's columns, other
+ * voxels from the volume's rows. A lane whose taps do not reach a slice gives the slice the weight zero,
+ * which changes no bit of the lane's sum. With AVX2 alone, slices of u8 voxels are copied, so that one load
+ * takes many taps. u16 voxels are read from the volume, a row of four taps in each load. All sums equal the
+ * sums of gather_lanes.h and gradient_lanes.h, because voxels are added in the same order. This header
+ * defines HL_WINDOWS if the instruction set has windows, and HL_SHORT_ROWS if u16 voxels are read by rows of
+ * four. A file for one instruction set has the name of this set in its own name. */
 #ifndef HL_FILL_WINDOWS_LANES_H
 #define HL_FILL_WINDOWS_LANES_H
 
@@ -25,9 +25,9 @@
 #endif
 
 #ifdef HL_WINDOWS
-/* The weighted sums of a block's active lanes. They are taken from one window, or from one window for each
- * half of the block. lowest: the least of the lanes' cells along each axis, up to rounding, if every lane is
- * active; else null. Returns false if the taps lie too far apart. */
+/* The weighted sums of a block's active lanes. The sums are taken from one window, or from one window for
+ * each half of the block. lowest: the least of the lanes' cells along each axis, up to rounding, if every
+ * lane is active; else null. Returns false if the taps lie too far apart. */
 LANES_INLINE int sum_of_windows(const grid *grid, const lanes_int cell[3], const int32_t *lowest,
                                 uint32_t active, const lanes weight[3][4], lanes *sum) {
   hl_storage storage = grid->storage;

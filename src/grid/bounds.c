@@ -106,8 +106,8 @@ static void bound_layer_of_bricks(void *data, size_t index, int worker) {
                     job->copies + (size_t)worker * WINDOW * WINDOW * job->copy_bytes);
 }
 
-/* The bounds of bricks that were found while the volume's voxels were stored; null if there are no such
- * bounds. */
+/* The bounds of bricks that were found while the volume's voxels were stored; null if no bounds were stored.
+ */
 static void *stored_bounds(const grid *grid) {
   const hl_brick_bounds *bricks = grid->pages != NULL ? grid->pages->bricks : NULL;
   return bricks != NULL && hl_brick_bounds_whole(bricks) ? bricks->bounds : NULL;
@@ -198,8 +198,8 @@ static void set_cell_range(const hl_volume *volume, grid *grid) {
   grid->cell_step = grid->storage == HL_STORAGE_U8 ? 1 : high > low ? fmaxf((high - low) / 255, FLT_MIN) : 1;
 }
 
-/* Finds the bounds of all cells. The bounds are computed slice by slice and kept packed, for all later
- * transfer functions. Packing saves memory because most bricks of a volume are empty or even. */
+/* Finds the bounds of all cells. The bounds are computed slice by slice. The grid keeps them packed for all
+ * later transfer functions. Packing saves memory, because most bricks of a volume are empty or even. */
 enum { CELL_LAYERS = HL_BRICK_CELLS / HL_LOOKUP_CELLS, LAYERS_A_TASK = 4 };
 
 typedef struct cell_job {
@@ -320,8 +320,8 @@ void hl_cell_bounds_at(const grid *grid, const int32_t cell[3], float *low, floa
 
 /* ---- building ---- */
 
-/* One worker's scratch memory: bounds of slices of voxels along x and y, and the bounds of cells made from
- * these. */
+/* One worker's scratch memory: bounds of slices of voxels along x and y, and bounds of cells that are made
+ * from the slices' bounds. */
 typedef struct bound_slices {
   float *slices;           /* [CELL_TAPS][2][plane]; bounds along x and y; slice z of the volume is element
                             * z % CELL_TAPS */
@@ -330,7 +330,7 @@ typedef struct bound_slices {
   unsigned char *bounds;   /* [CELL_LAYERS][2][plane]; bounds of a layer of bricks */
   unsigned char *packed;   /* the packed numbers of `bounds` */
   int32_t held[CELL_TAPS]; /* for each element of `slices`, the number of the volume's slice that the element
-                            * holds; -1: it holds no slice */
+                            * holds; -1 if the element holds no slice */
 } bound_slices;
 
 /* Computes the bounds of the cells in a slice from the bounds of slices of voxels. */
@@ -376,8 +376,8 @@ static size_t cells_of(const cell_lookup *lookup) {
   return (size_t)lookup->count[0] * (size_t)lookup->count[1] * (size_t)lookup->count[2];
 }
 
-/* Returns whether groups of 2x2x2 cells have bounds of their own. They have if 32 bits can number the groups
- * and the voxels are in memory. The counts of the look-ups must be set before. */
+/* Returns whether groups of 2x2x2 cells have bounds of their own. Groups have bounds if 32 bits can number
+ * the groups and the voxels are in memory. The counts of the look-ups must be set before. */
 static bool cells_have_bounds(const grid *grid) {
   return grid->pages == NULL && grid->bricks == NULL && cells_of(&grid->lookup[0]) < INT32_MAX;
 }
@@ -392,8 +392,8 @@ void hl_cells_lay_out(grid *grid, hl_layout *layout) {
   grid->cell_bounds = hl_layout_take(layout, (size_t)grid->brick_count[2], sizeof *grid->cell_bounds);
 }
 
-/* Lays out the scratch memory of all threads for bounds of cells. In a pass that only counts bytes, `plane`
- * is the only member of *job that is set. */
+/* Lays out the scratch memory of all threads for bounds of cells. A pass that only counts bytes sets no
+ * member of *job but `plane`. */
 static void lay_out_slices(cell_job *job, int threads, hl_layout *layout) {
   const grid *grid = job->grid;
   size_t width = (size_t)grid->lookup[0].count[0], plane = width * (size_t)grid->lookup[0].count[1];

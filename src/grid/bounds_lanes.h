@@ -1,4 +1,4 @@
-/* grid/bounds_lanes.h - bounds of bricks and of cells, as plain loops that compilers vectorise. */
+/* grid/bounds_lanes.h - finds the bounds of bricks and of cells by plain loops that compilers vectorise. */
 #ifndef HL_GRID_BOUNDS_LANES_H
 #define HL_GRID_BOUNDS_LANES_H
 
@@ -54,8 +54,9 @@ static void bound_rows_f32(const void *const *rows, int row_count, size_t count,
 LANES_INLINE float greater(float a, float b) { return a > b ? a : b; }
 LANES_INLINE float lesser(float a, float b) { return a < b ? a : b; }
 
-/* Two functions that give Bezier points of the B-spline (bounds.h). knot() gives the point at the middle one
- * of three voxels; third() gives the point a third of the way from one voxel to its neighbour. */
+/* knot() and third() give Bezier points of the B-spline (bounds.h): knot() gives the point at the middle
+ * voxel of three neighbouring voxels, third() gives the point a third of the way from a voxel to its
+ * neighbour. */
 LANES_INLINE float knot(float a, float b, float c) { return (a + 4.0f * b + c) * (1.0f / 6); }
 LANES_INLINE float third(float closer, float farther) { return (2.0f * closer + farther) * (1.0f / 3); }
 

@@ -36,7 +36,7 @@ LANES_INLINE lanes bits_two_rows(hl_storage storage, const unsigned char *const 
 }
 
 /* Loads eight voxels of each of two rows that reach beyond the grid's faces, or lie in pages. Beyond the
- * faces, the values at the border continue. */
+ * grid's faces, the values at the border continue. */
 LANES_INLINE lanes bits_two_held_rows(const grid *grid, int32_t x, int32_t y, int32_t z) {
   float both[LANES];
   for (int i = 0; i < LANES; i++) both[i] = hl_stored_value(grid, x + i % BITS_ROW, y + i / BITS_ROW, z);
@@ -46,9 +46,9 @@ LANES_INLINE lanes bits_two_held_rows(const grid *grid, int32_t x, int32_t y, in
 /* ---- bounds of four cells along an axis ---- */
 
 /* The two inner Bezier points of a cell along an axis, times 3. Derived: the cell between voxels b and c has
- * the inner Bezier points (2 b + c) / 3 and (b + 2 c) / 3. Its two outer points are the values at its ends,
- * and each is the mean of the inner points on its two sides: (b + 4 c + d) / 6 = ((b + 2 c) / 3 + (2 c + d) /
- * 3) / 2. */
+ * the inner Bezier points (2 b + c) / 3 and (b + 2 c) / 3. The cell's two outer points are the values at the
+ * cell's ends. Each outer point is the mean of the inner points on its two sides: (b + 4 c + d) / 6 = ((b + 2
+ * c) / 3 + (2 c + d) / 3) / 2. */
 typedef struct bits_thirds {
   lanes first, second; /* the points at a third and at two thirds of the way from the voxel b to the voxel
                         * c */
@@ -77,8 +77,8 @@ LANES_INLINE void greatest_of_four(const lanes v[CELL_BIT_TAPS], lanes greatest[
 
 /* ---- a brick ---- */
 
-/* Finds bounds of a brick's cells along z. The result has the order [cell z][y][x]. A layer has seven rows;
- * an eighth row only fills the lanes. */
+/* Finds bounds of a brick's cells along z. The result has the order [cell z][y][x]. A layer of the brick's
+ * voxels has seven rows; an eighth row only fills the lanes. */
 LANES_INLINE void bits_along_z(const grid *grid, hl_storage storage, const int32_t brick[3], float sign,
                                float bounds[HL_BRICK_CELLS][BITS_ROWS][BITS_ROW]) {
   const int32_t *count = grid->dimension;
@@ -132,7 +132,7 @@ LANES_INLINE uint64_t bits_of_brick(const grid *grid, hl_storage storage, const 
     for (int tap = 0; tap < 4; tap++) v[tap] = lanes_load_block(&along_y[layer][0][tap], BITS_ROW);
     lanes greatest = greatest_of_cell(thirds_between(v[0], v[1]), thirds_between(v[1], v[2]),
                                       thirds_between(v[2], v[3]));
-    /* bounds are 27 times too large, because they were multiplied by 3 along each of the three axes */
+    /* `greatest` is 27 times too large, because it was multiplied by 3 along each of the three axes */
     bits |= (uint64_t)lanes_bits(greatest > lanes_set(27 * threshold)) << (16 * layer);
   }
   return bits;

@@ -22,8 +22,8 @@ double hl_transparent_below(const hl_volume *volume, const hl_transfer_function 
 }
 
 /* Fills the table of extinction's integrals. The integrals are exact, because extinction is linear between
- * entries. Over one step the mean extinction is (e0 + e1) / 2, where e0 and e1 are the extinctions at its two
- * ends. The extinction's moment about the step's start is (e0 + 2 e1) / 6 (derived). */
+ * entries. Over one step the mean extinction is (e0 + e1) / 2, where e0 and e1 are the extinctions at the
+ * step's two ends. The extinction's moment about the step's start is (e0 + 2 e1) / 6 (derived). */
 static void integrate(classifier *classifier) {
   double integral = 0, moment = 0;
   for (int entry = 0; entry <= CLASSIFIER_ENTRIES + 1; entry++) {
@@ -36,9 +36,9 @@ static void integrate(classifier *classifier) {
   }
 }
 
-/* Fills the table of the integrals of extinction times colour, and of extinction alone. Over one step both
- * are linear: extinction goes from e0 to e1, the colour from c0 to c1. The integral of extinction times
- * colour is then (e0 (2 c0 + c1) + e1 (c0 + 2 c1)) / 6 (derived). */
+/* Fills the table of the integrals of extinction times colour, and of extinction alone. Over one step,
+ * extinction changes linearly from e0 to e1, and the colour changes linearly from c0 to c1. The integral of
+ * extinction times colour is then (e0 (2 c0 + c1) + e1 (c0 + 2 c1)) / 6 (derived). */
 static void integrate_colors(classifier *classifier) {
   double integral[4] = {0, 0, 0, 0};
   for (int entry = 0; entry <= CLASSIFIER_ENTRIES + 1; entry++) {
@@ -53,8 +53,8 @@ static void integrate_colors(classifier *classifier) {
   }
 }
 
-/* Fills the table of colours. Also stores in classifier->bent how much the slope of the colours changes at
- * each entry. */
+/* Fills the table of colours, and stores in classifier->bent the change of the colours' slope at each entry.
+ */
 static void fill_colors(const hl_transfer_function *function, double low, double high,
                         classifier *classifier) {
   double last[3][3]; /* the colours of the entries n, n - 1 and n - 2; the colour of entry n is stored at n %
@@ -76,7 +76,7 @@ static void fill_colors(const hl_transfer_function *function, double low, double
 
 /* Turns the changes of slope into sums from entry 0 on. Only entries that are visible or beside visible
  * entries count. If the changes are so small that no way through the table can have CLASSIFIER_LEAST_BENDING,
- * there are no sums, and classifier->bent becomes null. */
+ * classifier->bent becomes null in place of the sums. */
 static void sum_bends(classifier *classifier) {
   double sum = 0;
   for (int entry = 0; entry <= CLASSIFIER_ENTRIES + 1; entry++) {
@@ -93,9 +93,9 @@ static void sum_bends(classifier *classifier) {
  * of the values from the beginning of the first surface on. */
 static const double SECOND_RISE = 1.5, LEVEL_PART = 0.05;
 
-/* Finds where surfaces begin, for the values on one side of the empty value. It looks at the table's entries
- * one by one, from entry `first` on, away from the empty value. step: 1 or -1, the direction of the next
- * entry. */
+/* Finds where surfaces begin, for the values on one side of the empty value. The function looks at the
+ * table's entries one by one, from entry `first` on, away from the empty value. step: 1 or -1, the direction
+ * of the next entry. */
 static void fill_side(classifier *classifier, int first, int step) {
   const float(*sums)[4] = (const float(*)[4])classifier->sums;
   float foot = classifier->offset, level = 0;
@@ -200,7 +200,7 @@ static float normal_edge(const hl_scene_volume *volume, double entries_per_value
 }
 
 /* The narrowest range of values that tables cover, as a multiple of value_scale. A float could not hold the
- * scale of a narrower range. A narrower range is widened, and its values then share one entry. */
+ * scale of a narrower range. So a narrower range is widened, and the range's values then share one entry. */
 static const double NARROWEST_RANGE = 1e-34;
 
 void hl_classifier_lay_out(const hl_transfer_function *function, classifier *classifier, hl_layout *layout) {
@@ -217,7 +217,7 @@ void hl_classifier_lay_out(const hl_transfer_function *function, classifier *cla
 }
 
 /* Fills the factors of gradient opacity. The table covers gradients from 0 to the gradient of the last point.
- * Where all factors are 1, there is no table. */
+ * If all factors are 1, the table is left out. */
 static void fill_steepness(const hl_transfer_function *function, double value_scale, classifier *classifier) {
   size_t count = function->gradient_opacity_count;
   if (count == 0) return;
@@ -269,8 +269,8 @@ bool hl_classifier_span_visible(const classifier *classifier, const grid *grid, 
   float a = (low - grid->empty) * classifier->scale + classifier->offset;
   float b = (high - grid->empty) * classifier->scale + classifier->offset;
   float least = fminf(a, b), greatest = fmaxf(a, b);
-  /* if the caller has changed a voxel to NaN, a bound may be NaN; it then counts as an end of the tables'
-   * range */
+  /* if the caller has changed a voxel to NaN, a bound may be NaN; a NaN counts as an end of the tables' range
+   */
   int32_t first = !(least > 0) ? 0 : least >= CLASSIFIER_ENTRIES ? CLASSIFIER_ENTRIES : (int32_t)least;
   int32_t last = !(greatest > 0)                  ? 1
                  : greatest >= CLASSIFIER_ENTRIES ? CLASSIFIER_ENTRIES + 1

@@ -6,8 +6,8 @@
 #include "core/pool.h"
 #include "grid/classifier.h"
 
-/* Finds grid->face_shows: for each face of the box, whether something is visible on it. One point for each
- * voxel of a face is tested, as far as relevant bricks reach the face. Call this function after
+/* Finds grid->face_shows: for each face of the box, whether something is visible on it. The function tests
+ * one point for each voxel of a face, where relevant bricks reach the face. Call this function after
  * hl_grid_mark_relevant(). */
 void hl_faces_find(hl_pool *pool, const kernel *kernel, const classifier *classifier, grid *grid);
 

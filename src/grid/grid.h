@@ -2,8 +2,8 @@
  * and cells that tell where the transfer function shows something.
  *
  * Densities on sheets are differences from the grid's empty value, in stored units (the units of the voxels).
- * Where no voxel is splatted the density is 0, the empty value. Where only some of the voxels around a point
- * are splatted, the sum lies between the empty value and other transparent values.
+ * Where no voxel is splatted, the density is 0, which stands for the empty value. Where only some of the
+ * voxels around a point are splatted, the sum lies between the empty value and other transparent values.
  *
  * The cell of a point p (index space, clamped to [-1, n)) has the coordinates floor(p) + 1, from 0 to n along
  * each axis. A brick is 4x4x4 cells. A point's density depends on the 4x4x4 voxels around its cell. */
@@ -20,15 +20,15 @@
 
 enum {
   HL_BRICK_CELLS = 4,
-  HL_LOOKUP_CELLS = 2, /* number of cells along an edge of a group of 2x2x2 cells. Such a group is the finer
-                        * unit of bounds and look-ups */
+  HL_LOOKUP_CELLS = 2, /* number of cells along an edge of a group of 2x2x2 cells. A group of 2x2x2 cells is
+                        * the finer unit of bounds and look-ups */
   GRID_COLUMN = 8      /* width of a column in voxels */
 };
 
-/* A table that tells which small boxes of the grid show something. There are two tables: the unit of one is a
- * group of 2x2x2 cells, the unit of the other a brick. Eight boxes begin at each unit; each is two or three
- * units long along each axis. Each unit has a byte, with a bit for each of the eight boxes: bit i + 2 j + 4 k
- * tells whether the box of 2 + i by 2 + j by 2 + k units shows something. */
+/* A table that tells which small boxes of the grid show something. A grid has two such tables: the unit of
+ * the first is a group of 2x2x2 cells, the unit of the second is a brick. Eight boxes begin at each unit;
+ * each box is two or three units long along each axis. Each unit has a byte, with a bit for each of the eight
+ * boxes: bit i + 2 j + 4 k tells whether the box of 2 + i by 2 + j by 2 + k units shows something. */
 enum { LOOKUP_SIZES = 2, LOOKUP_REACH = 3 /* units along an axis that one look-up covers */ };
 typedef struct cell_lookup {
   int32_t count[3];
@@ -41,9 +41,9 @@ typedef struct grid {
   const void *voxels;    /* [dimension[2]][dimension[1]][dimension[0]]; stored values; the volume's own voxels
                           * or finite_voxels; rows are packed. Null for a grid with pages or bricks */
   const hl_pages *pages; /* the volume's pages (volume/store/pages.h), or value_pages; null if the voxels are
-                          * in memory. In a grid with pages, bricks tell where something is visible, and no
-                          * cells do */
-  /* The field in bricks; borrowed from the volume; null if there are voxels. A coordinate in the field's
+                          * in memory. A grid with pages has no look-ups of cells: only its bricks tell where
+                          * something is visible */
+  /* The field in bricks; borrowed from the volume; null if the grid has voxels. A coordinate in the field's
    * lattice is one more than the coordinate in the grid, so that cells of the grid (floor(p) + 1) are cells
    * of the lattice. The grid's "voxels" are the field's coefficients of level 0. A grid with a field in
    * bricks has no look-ups of 2x2x2 cells: only its bricks tell where something is visible */
@@ -70,8 +70,8 @@ typedef struct grid {
   affine3 index_to_frame, frame_to_index;
   double box_low[3], box_high[3]; /* corners of the box within which the volume exists; index space */
   /* The places of the box's faces along each axis, in index space. A face that cuts nothing visible gets a
-   * place far outside. In a frame, a face beyond which another volume continues the matter also gets such a
-   * place. */
+   * place far outside the grid. In a frame, a face beyond which another volume continues the matter gets a
+   * place far outside, too. */
   float face_low[3], face_high[3];
   bool face_shows[3][2]; /* [axis][low, high]: whether something is visible on the face itself */
   int32_t brick_count[3];
@@ -82,15 +82,15 @@ typedef struct grid {
                             * something */
   cell_lookup lookup[LOOKUP_SIZES]; /* two look-ups: of groups of 2x2x2 cells, and of bricks */
   /* [bricks z]; for each layer of bricks, the packed bounds of all groups of 2x2x2 cells in the layer
-   * (bounds.h). Each layer is owned, and has the size that packing finds. A bound stands for the stored value
+   * (bounds.h). The grid owns each layer, whose size packing finds. A bound stands for the stored value
    * cell_base + cell_step * bound. Null if 32 bits cannot number the cells */
   unsigned char **cell_bounds;
   float cell_base, cell_step; /* the stored value for the bound 0, and the step from one bound to the next;
                                * stored units */
   uint64_t *cell_bits;        /* [bricks z][y][x]; bit x + 4 y + 16 z tells whether the cell (x, y, z) of the
                                * brick may show something; may be null */
-  bool cell_bits_tell;        /* whether so large a part of the cells shows nothing that reading the bits of
-                               * cells saves time */
+  bool cell_bits_tell;        /* whether reading the bits of cells saves time, because a large part of the
+                               * cells shows nothing */
   uint32_t *relevant_list;    /* [relevant_count]; relevant bricks with a visible cell, in rising order */
   uint32_t relevant_count;
   int32_t relevant_low[3], relevant_high[3]; /* the box around all relevant bricks
@@ -99,15 +99,16 @@ typedef struct grid {
       content_high[3]; /* the least and greatest coordinates of relevant bricks and of bricks that only a mask
                         * hides. The geometry of a frame follows from these coordinates, so that no mask moves
                         * the frame's sheets */
-  bool cut; /* whether relevant bricks reach the box's faces, or there are cuts. If so, the places where rays
-             * cross faces are needed */
+  bool cut; /* whether relevant bricks reach the box's faces, or the grid has cuts; if so, sweeps need the
+             * places where rays cross faces */
   const cut_shape *cuts; /* borrowed; [cut_count]; the shapes that are removed from the box */
   size_t cut_count;
   bool cut_casts_shadow; /* whether the matter that cuts remove still casts shadows */
-  /* in the grid's memory; a copy of the voxels in which the empty value replaces values that are not finite.
-   * For an interpolating kernel, the kernel's coefficients (prefilter.h) instead. May be null */
+  /* in the grid's memory; a copy of the voxels in which the empty value replaces values that are not finite;
+   * for an interpolating kernel, the kernel's coefficients (prefilter.h); null if the grid reads the volume's
+   * own voxels */
   float *finite_voxels;
-  uint64_t kept_voxels; /* number of voxels of the relevant bricks: 64 for each brick, fewer for bricks at
+  uint64_t kept_voxels; /* number of voxels of the relevant bricks: 64 for each brick, and fewer for bricks at
                          * the borders */
 } grid;
 
@@ -189,8 +190,8 @@ static inline const unsigned char *hl_grid_row(const grid *grid, int64_t y, int6
 }
 
 /* Makes a grid that shows one page of another grid: its voxels are the page's voxels, at the same places.
- * Only the page's voxels may be read. Voxels that were read are valid only if the page has stayed in memory
- * (hl_page_stayed()). */
+ * Only the page's voxels may be read. The voxels that a caller has read are valid only if the page has stayed
+ * in memory (hl_page_stayed()). */
 static inline void hl_grid_of_page(const grid *grid, const size_t page[3], struct grid *view,
                                    hl_page_reading *reading) {
   const hl_pages *pages = grid->pages;

@@ -3,8 +3,8 @@
 
 #include <math.h>
 
-/* Cubic B-spline, where d is the distance: on [0,1] it is 2/3 - a^2 + a^3/2 with a = |d|; on [1,2] it is
- * (2-|d|)^3/6 = (1-a)^3/6 with a = |d|-1. */
+/* Cubic B-spline, where d is the distance: on [0,1] its value is 2/3 - a^2 + a^3/2 with a = |d|; on [1,2] its
+ * value is (2-|d|)^3/6 = (1-a)^3/6 with a = |d|-1. */
 static const kernel bspline = {
     .name = "bspline",
     .support = 2,
@@ -14,8 +14,8 @@ static const kernel bspline = {
     .degree = HL_BSPLINE_DEGREE,
 };
 
-/* The interpolating kernel: the cubic B-spline. This B-spline is summed over coefficients that are chosen so
- * that the sum passes through the voxels' values. */
+/* The interpolating kernel: the cubic B-spline, which is summed over coefficients. The coefficients are
+ * chosen so that the sum passes through the voxels' values. */
 static const kernel interpolating = {
     .name = "interpolating",
     .support = 2,
@@ -26,10 +26,10 @@ static const kernel interpolating = {
     .interpolates = true,
 };
 
-/* The Gaussian exp(-2 d^2), cut at 2. It is divided by the sum of its values at the four voxels around a
- * point, so that the four weights add up to 1. Derived: this sum depends only on the fractional part of d.
- * The coefficients are a least-squares fit of degree 5, constrained to sum to 1, to be continuous and to end
- * at 0; the error is at most 2.7e-4. */
+/* The Gaussian exp(-2 d^2), cut at 2. The Gaussian is divided by the sum of its values at the four voxels
+ * around a point, so that the four weights add up to 1. Derived: the sum depends only on the fractional part
+ * of d. The coefficients are a least-squares fit of degree 5, constrained to sum to 1, to be continuous and
+ * to end at 0; the error is at most 2.7e-4. */
 static const kernel gaussian = {
     .name = "gaussian",
     .support = 2,

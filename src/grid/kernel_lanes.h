@@ -12,8 +12,9 @@ LANES_INLINE lanes kernel_piece(const float *piece, int degree, lanes a) {
   return sum;
 }
 
-/* Two functions that give the cubic B-spline in fewer operations. bspline_inner(): the value at a distance of
- * up to 1. bspline_outer(): the value at the distance 2 - rest, with `rest` up to 1. */
+/* bspline_inner() and bspline_outer() give the cubic B-spline in fewer operations than kernel_piece() needs.
+ * bspline_inner() gives the value at a distance of up to 1, bspline_outer() gives the value at the distance 2
+ * - rest, with `rest` up to 1. */
 LANES_INLINE lanes bspline_inner(lanes distance) {
   return lanes_fma(distance * distance, lanes_line(distance, 0.5f, -1.0f), lanes_set(2.0f / 3));
 }
@@ -48,7 +49,8 @@ LANES_INLINE lanes kernel_piece_slope(const float *piece, int degree, lanes a) {
 }
 
 /* The derivatives of the weights of the four voxels around a point with respect to t, the fractional part of
- * the point's coordinate. Their sum is 0. As t grows, the distance to the taps 2 and 3 shrinks. */
+ * the point's coordinate. The derivatives add up to 0. As t grows, the distance to the taps 2 and 3 shrinks.
+ */
 LANES_INLINE void tap_slopes(const kernel *kernel, int degree, lanes t, lanes slope[4]) {
   lanes s = 1.0f - t;
   int bspline = degree == HL_BSPLINE_DEGREE;

@@ -51,8 +51,8 @@ static void set_voxels(grid *grid, const void *voxels, size_t row_bytes, size_t 
   grid->slice_bytes = slice_bytes;
 }
 
-/* Copies voxels as floats, with the empty value in place of every non-finite one. For an interpolating
- * kernel, the copies then become the kernel's coefficients. */
+/* Copies voxels as floats, with the empty value in place of values that are not finite. For an interpolating
+ * kernel, the function then turns the copies into the kernel's coefficients. */
 static hl_status replace_voxels(hl_pool *pool, const hl_volume *volume, const kernel *kernel, grid *grid,
                                 hl_error *error) {
   const size_t threads = (size_t)hl_pool_threads(pool);
@@ -70,14 +70,14 @@ static hl_status replace_voxels(hl_pool *pool, const hl_volume *volume, const ke
 }
 
 /* Rounds the size of slices and columns up to an odd number of cache lines. If sizes were powers of two, all
- * slices would fall into a few sets of the cache. */
+ * slices would fall into a few sets of the processor's cache. */
 static size_t odd_lines(size_t bytes) {
   enum { LINE = 64 };
   return ((bytes + LINE - 1) / LINE | 1) * LINE;
 }
 
-/* Lays out the memory of the columns, where some instruction set reads columns and slices are large enough
- * for windows of 8x8 voxels. */
+/* Lays out the memory of the columns, if the instruction set's code reads columns and the grid's slices are
+ * large enough for windows of 8x8 voxels. */
 static void lay_out_columns(grid *grid, const grid_functions *functions, hl_layout *layout) {
   const int32_t *dimension = grid->dimension;
   if (!functions->reads_columns || grid->storage != HL_STORAGE_U8 || dimension[0] < GRID_COLUMN ||
@@ -89,8 +89,8 @@ static void lay_out_columns(grid *grid, const grid_functions *functions, hl_layo
                                  grid->column_bytes);
 }
 
-/* Copies a slice of voxels into all columns; the values are reduced by 128. Beyond the row's end the last
- * column is not filled, because no sum includes these values. */
+/* Copies a slice of voxels into all columns; the values are reduced by 128. The last column is not filled
+ * beyond the row's end, because no sum includes values from beyond the row. */
 static void copy_slice(void *data, size_t index, int worker) {
   (void)worker;
   const grid *grid = data;
@@ -112,15 +112,15 @@ static void copy_slice(void *data, size_t index, int worker) {
 
 /* ---- the grid ---- */
 
-/* Returns whether sampling needs other values than the stored ones. It does if some values are not finite, or
- * if the kernel needs coefficients. */
+/* Returns whether sampling needs values that differ from the stored values, because some stored values are
+ * not finite, or because the kernel needs coefficients. */
 static bool needs_other_values(const hl_volume *volume, const kernel *kernel) {
   return volume->bricks == NULL && (volume->nonfinite_count > 0 || kernel->interpolates);
 }
 
-/* The greatest number of a cell along an axis. For a grid of voxels it is the number of voxels along the
- * axis. For a grid of bricks it is the number of the cell in which the box ends, but at most the number of
- * the lattice's last cell; the lattice's first cell has the number 0. */
+/* The greatest number of a cell along an axis. For a grid of n voxels along the axis, the result is n. For a
+ * grid of bricks, the result is the number of the cell in which the box ends, but at most the number of the
+ * lattice's last cell; the lattice's first cell has the number 0. */
 static int32_t greatest_cell(const hl_volume *volume, int axis) {
   if (volume->bricks == NULL) return (int32_t)volume->dimension[axis];
   double end = ceil(volume->bricks->origin[axis] + (double)volume->dimension[axis] - 1.5);
@@ -143,7 +143,7 @@ static void set_size(const hl_volume *volume, const kernel *kernel, grid *grid) 
   }
 }
 
-/* Lays out the memory of a copy of a field in bricks, whose arrays are set. */
+/* Lays out the memory of a copy of a field in bricks, and sets the copy's arrays. */
 static void lay_out_bricks(const hl_bricks *bricks, grid *grid, hl_layout *layout) {
   const size_t *n = bricks->directory_size;
   hl_bricks arrays = {0};
@@ -185,8 +185,8 @@ static hl_status check_bricks(const hl_volume *volume, hl_error *error) {
       volume->dimension[0], volume->dimension[1], volume->dimension[2], bricks, UINT32_MAX);
 }
 
-/* If sampling needs other values than the stored ones, gives a grid with pages new pages that hold the needed
- * values. */
+/* Gives a grid with pages new pages that hold the values that sampling needs, if these values differ from the
+ * stored values. */
 static hl_status make_value_pages(hl_pool *pool, const grid_source *source, grid *grid, hl_error *error) {
   const hl_volume *volume = source->volume->volume;
   if (grid->pages == NULL || !needs_other_values(volume, source->kernel)) return HL_OK;

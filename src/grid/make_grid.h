@@ -15,8 +15,8 @@ typedef struct grid_source {
 
 hl_status hl_grid_create(hl_context *context, hl_pool *pool, const grid_functions *functions,
                          const grid_source *source, grid *grid, hl_error *error);
-/* Counts the memory that hl_grid_create() takes: the grid's own memory, and memory that is released when the
- * grid is made. */
+/* Counts the memory that hl_grid_create() takes: the grid's own memory, and scratch memory that is released
+ * once the grid is made. */
 void hl_grid_count(const hl_volume *volume, const kernel *kernel, const grid_functions *functions,
                    int threads, hl_layout *layout);
 void hl_grid_release(hl_context *context, grid *grid);

@@ -31,7 +31,8 @@ void hl_mask_lattice_set_up(mask_lattice *lattice, const hl_scene_volume *volume
 }
 
 /* Finds the points of the lattice, along an axis, on which the mask's factor between two positions depends.
- * Returns false if some of these positions lie outside the lattice, and the factor is not 0 outside of it. */
+ * Returns false if some of these positions lie outside the lattice, and the factor outside the lattice is not
+ * 0. */
 static bool points_between(const mask_lattice *lattice, int axis, double low, double high, int32_t ends[2]) {
   const double last = lattice->last[axis];
   if (lattice->rest > 0 && (low < -0.5 || high > last + 0.5)) return false;

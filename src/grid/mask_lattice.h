@@ -1,5 +1,5 @@
 /* grid/mask_lattice.h - describes a volume's mask, prepared for frames: factors of extinction, and colours,
- * at the points of a lattice. Between the points they are interpolated linearly. */
+ * at the points of a lattice. Between the points, factors and colours are interpolated linearly. */
 #ifndef HL_GRID_MASK_LATTICE_H
 #define HL_GRID_MASK_LATTICE_H
 
@@ -8,7 +8,7 @@
 
 typedef struct mask_lattice {
   /* [k][j][i]; numbers that stand for the factor of extinction at each point (`scale`); borrowed from the
-   * scene; null if there is no mask. One element more may be read */
+   * scene; null if the volume has no mask. Code may read one element beyond the end */
   const uint16_t *factors;
   const unsigned char *colors; /* [k][j][i][4]; the colour at each point, as in label/mask.h; null if the
                                 * mask has no colours */
@@ -19,9 +19,9 @@ typedef struct mask_lattice {
   int32_t last[3];             /* the greatest index along i, j, k */
   int32_t step[3];             /* distance in `factors` from a point to the next one along i, j, k */
   float to_index[3][4];        /* maps frame space to the lattice's index space */
-  /* the factor at a place is its number, interpolated linearly between the points, times `scale`, plus
-   * `offset`, held between 0 and 1. For masks of labels 65535 stands for 1 and 0 for 0, so that nothing is
-   * held back */
+  /* the factor at a place is the number interpolated linearly between the points, times `scale`, plus
+   * `offset`, clamped to [0, 1]. For masks of labels, 65535 stands for 1 and 0 for 0, so that clamping
+   * changes nothing */
   float scale, offset;
   float rest; /* the factor outside the lattice */
 } mask_lattice;

@@ -7,7 +7,7 @@
 #include "grid/classifier.h"
 
 /* Adds everything on which a volume's extinction depends to a key. The key holds the volume's address in
- * place of the volume's voxels. So a program that keeps a result with this key must also keep the volume. */
+ * place of the volume's voxels. So code that keeps a result with this key must also keep the volume. */
 void hl_matter_key_add(hl_key *key, const hl_scene_volume *volume, uint64_t plane_mark, const grid *grid,
                        const classifier *classifier);
 

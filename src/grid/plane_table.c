@@ -2,7 +2,7 @@
  *
  * A point of the table holds the function's mean over a part of the plane. The part is nearer to this point
  * than to other points, and lies within the range of the data. So a box of the function that ends at the end
- * of this range has its full weight there. */
+ * of the data's range has its full weight at the last point. */
 #include "grid/plane_table.h"
 
 #include <math.h>
@@ -48,11 +48,11 @@ static plane_box reach_of_data(const hl_scene_volume *volume, const hl_scene_vol
   return (plane_box){{values->low, fmin(low, high)}, {values->high, fmax(low, high)}};
 }
 
-/* An axis of the table. Point n of it stands for start + n * step. */
+/* An axis of the table. Point n of the axis stands for the number start + n * step. */
 typedef struct table_axis {
   double start, step;
   double low, high; /* the range that the data can reach along the axis */
-  double nothing;   /* below this value there is no matter */
+  double nothing;   /* the value below which matter does not exist */
 } table_axis;
 
 /* Makes an axis that covers the function's shapes and two steps more, but no more than the range of the
@@ -142,8 +142,8 @@ static void find_greatest(const plane_table *table, int entries, float (*greates
 /* The number of columns that a look-up reads beyond its position. */
 enum { BEYOND = 3 };
 
-/* The first column that differs between rows. In the columns before it all rows hold the same numbers, so
- * look-ups do not depend on the second number there. */
+/* The first column that differs between rows, less the columns that a look-up reads beyond its position. In
+ * the columns before, all rows hold the same numbers, so look-ups do not depend on the second number. */
 static float even_columns(const plane_table *table) {
   int even = PLANE_STRIDE;
   for (int row = 1; row < PLANE_ROWS; row++)
@@ -204,8 +204,8 @@ static table_place place_between(float x, int count) {
   return (table_place){(int)x, x - (float)(int)x};
 }
 
-/* A channel of the function's colour, as a mean over the column of the table that holds a position; it is
- * interpolated between two rows. In a row, the mean is the difference of the channel's integrals at the
+/* A channel of the function's colour, as a mean over the column of the table that holds a position. The mean
+ * is interpolated between two rows. In a row, the mean is the difference of the channel's integrals at the
  * column's two ends. */
 static float color_between(const plane_table *table, table_place column, table_place row, int c) {
   float of_row[2];

@@ -1,4 +1,4 @@
-/* grid/plane_table.h - tables of a transfer function of two numbers, over the plane of these numbers.
+/* grid/plane_table.h - holds tables of a transfer function of two numbers, over the plane of these numbers.
  *
  * A column stands for a value, a row for a second number: the gradient's length or another volume's value.
  * Between the table's points the function is bilinear. A ray's way through a slab runs along a row, from one
@@ -16,20 +16,20 @@ typedef struct plane_table {
   /* the two arrays are [PLANE_ROWS + 1][PLANE_STRIDE]; the last row and the last column are stored twice;
    * borrowed from the classifier's block; null if the transfer function has no second number */
   float (*sums)[4];  /* [0]: extinction per world unit. [1]: the integral of extinction over columns, from
-                      * column 0. [2], [3]: these two numbers of the next row, so that one load gets
+                      * column 0. [2], [3]: the numbers [0] and [1] of the next row, so that one load gets
                       * everything around a position */
   float (*color)[4]; /* integrals over columns, from column 0: [0] to [2] integrate linear RGB times opacity,
                       * [3] opacity alone */
   /* a coordinate x in the classifier's tables belongs to the column x * column_scale + column_offset */
   float column_scale, column_offset;
-  /* A second number s belongs to the row s * row_scale + row_offset. A gradient is in stored units per frame
-   * unit, another volume's value in stored units above that volume's empty value. */
+  /* A second number s belongs to the row s * row_scale + row_offset. If s is a gradient, its unit is stored
+   * units per frame unit. If s is another volume's value, it is given in stored units above that volume's
+   * empty value. */
   float row_scale, row_offset;
-  float even_before; /* the first column that differs between rows; the columns before are the same in all
-                      * rows */
+  float even_before; /* look-ups at columns below this number give the same result in all rows */
   hl_second_axis axis;
-  /* The volume whose values are the second number. It is borrowed from the frame. It is null if the second
-   * number is the gradient. */
+  /* The volume whose values are the second number. Borrowed from the frame; null if the second number is the
+   * gradient. */
   const hl_volume *second_volume;
   const grid *second;
   float to_second[3][4]; /* maps frame space to the second volume's index space */
@@ -64,8 +64,8 @@ typedef struct plane_point {
  * classifier's tables. second: the second number, in the units of row_scale. */
 plane_point hl_plane_table_at(const plane_table *table, float coordinate, float second);
 
-/* The value of the volume that gives the second number, at a position in frame space, linear between the
- * volume's voxels, in stored units above the volume's empty value. */
+/* The value of the volume that gives the second number, at a position in frame space: interpolated linearly
+ * between the volume's voxels, in stored units above the volume's empty value. */
 float hl_plane_second_at(const plane_table *table, const float point[3]);
 
 #endif

@@ -2,11 +2,11 @@
 #include "grid/prefilter.h"
 
 /* The filter that turns voxels into coefficients, along an axis. A voxel's value is (c[i-1] + 4 c[i] +
- * c[i+1]) / 6 with the coefficients c. Beyond the grid the last coefficient repeats, as voxels do: at both
+ * c[i+1]) / 6 with the coefficients c. Beyond the grid the last coefficient repeats, like voxels: at both
  * ends the value is (5 c[i] + c[i+-1]) / 6. Elimination (the algorithm of Thomas) gives d[i] = (6 value -
  * d[i-1]) r[i] with r[i] = 1 / (4 - r[i-1]) on the way forwards, and c[i] = d[i] - r[i] c[i+1] on the way
- * back (derived). r tends to Unser's pole, 2 - sqrt(3), which it reaches in float precision after RATIOS
- * steps. */
+ * back (derived). The ratio r tends to Unser's pole, 2 - sqrt(3), and reaches the pole in float precision
+ * after RATIOS steps. */
 enum { RATIOS = 12 };
 typedef struct ratios {
   float inner[RATIOS], last; /* the numbers r[i] of the filter. inner: r[0], r[1], ...; last: r at the

@@ -38,8 +38,8 @@ void hl_content_bounds(const grid *grid, double margin, double low[3], double hi
   box_of_bricks(grid, grid->content_low, grid->content_high, margin, low, high);
 }
 
-/* The value in `relevant` that marks a brick that only a mask hides: without the mask it would be
- * relevant. */
+/* The value in `relevant` that marks a brick that only a mask hides, and that would be relevant without the
+ * mask. */
 enum { HIDDEN = 2 };
 
 typedef struct brick_job {
@@ -47,8 +47,8 @@ typedef struct brick_job {
   const classifier *classifier;
 } brick_job;
 
-/* Returns whether the cells of brick b overlap the box to which the volume is clipped, or come closer to it
- * than a voxel. */
+/* Returns whether the cells of brick b overlap the box to which the volume is clipped, or come closer to the
+ * box than a voxel. */
 static bool overlaps_box(const grid *grid, const int32_t b[3]) {
   for (int axis = 0; axis < 3; axis++) {
     double low = (double)b[axis] * HL_BRICK_CELLS - 1, high = low + HL_BRICK_CELLS;
@@ -141,7 +141,7 @@ static bool has_visible_cell(const grid *grid, size_t brick) {
 typedef struct cell_job {
   grid *grid;
   uint16_t least_high[256]; /* for each lower bound, the least upper bound that makes some value between the
-                             * two bounds visible; 256 if there is no such upper bound */
+                             * two bounds visible; 256 if no upper bound does */
 } cell_job;
 
 static void find_least_high(const classifier *classifier, const grid *grid, uint16_t least_high[256]) {
@@ -273,8 +273,8 @@ static void fill_lookups(grid *grid, hl_pool *pool) {
 /* ---- a bit for each cell ---- */
 
 /* The greatest number of bytes that the bits of cells (grid->cell_bits) may take; volumes that would need
- * more have no bits. The bits take an eighth of a byte per voxel. For a large volume, this would be a great
- * part of the memory that the volume takes. */
+ * more bytes have no bits. The bits take an eighth of a byte per voxel, which would be a great part of the
+ * memory of a large volume. */
 static const uint64_t GREATEST_BYTES = 8 << 20;
 /* The bits of cells are read only if at least this fraction of the cells in visible bricks shows nothing. */
 static const double LEAST_LEFT_OUT = 1.0 / 8;
@@ -297,8 +297,8 @@ typedef struct bits_job {
 
 /* Finds the comparison that tells whether a voxel is visible: whether its value, times a sign, lies above a
  * threshold. Sums of floats and the rounded weights of u8 voxels may have errors of 6e-6 of the greatest
- * number and of 1e-3 of a table's entry. The threshold is lowered by more than these errors. Returns false if
- * floats are too coarse to tell values apart at the threshold. */
+ * number and of 1e-3 of a table's entry. The function lowers the threshold by more than these errors. Returns
+ * false if floats are too coarse to tell values apart at the threshold. */
 static bool find_threshold(const grid *grid, const classifier *classifier, bits_job *job) {
   double high = (double)grid->cell_base + 255.0 * (double)grid->cell_step;
   double greatest = fmax(fmax(fabs((double)grid->cell_base), fabs(high)), fabs((double)grid->empty));
@@ -315,8 +315,8 @@ static bool find_threshold(const grid *grid, const classifier *classifier, bits_
   return isfinite(job->threshold);
 }
 
-/* Finds the bits of a brick's cells. A brick that is not relevant needs bits, too, because a ray may come
- * from its values on one sheet to a visible value on the next. */
+/* Finds the bits of a brick's cells. A brick that is not relevant needs bits, too, because a ray may go from
+ * a value in this brick on one sheet to a visible value on the next sheet. */
 static uint64_t find_bits(const bits_job *job, size_t at, const int32_t brick[3]) {
   const grid *grid = job->grid;
   float bounds[2];

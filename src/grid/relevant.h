@@ -1,12 +1,12 @@
-/* grid/relevant.h - finds the bricks and cells in which the transfer function shows something. They are found
- * once for each transfer function.
+/* grid/relevant.h - finds the bricks and cells in which the transfer function shows something. The bricks and
+ * cells are found once for each transfer function.
  *
  * A voxel can be left out only if every point to which it contributes is transparent, whichever other voxels
  * are left out. Kernels are not negative, and their weights add up to 1. So a point's density lies between
  * the least and the greatest of the 64 voxels around the point. If some of the 64 voxels are left out, the
  * density lies in this range widened to include the empty value. Derived: a brick is relevant if any value is
- * visible in the range of its bounds, widened in the same way. The bounds include one more cell on each side,
- * because slabs across the brick's faces read these neighbours. */
+ * visible in the range of the brick's bounds, widened to include the empty value. The bounds include one more
+ * cell on each side of the brick, because slabs across the brick's faces read these neighbours. */
 #ifndef HL_GRID_RELEVANT_H
 #define HL_GRID_RELEVANT_H
 
@@ -24,15 +24,15 @@ void hl_brick_bounds(const grid *grid, const int32_t b[3], double margin, double
 /* Finds the box around all relevant bricks. Returns false if no brick is relevant. */
 bool hl_relevant_bounds(const grid *grid, double margin, double low[3], double high[3]);
 
-/* Finds the box around the content: relevant bricks, and bricks that only a mask hides. There must be at
- * least one. */
+/* Finds the box around the content: relevant bricks, and bricks that only a mask hides. The grid must have at
+ * least one such brick. */
 void hl_content_bounds(const grid *grid, double margin, double low[3], double high[3]);
 
 /* The place, in voxels, to which faces that cut nothing visible are moved: far outside of the grid. */
 #define FACE_FAR_OUT 1e9f
 
 /* Opens the faces of a grid that touch another grid's box. Matter goes on beyond these faces, so they are
- * moved far outside, where they cut nothing. Most often both grids are parts of one volume. */
+ * moved far outside, where they cut nothing. Most often the two grids are parts of one volume. */
 void hl_open_faces(grid *grid, const struct grid *other);
 
 /* Functions for the bits of cells. A pixel samples a sheet at one point. So a block of pixels is empty if no

@@ -1,8 +1,8 @@
 /* grid/value_pages.c - see value_pages.h.
  *
  * Slices are loaded, and filtered along x and y, some slices at a time. Along z the filter runs forward over
- * all slices, and then back. Between the two runs the slices are kept in a second scratch file; if several
- * ranks share the volume, they are kept in memory. */
+ * all slices, and then back. Between the two runs, the slices lie in a second scratch file, or in memory if
+ * several ranks share the volume. */
 #define _GNU_SOURCE
 #include "grid/value_pages.h"
 
@@ -148,8 +148,8 @@ static hl_volume_description describe(const hl_volume *volume) {
   return grid;
 }
 
-/* The number of slices that are loaded at a time: the number that a page takes in one piece, or a smaller
- * number if these slices would take more than an eighth of the memory limit. */
+/* The number of slices that are loaded at a time: the number of slices that a page takes in one piece, or a
+ * smaller number if these slices would take more than an eighth of the memory limit. */
 static size_t slices_at_once(const value_job *job) {
   uint64_t limit = job->volume->context->options.memory_limit, bytes = job->slice * sizeof(float);
   size_t most = 8;

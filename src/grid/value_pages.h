@@ -1,9 +1,9 @@
 /* grid/value_pages.h - keeps the values that a grid samples for a volume larger than memory: voxels whose
  * non-finite values are replaced, or the coefficients of the interpolating kernel.
  *
- * For a volume in memory these values are a copy (make_grid.c). For a volume larger than memory they are
- * stored in further pages (volume/store/pages.h), in a scratch file or over ranks. The values in the
- * further pages have the same bits as a copy in memory would have. */
+ * For a volume in memory, make_grid.c copies these values to an array. For a volume larger than memory, this
+ * file stores them in further pages (volume/store/pages.h), in a scratch file or over ranks. The values in
+ * the further pages have the same bits as a copy in memory would have. */
 #ifndef HL_GRID_VALUE_PAGES_H
 #define HL_GRID_VALUE_PAGES_H
 

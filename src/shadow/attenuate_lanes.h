@@ -93,7 +93,7 @@ LANES_INLINE lanes factor_in_block(const attenuate_job *job, const attenuate_vol
       .factor;
 }
 
-/* The fractions k and k' of attenuate.h: the fractions of the light that a surface has absorbed which still
+/* The fractions k and k' of attenuate.h: of the light that a surface has absorbed, the fractions that still
  * light the surface after the slab. k is for light absorbed before the slab, k' for light absorbed within the
  * slab. */
 typedef struct kept_light {
@@ -109,19 +109,19 @@ LANES_INLINE lanes power_of_depth(lanes h1, lanes h2) {
   return left;
 }
 
-/* The fraction k of attenuate.h, changed near a face that cuts matter: `kept` to the power 1 - skin. Powers
- * are used because their product over several slabs does not depend on how thick the slabs are. */
+/* The fraction k of attenuate.h near a face that cuts matter: `kept` to the power 1 - skin. The product of
+ * such powers over several slabs does not depend on the thickness of the slabs. */
 LANES_INLINE lanes kept_in_skin(lanes kept, lanes skin) {
   return lanes_select(skin > 0.0f, lanes_power_of_part(kept, 1.0f - skin), kept);
 }
 
-/* Finds the fractions k and k' of attenuate.h near a face that cuts matter. The matter belongs to the face's
- * surface if it is visible where the light leaves the slab. b: the table coordinate of the value where the
- * light leaves the slab. corner: the block's first pixel. */
+/* Finds the fractions k and k' of attenuate.h near a face that cuts matter. The slab's matter belongs to the
+ * face's surface if the matter is visible where the light leaves the slab. b: the table coordinate of the
+ * value where the light leaves the slab. corner: the block's first pixel. */
 LANES_INLINE kept_light kept_by_face(const attenuate_volume *volume, kept_light kept, table_coordinate b,
                                      const int corner[2]) {
   lanes skin = skin_of_faces(volume->faces, volume->slab, block_u(corner[0]), block_v(corner[1]));
-  /* most blocks lie deeper behind the face than its skin reaches */
+  /* most blocks lie deeper behind the face than the face's skin reaches */
   if (lanes_bits(skin > 0.0f) == 0) return kept;
   lanes values[3];
   table_values(volume->classifier->sums, b, values);
@@ -130,9 +130,9 @@ LANES_INLINE kept_light kept_by_face(const attenuate_volume *volume, kept_light 
 }
 
 /* Finds the fractions k and k' of attenuate.h near an inner corner of a cut. Light that goes through matter
- * to one of the corner's faces has left the surface through which it came in, once the matter has absorbed
- * nearly all of it. It does not light the corner's other face as light at an outside: k = k' = 0. corner: the
- * block's first pixel. at: its offset. */
+ * to one of the corner's faces counts as having left the surface through which the light came in, once the
+ * matter has absorbed nearly all of the light. Such light does not light the corner's other face as light at
+ * an outside: k = k' = 0. corner: the block's first pixel. at: the offset of this pixel. */
 LANES_INLINE kept_light kept_by_inner_corner(const attenuate_job *job, const attenuate_volume *volume,
                                              kept_light kept, const int corner[2], size_t at) {
   lanes_int dark = lanes_load_block(job->left + at, job->stride) < DARK;
@@ -144,9 +144,9 @@ LANES_INLINE kept_light kept_by_inner_corner(const attenuate_job *job, const att
 
 /* Finds the fractions k and k' of attenuate.h in a slab that a face divides. If the matter ends within the
  * slab, or at the slab's end, light leaves the surface, and k = k' = 0. If the matter begins within the slab,
- * no surface lies before it, so k would not matter. But blurs may have spread the shadow of the face's own
- * matter across the face, together with the light that this matter has absorbed. This light still lights the
- * face, so k is not changed. height: the height of the slab's end. */
+ * no surface lies before the matter, so k would have no effect. But blurs may have spread the shadow of the
+ * face's own matter across the face, together with the light that this matter has absorbed. This light still
+ * lights the face, so the function does not change k. height: the height of the slab's end. */
 LANES_INLINE kept_light kept_in_span(const attenuate_volume *volume, kept_light kept, int block,
                                      float height) {
   if (volume->enter == NULL || volume->uncut) return kept;
@@ -208,8 +208,8 @@ typedef struct attenuated_block {
 } attenuated_block;
 
 /* Attenuates one channel of the light at the outside of surfaces by a slab. before, after: the transmittance
- * before and after the slab. affected: the pixels in which the slab has matter; the others keep their light.
- * Returns the new light at the outside. */
+ * before and after the slab. affected: the pixels in which the slab has matter; other pixels keep their
+ * light. Returns the new light at the outside. */
 LANES_INLINE lanes pass_outside(float *at, size_t stride, lanes before, lanes after, kept_light kept,
                                 lanes_int affected) {
   lanes light = lanes_max(before, lanes_set(0)), left = lanes_max(after, lanes_set(0));
@@ -229,8 +229,8 @@ LANES_INLINE attenuated_block attenuate_block(const attenuate_job *job, int volu
   lanes depth[HL_CHANNELS] = {lanes_set(0), lanes_set(0), lanes_set(0)}, total = lanes_set(0);
   kept_light kept = {lanes_set(0), lanes_set(0)};
   lanes path = path_through_sheet(&job->rays, job->path, block_u(corner[0]), block_v(corner[1]));
-  /* the pixels in which a factor hides a volume's matter. There, surfaces end, although the values are not
-   * low */
+  /* the pixels in which a factor hides a volume's matter. Surfaces end in these pixels, although the values
+   * are not low */
   lanes_int hidden = lanes_set_int(0);
   for (int i = 0; i < volume_count; i++) {
     const attenuate_volume *volume = &job->volumes[i];
@@ -313,8 +313,8 @@ LANES_INLINE attenuated_blocks attenuate_volumes(const attenuate_job *job, int v
   return blocks;
 }
 
-/* Attenuates a tile. In the usual case, one volume and grey shadows, a copy of the code is used that needs no
- * loops over volumes and channels. */
+/* Attenuates a tile. For the usual case of one volume and grey shadows, the function uses a copy of the code
+ * without loops over volumes and channels. */
 static __attribute__((unused)) attenuated_blocks attenuate_tile(const attenuate_job *job, int tile_x,
                                                                 int tile_y) {
   if (job->volume_count == 1 && job->channels == 1) return attenuate_volumes(job, 1, 1, tile_x, tile_y);

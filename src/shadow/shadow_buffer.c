@@ -6,8 +6,8 @@
 #include "core/memory.h"
 #include "light/light_source.h"
 
-/* A point light's buffer covers directions up to a greatest angle from its middle; this is the tangent of
- * that angle. */
+/* The tangent of the greatest angle between the middle of a point light's buffer and a direction that the
+ * buffer covers. */
 static const double WIDEST = 6;
 enum { GREATEST_SIDE = 8192, BORDER_PIXELS = 2 };
 
@@ -19,8 +19,8 @@ static void bound_points(const view *unit, const light_source *source, const vec
     double uv[2];
     bool in_front = hl_view_project(unit, points[i], uv);
     for (int axis = 0; axis < 2; axis++) {
-      /* A point of the content lies beside or behind a near light: the buffer becomes as large as it may
-       * be. */
+      /* If a point of the content lies beside or behind a near light, the buffer becomes as large as allowed.
+       */
       if (!in_front) {
         low[axis] = -WIDEST;
         high[axis] = WIDEST;
@@ -38,8 +38,8 @@ static void bound_points(const view *unit, const light_source *source, const vec
   }
 }
 
-/* Finds bounds of the points, with a margin around them for penumbrae. The margin ends where all content
- * ends. */
+/* Finds bounds of the points, with a margin for penumbrae around the points. The margin ends where all
+ * content ends. */
 static void bound_buffer(const view *unit, const light_source *source, const shadow_extent *extent,
                          double low[2], double high[2]) {
   double content_low[2], content_high[2];
@@ -52,9 +52,9 @@ static void bound_buffer(const view *unit, const light_source *source, const sha
   }
 }
 
-/* The edge of a buffer's pixel. For parallel light it is in frame units; for a near light it is the edge at
- * the distance 1 from the light. Pixels of a near light grow with the distance, so they must be small enough
- * at the farthest point. */
+/* The edge of a buffer's pixel. For parallel light, the edge is in frame units; for a near light, the result
+ * is the edge at the distance 1 from the light. The pixels of a near light grow with the distance from the
+ * light, so the edge is chosen to be small enough at the farthest point. */
 static double pixel_edge(const light_source *source, vec3 normal, const shadow_extent *extent,
                          const double size[2]) {
   double pixel = extent->pixel;
@@ -82,8 +82,8 @@ static pixel_row row_around(double low, double high, double size, double pixel) 
   return (pixel_row){count, (low + high) / 2 - count * pixel / 2, pixel};
 }
 
-/* The least width, in pixels, of bounds that row_between() fits. This function makes pixels a little smaller.
- * The middles of the first and the last pixel inside the borders then lie just inside the bounds. So light
+/* The least width, in pixels, of bounds that row_between() fits. row_between() makes pixels a little smaller,
+ * so that the middles of the first and the last pixel inside the borders lie just inside the bounds. So light
  * along a box's face is not mixed with light that passes outside the face. Bounds of soft shadows are not
  * fitted. */
 static const double LEAST_FITTED = 0.25;
@@ -141,8 +141,8 @@ static size_t tiles_of(const shadow_buffer *buffer) {
   return (size_t)buffer->tiles_x * (size_t)buffer->tiles_y;
 }
 
-/* Lays out the memory of a buffer whose size has been set. plane_count: the number of planes of one sheet, of
- * all channels and all kinds, times the number of sheets that are kept. */
+/* Lays out the memory of a buffer whose size has been set. plane_count: the number of planes of one sheet
+ * (for all channels and all kinds) times the number of sheets that are kept. */
 static void lay_out(shadow_buffer *buffer, size_t plane_count, hl_layout *layout) {
   buffer->planes = hl_layout_take(layout, plane_count, buffer->plane * sizeof *buffer->planes);
   buffer->changed = hl_layout_take(layout, tiles_of(buffer), sizeof *buffer->changed);
@@ -168,7 +168,7 @@ static hl_status reserve(hl_context *context, shadow_buffer *buffer, size_t plan
   return HL_OK;
 }
 
-/* The number of all planes of one sheet: one for each channel and each kind. */
+/* The number of planes of one sheet, with one plane for each channel and each kind. */
 static size_t planes_of_sheet(const shadow_buffer_size *size) {
   return (size_t)size->channels * kinds_of_planes(size->outside, size->second);
 }

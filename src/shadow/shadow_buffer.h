@@ -2,17 +2,17 @@
  * each of the last sheets.
  *
  * For hard shadows the buffer is perpendicular to the light's direction, for soft shadows parallel to the
- * sheets (fig. 17). At the volume its pixels are hardly larger than the picture's pixels. Around the buffer
- * is a margin of ones (unattenuated light), which blurs read.
+ * sheets (fig. 17). At the volume, the buffer's pixels are hardly larger than the picture's pixels. Around
+ * the buffer lies a margin of ones (unattenuated light), which blurs read.
  *
  * The buffer advances from sheet to sheet ahead of the picture, and the picture reads the buffer's planes
  * (images) for earlier sheets. So the buffer keeps the planes of the last sheets in a ring: sheet k has the
  * planes number k % ring. A tile that has changed is copied from sheet to sheet until all planes of the ring
  * hold its last content. A tile that never changes costs nothing.
  *
- * Surfaces of volumes are lit by the light that arrives at their outside. Where a scene has such surfaces, a
- * pixel also holds this light. This light is the transmittance, plus the light that the surface in which the
- * pixel's ray is has absorbed (attenuate.h). */
+ * Surfaces of volumes are lit by the light that arrives at their outside. If a scene has such surfaces, a
+ * pixel also holds the light at the outside of the surface in which the pixel's ray is: the transmittance
+ * plus the light that this surface has absorbed (attenuate.h). */
 #ifndef HL_SHADOW_SHADOW_BUFFER_H
 #define HL_SHADOW_SHADOW_BUFFER_H
 
@@ -25,8 +25,8 @@
 /* The kinds of planes that a shadow buffer may have for one sheet. */
 typedef enum shadow_plane {
   SHADOW_TRANSMITTANCE,
-  SHADOW_OUTSIDE, /* the light that arrives at the outside of the surface in which a pixel's ray is. It is not
-                   * less than the transmittance */
+  SHADOW_OUTSIDE, /* the light that arrives at the outside of the surface in which a pixel's ray is; at least
+                   * the transmittance */
   SHADOW_SECOND   /* planes that a shadow method uses for itself: `paper` keeps half-blurred light in them,
                    * `cascade` keeps the older light from which samples fade to the transmittance */
 } shadow_plane;
@@ -55,8 +55,9 @@ typedef struct shadow_buffer {
   uint16_t *tile_lit;          /* a part of `memory`; [tiles]; for each tile, the blocks that light still
                                 * reaches, one bit each */
   unsigned char *tile_touched; /* a part of `memory`; [tiles]; 1 for tiles in which some transmittance is
-                                * below 1. The second array is the shadow method's own */
-  void *memory;    /* owned; the memory of all arrays; kept from frame to frame while it is large enough */
+                                * below 1. A second array of [tiles] follows, for the shadow method */
+  void *memory;    /* owned; the memory of all arrays, which is kept from frame to frame if it is large
+                    * enough */
   size_t capacity; /* bytes of `memory` */
 } shadow_buffer;
 
@@ -65,13 +66,13 @@ typedef struct shadow_extent {
   const vec3 *points; /* corners of the region to cover; frame space */
   int point_count;
   double pixel;           /* wanted edge of a buffer's pixel where the volume is, frame units */
-  int resolution;         /* number of pixels along the longer side; 0: `pixel` decides */
+  int resolution;         /* number of pixels along the longer side; 0 if `pixel` decides */
   size_t greatest_pixels; /* the greatest allowed number of pixels, width * height */
   double margin;          /* the margin for penumbrae around the points: its width in frame units; for a near
                            * light, its width at distance 1 */
-  const vec3 *content;    /* corners of all content; no margin is needed beyond the content; frame space */
+  const vec3 *content;    /* corners of all content, beyond which no margin is needed; frame space */
   int content_count;
-  vec3 u; /* unit vector along the buffer's rows; zero: the direction of the rows follows from the light's
+  vec3 u; /* unit vector along the buffer's rows; zero if the direction of the rows follows from the light's
            * tilt */
 } shadow_extent;
 
@@ -88,7 +89,7 @@ typedef struct shadow_buffer_size {
   int ring;             /* number of sheets whose planes are kept; at least 1 */
 } shadow_buffer_size;
 
-/* Allocates a buffer's memory, or allocates it anew if it is too small. Sets all transmittances to 1. */
+/* Allocates a buffer's memory, or keeps memory that is large enough. Sets all transmittances to 1. */
 hl_status hl_shadow_buffer_reset(hl_context *context, hl_pool *pool, shadow_buffer *buffer,
                                  const shadow_buffer_size *size, hl_error *error);
 /* Sets a buffer's view, tiles, stride, plane and origin. reach: the number of pixels beyond a tile that blurs
@@ -110,9 +111,9 @@ void hl_shadow_buffer_reach(shadow_buffer *buffer, int sheet);
 static inline bool hl_shadow_is_carried(const shadow_buffer *buffer, size_t tile, int sheet) {
   return buffer->changed[tile] > 0 && buffer->changed[tile] > sheet - buffer->ring;
 }
-/* Copies a tile from the planes of the previous sheet to the planes of `sheet`, unless these hold the same
- * numbers already. Where hl_shadow_is_carried() is true, call this function for each sheet in turn, before
- * the tile changes at the sheet. */
+/* Copies a tile from the planes of the previous sheet to the planes of `sheet`, unless the planes of `sheet`
+ * hold the same numbers already. If hl_shadow_is_carried() is true for a tile, call this function for each
+ * sheet in turn, before the tile changes at the sheet. */
 void hl_shadow_buffer_carry(shadow_buffer *buffer, size_t tile, int sheet);
 /* Finds the lit blocks of a tile (tile_lit) again after a blur. both: whether blocks also count as lit if
  * only the planes SHADOW_SECOND have light in them. */
@@ -134,10 +135,10 @@ typedef struct shadow_lookup {
   shadow_map map;
   const float *transmittance[HL_CHANNELS]; /* pixel (0,0) of the planes that are looked up */
   const float *outside[HL_CHANNELS];       /* planes of the light at the outside of surfaces, laid out as
-                                            * `transmittance`; null if there are none */
+                                            * `transmittance`; null if the buffer has no such planes */
   const float *older[HL_CHANNELS]; /* pixel (0,0) of the planes of the older light, one for each channel.
-                                    * Samples fade from the older light to `transmittance`. Null if there is
-                                    * no older light */
+                                    * Samples fade from the older light to `transmittance`. Null if samples do
+                                    * not fade */
   float young;                     /* the weight of `transmittance` while samples fade from `older` to
                                     * `transmittance`, from 0 (beginning) to 1 (end) */
 } shadow_lookup;
@@ -152,7 +153,8 @@ typedef struct sublight_lookup {
   const sublight_pixel *transmittance[HL_CHANNELS]; /* pixel (0,0) of each channel of the sub-light's
                                                      * transmittance */
   const sublight_pixel *outside[HL_CHANNELS];       /* the light at the outside of surfaces, laid out as
-                                                     * `transmittance`; null if there is none */
+                                                     * `transmittance`; null if the buffer does not keep this
+                                                     * light */
   float weight[HL_CHANNELS]; /* the sub-light's weight in the mean over all sub-lights; 1 for lights
                               * without an emission image */
 } sublight_lookup;

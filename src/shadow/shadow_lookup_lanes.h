@@ -7,8 +7,8 @@
 #include "shadow/shadow_buffer.h"
 #include "simd/gathers.h"
 
-/* The samples' positions in a shadow buffer. Around each position there are two by two pixels: `first` is the
- * first of these pixels. fx and fy are the distances, in pixels, of the position from the middle of the first
+/* The samples' positions in a shadow buffer. Each position is surrounded by two by two pixels, of which
+ * `first` is the first. fx and fy are the distances, in pixels, of the position from the middle of the first
  * pixel. */
 typedef struct shadow_taps {
   lanes_int inside;
@@ -33,8 +33,8 @@ LANES_INLINE shadow_taps taps_at_position(const shadow_map *map, int nearest, la
   return taps;
 }
 
-/* Interpolates bilinearly between four pixels: a and b are neighbours in one row, c and d the pixels below
- * them in the next row. Lanes whose position lies outside the buffer get `beyond`. */
+/* Interpolates bilinearly between four pixels: a and b are neighbours in one row, c and d are the pixels
+ * below a and b in the next row. Lanes whose position lies outside the buffer get `beyond`. */
 LANES_INLINE lanes between_taps(const shadow_taps *taps, lanes a, lanes b, lanes c, lanes d, float beyond) {
   lanes top = lanes_fma(b - a, taps->fx, a), bottom = lanes_fma(d - c, taps->fx, c);
   return lanes_select(taps->inside, lanes_fma(bottom - top, taps->fy, top), lanes_set(beyond));
@@ -50,7 +50,7 @@ LANES_INLINE lanes look_up(const shadow_map *map, const shadow_taps *taps, const
 
 /* The weights of cubic convolution with a = -1/2 (Keys, "Cubic convolution interpolation for digital image
  * processing", 1981, eq. 15) for four pixels in a row. way: the distance of the look-up's position from the
- * second pixel's middle, 0 to 1. These weights have no variance, so the convolution does not blur. */
+ * second pixel's middle, 0 to 1. The weights have no variance, so the convolution does not blur. */
 LANES_INLINE void cubic_weights(lanes way, lanes weight[4]) {
   lanes rest = 1.0f - way, both = way * rest * -0.5f;
   weight[0] = both * rest;
@@ -61,8 +61,8 @@ LANES_INLINE void cubic_weights(lanes way, lanes weight[4]) {
 
 /* Interpolates the transmittance between four by four pixels of a shadow buffer by cubic convolution. The
  * result is clamped to the range of the nearest four pixels. Without the clamp, the result would overshoot
- * beside an edge, and would be too dark just inside a box's face. The function is not inlined, so that it
- * takes no registers from the bilinear look-up. */
+ * beside an edge, and would be too dark just inside a box's face. The function is not inlined, so that the
+ * bilinear look-up can use all registers. */
 static __attribute__((noinline, unused)) lanes look_up_cubic(const shadow_map *map, const shadow_taps *taps,
                                                              const float *buffer) {
   lanes across[4], down[4], pixel[4], sum = lanes_set(0);

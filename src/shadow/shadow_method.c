@@ -1,5 +1,5 @@
 /* shadow/shadow_method.c - makes the shadows of one light in one sweep: chooses the shadow method, and lets
- * it plan, begin and end. The file also has the tools that all methods use. */
+ * the method plan, begin and end. This file also has the tools that all methods use. */
 #include "shadow/shadow_method.h"
 
 #include <string.h>
@@ -113,15 +113,15 @@ void hl_light_shadow_end(light_shadow *shadow) {
 
 /* ---- the size of a shadow buffer's pixels and the region that it covers, for all methods ---- */
 
-/* The sizes of a shadow buffer's pixels. Pixels are as large as possible, but their error must not visibly
- * add to the error of the sheets (measured against the reference, docs/experiments.md). A pixel's edge is
- * SHADOW_PIXEL_PER_SPACING times the distance between sheets. It is at least LEAST_SHADOW_PIXEL and at most
- * GREATEST_SHADOW_PIXEL of a voxel's edge, and at most SHADOW_PIXEL_PER_IMAGE_PIXEL times the edge of a
+/* The sizes of a shadow buffer's pixels. Pixels are as large as possible without visibly adding to the error
+ * of the sheets (measured against the reference, docs/experiments.md). A pixel's edge is
+ * SHADOW_PIXEL_PER_SPACING times the distance between sheets. The edge is at least LEAST_SHADOW_PIXEL and at
+ * most GREATEST_SHADOW_PIXEL of a voxel's edge, and at most SHADOW_PIXEL_PER_IMAGE_PIXEL times the edge of a
  * picture's pixel. */
 static const double SHADOW_PIXEL_PER_SPACING = 0.75, LEAST_SHADOW_PIXEL = 0.3, GREATEST_SHADOW_PIXEL = 0.75;
 static const double SHADOW_PIXEL_PER_IMAGE_PIXEL = 1.4;
-/* If a buffer is read by cubic convolution, its pixels may be larger by this fraction of a voxel. The
- * look-ups are then still as exact as bilinear look-ups. */
+/* If a buffer is read by cubic convolution, its pixels may be larger by this fraction of a voxel: the
+ * look-ups are still as exact as bilinear look-ups of smaller pixels. */
 static const double CUBIC_LARGER = 1.0 / 8;
 enum { SHADOW_PIXELS_PER_IMAGE_PIXEL = 4, LEAST_SHADOW_PIXELS = 1 << 20 };
 
@@ -146,7 +146,8 @@ double hl_sharp_pixel(const shadow_setup *setup, bool cubic) {
 double hl_blurred_pixel(const shadow_setup *setup, bool cubic) {
   const light_source *source = setup->source;
   /* Seen along the light, a pixel that lies on the sheets looks narrower than a pixel of a hard shadow's
-   * buffer, which faces the light. So the pixel on the sheets is enlarged until both look equally wide. */
+   * buffer, which faces the light. So the pixel on the sheets is enlarged until the two pixels look equally
+   * wide. */
   double slant = source->parallel ? fabs(vec3_dot(source->direction, setup->sheets->normal)) : 1;
   return fmin(SHADOW_PIXEL_PER_IMAGE_PIXEL * setup->middle_pixel,
               hl_shadow_pixel(setup, cubic) / sqrt(fmax(slant, 0.5)));
@@ -163,9 +164,9 @@ shadow_extent hl_extent_of_seen(const shadow_setup *setup, double pixel) {
                          .content_count = setup->content_count};
 }
 
-/* The margin around the buffer for penumbrae, in the buffer's units. It is as wide as the widest penumbra of
- * this sweep. A penumbra reaches only half of its width beyond its occluder, but blurs in several steps reach
- * further. */
+/* The margin around the buffer for penumbrae, in the buffer's units. The margin is as wide as the widest
+ * penumbra of this sweep. A penumbra reaches only half of its width beyond its occluder, but blurs in several
+ * steps reach further. */
 static double penumbra_margin(const shadow_setup *setup, const sheet_light *seen) {
   const sheet_stack *sheets = setup->sheets;
   double width = fmax(seen->width_u, seen->width_v), depth = sheets->spacing * sheets->count;

@@ -18,8 +18,8 @@
  * A method without `advance`, or with `advances`, can be run in stretches of several slabs. First,
  * before_shading and before_slab are called for all slabs of a stretch. Then each tile is composited through
  * all slabs of the stretch, one tile after the other. Then `advance` is called. The picture's slabs may be
- * shaded later, from the planes that the buffer keeps. In a stretch, `advance` changes something at most at
- * the last slab.
+ * shaded later, from the planes that the buffer keeps. In a stretch, `advance` changes the buffer at the last
+ * slab at most.
  *
  * A function that a method does not need is null. */
 #ifndef HL_SHADOW_SHADOW_METHOD_H
@@ -50,18 +50,18 @@ typedef struct shadow_means {
   const shadow_functions *functions;
 } shadow_means;
 
-/* The input of a shadow method: one light of one sweep. Everything in it is borrowed, and must outlive the
- * method's shadow. */
+/* The input of a shadow method: one light of one sweep. The struct borrows all that its pointers point to,
+ * which must outlive the method's shadow. */
 typedef struct shadow_setup {
   hl_context *context;
   const hl_render_settings *settings;
   const light_source *source;
-  light_emission *emission; /* the light's emission image; if null, all points of the light are equally
-                             * bright. The method sets the positions of the image's cells */
+  light_emission *emission; /* the light's emission image; null if all points of the light are equally bright.
+                             * The method sets the positions of the image's cells */
   const sheet_stack *sheets;
   const view *eye;
   const light_exchange *exchange; /* exchanges light with the renderers of the other parts of a shared
-                                   * picture; null if there are no other parts, or the parts exchange
+                                   * picture; null if the picture is not shared, or its parts exchange
                                    * nothing */
   bool surfaces;                  /* whether some volume has surfaces; surfaces are lit by the light that
                                    * arrives at their outside */
@@ -83,7 +83,7 @@ typedef struct shadow_setup {
 /* A method's decisions about its buffer. */
 typedef struct shadow_plan {
   shadow_extent extent; /* the region that the buffer covers */
-  sheet_light seen;     /* only for soft shadows: the light as it is seen from the sheets */
+  sheet_light seen;     /* the light as seen from the sheets; only for soft shadows */
   view view;            /* the buffer's view */
   bool cubic;           /* whether the buffer is read by cubic convolution */
   bool outside;         /* whether the buffer also keeps the light at the outside of surfaces */
@@ -105,52 +105,54 @@ typedef struct shadow_method shadow_method;
 
 /* One light's shadows in one sweep. */
 typedef struct light_shadow {
-  const shadow_method *method; /* the method that makes the shadows; if null, the light casts no shadows, or
+  const shadow_method *method; /* the method that makes the shadows; null if the light casts no shadows, or
                                 * the eye sees nothing */
   shadow_setup setup;
   shadow_means means; /* valid after hl_light_shadow_begin() */
   shadow_plan plan;
   shadow_buffer *buffer;  /* borrowed from the renderer */
-  shadow_lookup *lookups; /* owned; [the buffer's ring]; for each kept sheet, how the picture looks up the
-                           * light */
-  const sublight_lookup *sublights; /* [sublight_count]; how the picture looks up each sub-light's buffer; if
-                                     * there are sub-lights, it takes the mean of their light */
+  shadow_lookup *lookups; /* owned; [the buffer's ring]; for each kept sheet, the data by which the picture
+                           * looks up the light */
+  const sublight_lookup *sublights; /* [sublight_count]; the data by which the picture looks up each
+                                     * sub-light's buffer; the picture takes the mean of the sub-lights'
+                                     * light */
   int sublight_count, sublight_tiles_x, sublight_tiles_y; /* set by `plan`; sublight_tiles_x,
                                                            * sublight_tiles_y: size in tiles of each
                                                            * sub-light's buffer */
   void *state;                                            /* owned; [method->state_bytes]; the method's own
                                                            * data */
   shadow_memory *kept;                                    /* borrowed from the renderer */
-  void *passing;                                          /* memory that is lent until the sweep ends; the
-                                                           * setup's reserve lends it */
-  /* [tiles]; for each tile, the last slab at which this part of a shared picture needs the tile; if 0, this
-   * part never needs it. If null, this part needs all tiles at all slabs. Borrowed; it must be set before the
-   * first slab */
+  void *passing;                                          /* memory that the reserve of `means` lends until
+                                                           * the sweep ends */
+  /* [tiles]; for each tile, the last slab at which this part of a shared picture needs the tile; 0 if this
+   * part never needs the tile. Null if this part needs all tiles at all slabs. Borrowed; the pointer must be
+   * set before the first slab */
   const int32_t *needed_until;
   const int32_t *sublights_until; /* [sublight_count][sublight_tiles_y][sublight_tiles_x]; the same numbers as
                                    * in needed_until, but for the tiles of the sub-lights' buffers; set only
-                                   * if there are sub-lights */
+                                   * if sub-lights stand for the light */
   const unsigned char *owned;     /* [tiles]; 1 for tiles whose light this part of a shared picture sends to
-                                   * the other parts; if null, it sends no light */
+                                   * the other parts; null if this part sends no light */
 } light_shadow;
 
 /* A method's memory besides the buffer. */
 typedef struct shadow_layouts {
   hl_layout kept;    /* the memory that is kept from frame to frame (shadow_memory) */
-  hl_layout passing; /* the memory that is used until the sweep ends; it is uninitialised */
+  hl_layout passing; /* the uninitialised memory that is used until the sweep ends */
 } shadow_layouts;
 
 struct shadow_method {
   const char *name;
-  size_t state_bytes; /* the number of bytes of light_shadow.state; they are all zero before `plan` is
+  size_t state_bytes; /* the number of bytes of light_shadow.state, which are all zero before `plan` is
                        * called */
-  /* the first slab that casts shadows of a near light, if the light lies within a slab. 0: it is the slab in
-   * which the light lies, of which only the part beyond the light counts. 1: it is the next slab */
+  /* the first slab that casts shadows of a near light, if the light lies within a slab. 0: the slab in which
+   * the light lies casts shadows, but only its part beyond the light counts. 1: the next slab is the first
+   * that casts shadows */
   int first_slab;
   /* The delay of a mesh's surfaces, in pixels of the buffer: a surface absorbs light only at this distance
-   * behind itself (surface/late/lateness.h). The member holds for bilinear look-ups. Bilinear look-ups read
-   * less than a pixel to each side, so with a delay of 1 pixel a flat surface does not darken itself. Methods
-   * that blur by a pixel or more need a greater delay. */
+   * behind itself (surface/late/lateness.h). The delay holds for bilinear look-ups, which read less than a
+   * pixel to each side, so that with a delay of 1 pixel a flat surface does not darken itself. Methods that
+   * blur by a pixel or more need a greater delay. */
   double surface_delay;
   double surface_rise; /* the number of pixels of the buffer by which a mesh's surfaces are moved towards the
                         * light */
@@ -158,14 +160,14 @@ struct shadow_method {
   hl_status (*check)(const light_shadow *shadow, hl_error *error);
   void (*lay_out)(light_shadow *shadow, shadow_layouts *layouts);
   hl_status (*begin)(light_shadow *shadow, hl_error *error);
-  /* Prepares the look-ups of the picture in a slab. lookup: receives the way in which the light at the sheet
+  /* Prepares the look-ups of the picture in a slab. lookup: receives the data by which the light at the sheet
    * before the slab is looked up. */
   void (*before_shading)(light_shadow *shadow, int sheet, shadow_lookup *lookup);
   /* Prepares the job that composites a slab into the buffer: sets the members that are equal for all
    * tiles. */
   void (*before_slab)(light_shadow *shadow, int sheet, attenuate_job *job);
-  /* Finds the lit blocks of a tile and stores them in buffer->tile_lit. If null, the sweep finds them itself.
-   * Two calls for the same tile never run at the same time. */
+  /* Finds the lit blocks of a tile and stores them in buffer->tile_lit. Null if the sweep finds the lit
+   * blocks itself. Two calls for the same tile never run at the same time. */
   void (*find_lit)(light_shadow *shadow, size_t tile);
   void (*before_tile)(const light_shadow *shadow, size_t tile, attenuate_job *job);
   void (*after_tile)(light_shadow *shadow, size_t tile);
@@ -173,27 +175,27 @@ struct shadow_method {
   /* Whether each part of a shared picture computes only the tiles that it needs (needed_until,
    * sublights_until). */
   bool divides;
-  /* Raises some numbers of needed_until, [tiles], because the pixels of needed tiles will depend on pixels of
-   * other tiles. Null if no tile depends on other tiles. */
+  /* Raises the numbers of tiles in needed_until, [tiles], if pixels of needed tiles will depend on pixels of
+   * these tiles. Null if no tile depends on other tiles. */
   void (*widen_needs)(light_shadow *shadow, int32_t *needed_until);
   /* Whether each part of a shared picture computes only the tiles that it needs (needed_until, owned), and
    * gets the light of the other tiles from the other parts (the setup's exchange). Each tile that any brick
    * touches is owned by one of the parts. This part needs the tile as long as bricks touch it. */
   bool exchanges;
-  /* Returns whether `advance` changes anything at a sheet. If the function is null, `advance` may change
-   * something at every sheet. */
+  /* Returns whether `advance` changes anything at a sheet. Null if `advance` may change the buffer at every
+   * sheet. */
   bool (*advances)(const light_shadow *shadow, int sheet);
   void (*end)(light_shadow *shadow);
 };
 
-/* Returns the method that makes a light's shadows; if null, the light casts no shadows. The method follows
+/* Returns the method that makes a light's shadows; null if the light casts no shadows. The method follows
  * from the settings `shadows` and soft_method. */
 const shadow_method *hl_shadow_method(const light_source *source);
 
 /* ---- for the sweep ---- */
 
-/* Chooses the shadow method of a light, and lets the method plan. Afterwards shadow->method is null if there
- * are no shadows to make. */
+/* Chooses the shadow method of a light, and lets the method plan. Afterwards shadow->method is null if no
+ * shadows are to be made. */
 hl_status hl_light_shadow_plan(light_shadow *shadow, const shadow_setup *setup, hl_error *error);
 /* Returns whether the planned method can be run in stretches of several slabs (see the head of this file). */
 static inline bool hl_runs_in_stretches(const shadow_method *method) {
@@ -218,14 +220,14 @@ void hl_light_shadow_end(light_shadow *shadow);
 /* The edge of a buffer's pixel, in frame units, that suits the distance between sheets. cubic: whether the
  * buffer is read by cubic convolution, which allows larger pixels. */
 double hl_shadow_pixel(const shadow_setup *setup, bool cubic);
-/* Returns whether cubic convolution is the best way to read the light's buffer. It is for hard shadows, and
- * for soft shadows of a light without an emission image. */
+/* Returns whether cubic convolution is the best way to read a hard shadow's buffer: whether the larger pixels
+ * that cubic convolution allows do not exceed the greatest fraction of a voxel's edge. */
 bool hl_cubic_is_better(const shadow_setup *setup);
-/* Plans a buffer that is parallel to the sheets. It covers the points that the eye sees, and penumbrae around
- * them. pixel: edge of a pixel; frame units. */
+/* Plans a buffer that is parallel to the sheets. The buffer covers the points that the eye sees, and the
+ * penumbrae around these points. pixel: edge of a pixel; frame units. */
 void hl_plan_soft(light_shadow *shadow, double pixel);
-/* Both functions give the edge of a buffer's pixel in frame units: hl_sharp_pixel() for light that is looked
- * up as it is, hl_blurred_pixel() for light that the method blurs. */
+/* hl_sharp_pixel() and hl_blurred_pixel() give the edge of a buffer's pixel in frame units: hl_sharp_pixel()
+ * for light that is looked up without a blur, hl_blurred_pixel() for light that the method blurs. */
 double hl_sharp_pixel(const shadow_setup *setup, bool cubic);
 double hl_blurred_pixel(const shadow_setup *setup, bool cubic);
 /* The region that a shadow buffer covers so that it holds all content that the eye sees. pixel: the wanted

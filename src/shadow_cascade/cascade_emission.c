@@ -5,9 +5,9 @@
  * matters. An emission image, however, must appear complete in every penumbra. So the absorbed light of group
  * o is blurred in one step by the image's taps (light_emission.h), scaled to the width w of the group's
  * penumbra on the receiver. Far groups come first. With a group's kernel K, the sum s becomes K(G + F) + (1 -
- * K(F)) s (derived as in cascade.h). Without thin matter this is the sum over groups of K(G), the mean of the
- * shadows of the light's cells. Sums are made anew for each receiver. This is not too slow, because far
- * groups have coarse pixels. */
+ * K(F)) s (derived as in cascade.h). Without thin matter, s becomes the sum over groups of K(G), which is the
+ * mean of the shadows of the light's cells. Sums are made anew for each receiver, which is not too slow,
+ * because far groups have coarse pixels. */
 #include "shadow_cascade/cascade_passes.h"
 
 #include <string.h>
@@ -30,7 +30,7 @@ static const cascade_field *sum_of(const soft_cascade *cascade, const cascade_le
   return level == &cascade->level[0] ? &cascade->absorbed[channel] : &level->sum[0][channel];
 }
 
-/* Finds the tiles of a row that are read by the next slabs, or by the next finer level when it interpolates
+/* Finds the tiles of a row that the next slabs read, or that the next finer level reads when it interpolates
  * between pixels. */
 static read_row row_read(const soft_cascade *cascade, const cascade_level *level, size_t y) {
   return hl_cascade_read_row(&cascade->reads, level->scale, (int)y,
@@ -45,8 +45,8 @@ static bool any_near(const cascade_level *level, const cascade_field *field, int
 
 typedef struct start_task {
   const soft_cascade *cascade;
-  /* level: the level whose sum is started; farther: the nearest of the farther levels that has a sum, or null
-   * if none has */
+  /* level: the level whose sum is started; farther: the nearest of the farther levels that have a sum; null
+   * if no farther level has a sum */
   const cascade_level *level, *farther;
   const cascade_functions *functions;
 } start_task;
@@ -114,8 +114,9 @@ static void average_row(void *data, size_t index, int worker) {
   }
 }
 
-/* Finds the offsets of the taps for a tile. Leaves out taps that lie outside the level for all pixels of the
- * tile, because all pixels outside are zeros. Returns the number of taps that are left. */
+/* Finds the offsets of the taps for a tile. The function leaves out taps that lie outside the level for all
+ * pixels of the tile, because pixels outside the level are zeros. Returns the number of taps that are left.
+ */
 static int offsets_of(const cascade_level *level, const emission_taps *taps, int x, int y, ptrdiff_t *offset,
                       int *kept) {
   int count = 0;

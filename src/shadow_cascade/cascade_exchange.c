@@ -1,10 +1,11 @@
-/* shadow_cascade/cascade_exchange.c - the parts of a shared picture exchange the light that their slabs have
- * absorbed.
+/* shadow_cascade/cascade_exchange.c - exchanges the light that slabs have absorbed, between the parts of a
+ * shared picture.
  *
  * A part attenuates the tiles that it needs. Penumbrae reach into these tiles from matter in other tiles,
  * which other parts attenuate. So after each chunk, for each tile that the chunk has touched, the tile's
- * owner sends this tile's pixels of the two groups at the chunk's ends. Then every part has complete groups,
- * as if one renderer made the whole picture. Each part blurs the groups where its own tiles read them.
+ * owner sends this tile's pixels of the two groups at the chunk's ends. Every part then has the complete
+ * groups that a single renderer of the whole picture would have. Each part blurs the groups where its own
+ * tiles read them.
  *
  * The groups of a chunk are first read at the end of the next chunk (Near matter, cascade.h). So the messages
  * of a chunk are under way while all parts work on the next chunk, and a part waits only for parts that are
@@ -29,7 +30,7 @@ typedef struct post_head {
  * of the group at its end. */
 enum { MESSAGE_FIELDS = 4 };
 
-/* The head of a message about one tile. The tile's pixels follow it:
+/* The head of a message about one tile. The tile's pixels follow the head:
  * [channels][MESSAGE_FIELDS][TILE_PIXELS]. */
 typedef struct message_head {
   uint32_t tile;
@@ -62,8 +63,8 @@ static const cascade_field *field_of(const cascade_group *start, const cascade_g
   return field % 2 == 0 ? &group->absorbed[channel] : &group->thin[channel];
 }
 
-/* Two functions that copy the pixels of one tile. The first one copies them from a field to a message, the
- * second one from a message to a field. */
+/* pack_tile() copies the pixels of one tile from a field to a message, and unpack_tile() copies the pixels
+ * from a message to a field. */
 static void pack_tile(const cascade_level *level, const cascade_field *field, size_t tile, field_pixel *to) {
   const field_pixel *from = field->pixels + tile / (size_t)level->tiles_x * TILE * level->stride +
                             tile % (size_t)level->tiles_x * TILE;

@@ -26,9 +26,9 @@ typedef struct field_job {
                              * zeros. `b` may be null if it is not coarser than the output. `a` may be null
                              * only if `b` is coarser than the output */
   field_pixel *to;
-  size_t stride_in, stride; /* stride: the number of pixels from row to row of the output; stride_in: of the
-                             * inputs that have another resolution */
-  const field_pixel *thin;  /* the fraction of b that the thin matter of a absorbs; null if there is no thin
+  size_t stride_in, stride; /* stride: the number of pixels from row to row of the output; stride_in: the
+                             * number of pixels from row to row of inputs that have another resolution */
+  const field_pixel *thin;  /* the fraction of b that the thin matter of a absorbs; null if a has no thin
                              * matter */
   tile_rows rows;
 } field_job;
@@ -62,8 +62,8 @@ typedef struct refill_job {
   /* the buffer's planes SHADOW_SECOND, which receive the old value of `to` if `again` is set, else the new
    * value; rows are stride_to apart */
   float *older;
-  float *outside; /* the light at the outside of surfaces, whose difference from `to` stays the same; rows are
-                   * stride_to apart; null if there is none */
+  float *outside; /* the light at the outside of surfaces, whose difference from `to` the refill does not
+                   * change; rows are stride_to apart; null if the buffer does not keep this light */
   size_t stride, stride_to;
   int kept;  /* whether the chunk's slabs absorbed some light */
   int again; /* whether `to` was also refilled at the start of the chunk that ends */
@@ -87,10 +87,10 @@ enum { GREATEST_EDGE = 16 };
 
 /* Adds matter to two groups. The matter is the light that a chunk's slabs have absorbed, (1 -
  * absorbed_at_start) - now, and the fraction of this light that thin matter absorbed. The fraction moment /
- * (length * absorbed light) of the matter goes to the group at the chunk's end, the rest to the group at the
- * chunk's start. Where the chunk began in the dark, surfaces that left marks (shadow/attenuate.h) absorb the
- * light that passes the groups before the chunk. One half of this light goes to each of the two groups.
- * Within opaque surfaces, the group at the chunk's end hides all matter before it. */
+ * (length * absorbed light) of the matter goes to the group at the chunk's end, and the rest goes to the
+ * group at the chunk's start. Where the chunk began in the dark, surfaces that left marks
+ * (shadow/attenuate.h) absorb the light that passes the groups before the chunk. Each of the two groups gets
+ * one half of this light. Within opaque surfaces, the group at the chunk's end hides all matter before it. */
 typedef struct absorbed_job {
   const float *absorbed_at_start; /* 1 minus the light at the chunk's start; rows are `stride` apart */
   /* the transmittance at the chunk's end, or marks of surfaces in the dark; rows are stride_now apart;
@@ -100,7 +100,7 @@ typedef struct absorbed_job {
                   * position in the chunk; the function clears it */
   float length;  /* the length of the chunk, measured in omega */
   const field_pixel *before; /* rows are `stride` apart; the light that the groups before the chunk absorbed;
-                              * null if it is not known */
+                              * null if this light is not known */
   field_pixel *start_absorbed, *start_thin; /* the group at the chunk's start, to which matter is added;
                                              * rows are `stride` apart */
   field_pixel *end_absorbed, *end_thin;     /* the group at the chunk's end, to which matter is written;
@@ -135,7 +135,7 @@ typedef struct cascade_functions {
   refill_tile_function *refill;
   absorbed_tile_function *absorbed;
   split_tile_function *split;
-  field_tile_function *double_tile; /* to = a; a has half the resolution (rows stride_in apart), and is
+  field_tile_function *double_tile; /* to = a, where a has half the resolution (rows stride_in apart), and is
                                      * interpolated bilinearly */
   field_emission_tile_function *emission_add;
 } cascade_functions;

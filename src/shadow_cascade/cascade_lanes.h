@@ -1,4 +1,4 @@
-/* shadow_cascade/cascade_lanes.h - operations on one tile of a cascade's fields. */
+/* shadow_cascade/cascade_lanes.h - computes the operations on one tile of a cascade's fields. */
 #ifndef HL_SHADOW_CASCADE_CASCADE_LANES_H
 #define HL_SHADOW_CASCADE_CASCADE_LANES_H
 
@@ -6,8 +6,8 @@
 #include "shadow/blur_lanes.h"
 #include "shadow_cascade/cascade_field.h"
 
-/* Prefetches the rows of a field's tile; each row is a cache line of its own. If `field` is null, nothing is
- * prefetched. */
+/* Prefetches the rows of a field's tile; each row is a cache line of its own. If `field` is null, the
+ * function does nothing. */
 LANES_INLINE void fetch_rows(const field_pixel *field, size_t stride, int tile_x, int tile_y, tile_rows rows,
                              const int to_write) {
   if (field == NULL) return;
@@ -24,8 +24,8 @@ LANES_INLINE void fetch_float_tile(const float *field, size_t stride, int tile_x
   for (int i = 0; i < TILE; i++, row += stride) __builtin_prefetch(row, 0);
 }
 
-/* Stores sixteen pixels after rounding them. *greatest: each lane is raised to the stored pixel if it is
- * less. */
+/* Stores sixteen pixels after rounding them. *greatest: each lane is raised to the stored pixel if the lane
+ * is less. */
 LANES_INLINE void store_pixels(field_pixel *p, lanes pixels, lanes *greatest) {
   lanes_store_short(p, pixels);
   *greatest = lanes_max(*greatest, pixels);
@@ -37,15 +37,14 @@ LANES_INLINE lanes transmittance_of(const field_pixel *thin) {
   return lanes_line(lanes_load_short(thin), -1.0f / FIELD_ONE, 1.0f);
 }
 
-/* The transmittance 1 - absorbed, corrected where it is nearly dark: it is 0 below UMBRA, and rises twice as
- * steeply between UMBRA and twice UMBRA. Greater values are unchanged. */
+/* The transmittance 1 - absorbed, corrected where it is small: values below UMBRA become 0, and between UMBRA
+ * and twice UMBRA the result rises from 0 to twice UMBRA. Greater values are unchanged. */
 LANES_INLINE lanes transmittance_outside_umbra(const field_pixel *absorbed) {
   lanes left = transmittance_of(absorbed);
   return lanes_clamp(lanes_min(left, 2.0f * (left - UMBRA)), 0, 1.0f);
 }
 
-/* Blurs sixteen pixels along a row of a field. It does so as blur_sixteen() does, but sums pixels as
- * integers. */
+/* Blurs sixteen pixels along a row of a field as blur_sixteen() does, but sums pixels as integers. */
 LANES_INLINE lanes blur_field_row(const field_pixel *from, const blur_box *box) {
   lanes_int ends = lanes_load_short_int(from - (box->reach + 1)) +
                    lanes_load_short_int(from + (box->reach + 1));
@@ -125,8 +124,8 @@ static int add_half_tile(const field_job *job, int tile_x, int tile_y) {
 }
 
 /* Interpolates a row of a tile from a field of half the resolution. The centre of pixel 2 i lies a quarter of
- * a coarse pixel before the centre of coarse pixel i, and the centre of pixel 2 i + 1 a quarter of a coarse
- * pixel after it. */
+ * a coarse pixel before the centre of coarse pixel i, and the centre of pixel 2 i + 1 lies a quarter of a
+ * coarse pixel after this centre. */
 LANES_INLINE lanes double_row(const field_pixel *from, size_t stride, int tile_x, int y) {
   const field_pixel *near = from + (ptrdiff_t)(y / 2) * (ptrdiff_t)stride + tile_x * TILE / 2 - 1;
   const field_pixel *far = y & 1 ? near + stride : near - stride;
@@ -207,14 +206,14 @@ static void emission_tile(const emission_job *job, int tile_x, int tile_y) {
   }
 }
 
-/* The fraction of light that surfaces let pass in pixels where the chunk began in the dark. It is 1 where a
- * pixel has no mark (DARK_MARK of shadow/attenuate.h). */
+/* The fraction of light that surfaces let pass in pixels where the chunk began in the dark. The fraction is 1
+ * in pixels without a mark (DARK_MARK of shadow/attenuate.h). */
 LANES_INLINE lanes passing_in_dark(lanes end) {
   return lanes_select(end < 0.0f, end * (-1.0f / DARK_MARK), lanes_set(1.0f));
 }
 
-/* The transmittance of the slabs of one chunk. Where hardly any light was left at the chunk's start, it is
- * the transmittance of surfaces alone, because volumes are not composited in such dark blocks. */
+/* The transmittance of the slabs of one chunk. Where hardly any light was left at the chunk's start, the
+ * result is the transmittance of surfaces alone, because volumes are not composited in such dark blocks. */
 LANES_INLINE lanes chunk_transmittance(lanes end, lanes start) {
   lanes least = lanes_set(DARK_AT_START);
   return lanes_select(start < least, passing_in_dark(end),
@@ -239,8 +238,8 @@ static void refill_tile(const refill_job *job, int tile_x, int tile_y) {
 
 /* Splits matter into two parts, one behind the other. The second part gets the fraction `late` of the matter.
  * Derived: the transmittance 1 - F of thin matter is the product of the transmittances of the parts, (1 -
- * F)^(1 - late) and (1 - F)^late. The light A2 + (1 - F2) A1 that both parts absorb one after the other
- * equals the light A that the whole absorbs. */
+ * F)^(1 - late) and (1 - F)^late. The light A2 + (1 - F2) A1 that the two parts absorb, one after the other,
+ * equals the light A that the whole matter absorbs. */
 typedef struct matter_pair {
   lanes absorbed[2], thin[2];
 } matter_pair;
@@ -305,7 +304,7 @@ LANES_INLINE lanes_int is_hidden(const float *now, const float *absorbed_at_star
 }
 
 /* Opaque surfaces are made to hide the matter before them only in pixels where at most this fraction of the
- * light was left at the chunk's start. Where more light is left, the sums are right without this. */
+ * light was left at the chunk's start. Where more light is left, the sums are right without hiding. */
 static const float HARDLY_HIDDEN = 0.9f;
 
 /* Finds which of sixteen pixels lie inside an opaque surface. Such a pixel is opaque, had at most
@@ -324,11 +323,11 @@ LANES_INLINE lanes_int is_inside_surface(const absorbed_job *job, const float *n
   return inside;
 }
 
-/* Makes the group at a chunk's end hide everything that lies before it, where surfaces let nothing pass.
- * Derived: a surface at o absorbs the light T(o), and 1 - T(o) is the sum up to o, blurred for a receiver at
- * o. For a receiver r far behind o, this sum is blurred more, so that a little light would be left beside the
- * umbra of matter before o. But rays that meet an opaque surface end there, whatever they have met before. So
- * the sum must become 1 = F + (1 - F) s with F = 1. */
+/* Makes the group at a chunk's end hide everything that lies before the group, where surfaces let no light
+ * pass. Derived: a surface at o absorbs the light T(o), and 1 - T(o) is the sum up to o, blurred for a
+ * receiver at o. For a receiver r far behind o, this sum is blurred more, so that a little light would be
+ * left beside the umbra of matter before o. But rays that meet an opaque surface end at this surface,
+ * whatever they have met before. So the sum must become 1 = F + (1 - F) s with F = 1. */
 LANES_INLINE void hide_behind(lanes_int inside, matter_pair *to) {
   to->thin[1] = lanes_select(inside, lanes_set(1.0f), to->thin[1]);
   to->absorbed[1] = lanes_select(inside, lanes_set(1.0f), to->absorbed[1]);

@@ -6,9 +6,9 @@
 #include "shadow_cascade/cascade_passes.h"
 
 /* Limits of a sweep's chunks. The thickness of chunks is measured in omega, in pixels. Chunks are so thick
- * that there are at most ENOUGH_CHUNKS of them; but they are not thicker than THICK_CHUNK. If there would
- * then be more than NEAR_CHUNKS chunks, or FAR_CHUNKS for a parallel light, chunks become thicker, up to
- * THICKEST_CHUNK. Still thicker chunks are not allowed: the chunks next to a receiver cast shadows without
+ * that a sweep has at most ENOUGH_CHUNKS chunks, but not thicker than THICK_CHUNK. If a sweep would then have
+ * more than NEAR_CHUNKS chunks, or FAR_CHUNKS for a parallel light, chunks become thicker, up to
+ * THICKEST_CHUNK. Thicker chunks are not allowed, because the chunks next to a receiver cast shadows without
  * penumbrae, which is visible where objects touch. With 64 chunks, balls under parallel lights 60 to 90
  * degrees wide showed rings. With some greater numbers of chunks below 200, balls under lights 90 to 120
  * degrees wide showed rings. */
@@ -16,11 +16,11 @@ static const double ENOUGH_CHUNKS = 32, NEAR_CHUNKS = 64, FAR_CHUNKS = 88, GREAT
 static const double LEAST_CHUNK = 0.15, THICK_CHUNK = 1.3, THICKEST_CHUNK = 2;
 
 /* Divides omega from start to end into chunks of one length. The magnitude of a near light's omega grows
- * without bound towards the light, so there may be more such chunks than allowed. In that case the length of
- * a chunk is a fixed fraction of -omega at the chunk's start. Derived: at a distance z from the light, a
+ * without bound towards the light, so chunks of one length may be more than allowed. In that case the length
+ * of a chunk is a fixed fraction of -omega at the chunk's start. Derived: at a distance z from the light, a
  * penumbra whose width in omega is w has the width w z in space, and -omega is L / z. So the penumbrae of all
- * chunks have the same width in space. For a lamp within the content, the last chunks would be a small part
- * of a pixel long; so chunks are at least `thick` long. Returns the number of chunks. */
+ * chunks have the same width in space. For a lamp within the content, the last chunks would be a small
+ * fraction of a pixel long; so all chunks are made at least `thick` long. Returns the number of chunks. */
 static double divide(soft_cascade *cascade, double start, double end, bool within) {
   double length = end - start, few = cascade->parallel ? FAR_CHUNKS : NEAR_CHUNKS;
   double thick = fmin(fmax(length / ENOUGH_CHUNKS, LEAST_CHUNK), THICK_CHUNK);
@@ -41,14 +41,15 @@ static double divide(soft_cascade *cascade, double start, double end, bool withi
   return hl_ln(cascade->evened / start) / hl_ln(1 - cascade->shrink) + (end - cascade->evened) / thick;
 }
 
-/* The least number of chunks between a receiver and a level's groups. It follows from the numbers of groups
- * that the levels keep: three on level 0, two on level 1, five on every other level. */
+/* The least number of chunks between a receiver and a level's groups. The number follows from the numbers of
+ * groups that the levels keep: three on level 0, two on level 1, five on every other level. */
 static double chunks_before(int level) { return level < 2 ? 3 * level : 4 * (hl_pow(2, level - 1) - 1); }
 
-/* The scale of a level: the edge of its pixels, in pixels of the buffer. It is chosen so that the narrowest
- * penumbra on the level is at least one and a half of the level's pixels wide. Resampling blurs, too, and its
- * blur is subtracted from the penumbra's own blur (resampled_by). With an emission image the blur cannot be
- * subtracted; so the narrowest penumbra is at least four of the level's pixels wide. */
+/* The scale of a level: the edge of its pixels, in pixels of the buffer. The scale is chosen so that the
+ * narrowest penumbra on the level is at least one and a half of the level's pixels wide. Resampling blurs,
+ * too, and the blur by resampling is subtracted from the penumbra's own blur (resampled_by()). With an
+ * emission image, the blur by resampling cannot be subtracted; so the narrowest penumbra is then at least
+ * four of the level's pixels wide. */
 static int level_scale(const soft_cascade *cascade, int level) {
   double penumbra = cascade->shortest_chunk * chunks_before(level) * cascade->least_fraction,
          own = cascade->emission == NULL ? 1.5 : 4;
@@ -72,8 +73,8 @@ static cascade_field next_field(const cascade_level *level, size_t *used) {
   return field_of_plane(level, (*used)++);
 }
 
-/* Sets the fraction of variance for each column and row of tiles: the square of the light's width as it is
- * seen from there, divided by the square of the light's greater width. */
+/* Sets the fraction of variance for each column and row of tiles: the square of the light's width as seen
+ * from this column or row, divided by the square of the light's greater width. */
 static void set_parts(const soft_cascade *cascade, const sheet_light *light, int axis, int count, int scale,
                       cascade_box *boxes) {
   for (int tile = 0; tile < count; tile++) {
@@ -179,13 +180,13 @@ static void plan_levels(soft_cascade *cascade, const light_shadow *shadow) {
     cascade->slope_step[axis] = vec3_dot(axis == 0 ? view->du : view->dv, along[axis]);
   }
   double start = hl_cascade_omega(cascade, first), end = hl_cascade_omega(cascade, last);
-  /* towards a near light, -omega grows without bound. But no more chunks are needed for penumbrae that are
-   * wider than twice the buffer. For parallel light this limit is not used: there even the first slabs may be
+  /* towards a near light, -omega grows without bound. But penumbrae that are wider than twice the buffer need
+   * no further chunks. For parallel light, `start` is not limited, because even the first slabs may be
    * receivers, which would get shadows without penumbrae */
   if (!cascade->parallel) start = fmax(start, end - 2 * TILE * fmax(tiles_x, tiles_y));
   double chunks = divide(cascade, start, end, shadow->setup.source->sectors != NULL);
   /* derived: level j > 1 is first used after 5 * 2^(j-1) - 4 chunks, because each level keeps five groups;
-   * levels 0 and 1 together also keep five */
+   * levels 0 and 1 together keep five groups, too */
   int levels = 2 + (int)floor(hl_log2(fmax(chunks + 7, 5) / 5));
   cascade->level_count = levels < CASCADE_LEVELS ? levels : CASCADE_LEVELS;
   for (int i = 0; i < cascade->level_count; i++) plan_level(cascade, i, tiles_x, tiles_y);
@@ -197,9 +198,9 @@ static bool is_read_cubic(const shadow_setup *setup) {
   return lookup == HL_LOOKUP_AUTO ? setup->emission == NULL : lookup == HL_LOOKUP_CUBIC;
 }
 
-/* The greatest tangent of the angle between a view's rays and the sheets' normal. It is infinite if some rays
- * run along the sheets. Only the rays at the corners are looked at: the rays of a rectangle of pixels meet a
- * sheet in a quadrangle, and its corners are farthest away. */
+/* The greatest tangent of the angle between a view's rays and the sheets' normal. The tangent is infinite if
+ * some rays run along the sheets. The function looks only at the rays at the corners: the rays of a rectangle
+ * of pixels meet a sheet in a quadrangle, and the corners of the quadrangle are farthest away. */
 static double steepest_tangent(const view *view, vec3 normal) {
   double greatest = 0, first = 0;
   for (int corner = 0; corner < 4; corner++) {
@@ -215,9 +216,9 @@ static double steepest_tangent(const view *view, vec3 normal) {
 
 /* The width, in pixels, of a margin around the bricks' projections; the cascade keeps its buffer up to date
  * within this margin. For a sample of a brick, the buffer may be looked up in the middle of the slab, half a
- * slab away from the brick along the eye's ray. In a buffer parallel to the sheets, this moves the look-up by
- * at most half the sheets' distance times the sum of the tangents of the eye's ray and the light's ray
- * (derived). For lights within the content, the margin is limited to a tile. */
+ * slab away from the brick along the eye's ray. In a buffer parallel to the sheets, this distance moves the
+ * look-up by at most half the sheets' distance times the sum of the tangents of the eye's ray and the light's
+ * ray (derived). For lights within the content, the margin is limited to a tile. */
 static double look_up_spare(const shadow_setup *setup, const shadow_plan *plan) {
   const sheet_stack *sheets = setup->sheets;
   const view *view = &plan->view;
@@ -298,8 +299,8 @@ static void clear_plane(void *data, size_t index, int worker) {
 }
 
 /* Clears the moments and the light at the start of the last, unfinished chunk. All tiles are cleared, even
- * the tiles that the chunk has not touched. The reason: in dark pixels, rounding and matter behind surfaces'
- * marks leave moments that are not cleared at the end of a chunk. */
+ * the tiles that the chunk has not touched, because rounding, and matter behind surfaces' marks, leave
+ * moments in dark pixels that the end of a chunk does not clear. */
 static void clear_moments(const soft_cascade *cascade, hl_pool *pool) {
   const cascade_level *level = &cascade->level[0];
   size_t bytes = (size_t)level->tiles_y * TILE * level->stride * sizeof(float);

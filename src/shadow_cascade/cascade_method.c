@@ -14,9 +14,9 @@ static double variance_between(double wide, double narrow) {
 }
 
 /* The variance, in squared pixels of the buffer, by which a level's coarser pixels blur its sums on the way
- * to the buffer. Derived: halving takes the mean of two pixels, which has the variance 1/4. Doubling weighs
- * pixels by 3/4 and 1/4, which has the variance 3/4. So going from the scale s to 2 s and back adds the
- * variance s^2. The sum over all scales is a geometric series. */
+ * to the buffer. Derived: halving takes the mean of two pixels, whose weights have the variance 1/4. Doubling
+ * weighs pixels by 3/4 and 1/4, which adds the variance 3/4. So going from the scale s to 2 s and back adds
+ * the variance s^2. The sum over all scales is a geometric series. */
 static double resampled_by(const cascade_level *level) {
   return ((double)level->scale * level->scale - 1) / 3;
 }
@@ -55,7 +55,7 @@ static void copy_field(const cascade_crew *crew, const cascade_level *level, con
   crew->works->add(crew, &sum);
 }
 
-/* Moves the oldest group of level 0 to level 1, and converts it to that level's pixels. */
+/* Moves the oldest group of level 0 to level 1, and converts the group to the pixels of level 1. */
 static void hand_over(soft_cascade *cascade, const cascade_crew *crew) {
   cascade_level *level = &cascade->level[0], *next = &cascade->level[1];
   const cascade_group *from = &level->group[0];
@@ -71,9 +71,9 @@ static void hand_over(soft_cascade *cascade, const cascade_crew *crew) {
 }
 
 /* Moves the two oldest groups of a level, a and b, to the next level. The next level already has a group at
- * a's omega, to which a is added. It gets a new group at the omega of this level's third group. b lies
- * between these two groups, and its matter is split between them by its distances from them (derived: kernels
- * are then linear between groups, which keeps a penumbra's middle). */
+ * a's omega, to which a is added. The next level also gets a new group at the omega of this level's third
+ * group. b lies between these two groups of the next level, and b's matter is split between them by b's
+ * distances from them (derived: kernels are then linear between groups, which keeps a penumbra's middle). */
 static void merge_up(soft_cascade *cascade, int index, const cascade_crew *crew) {
   cascade_level *level = &cascade->level[index], *next = &cascade->level[index + 1];
   cascade_group a = level->group[0], b = level->group[1];
@@ -156,12 +156,12 @@ static bool absorb_chunk(const cascade_crew *crew, const cascade_absorption *abs
 }
 
 /* The width, in pixels, of the strip along the edges of opaque surfaces that does not hide the matter before
- * it. Derived: at the rim of a ball, two edges lie one behind the other, a chunk apart. There the sum of the
- * light that both edges absorb is about right. For a receiver that lies w behind the second edge, the sum
- * before this edge has a penumbra of the width sqrt((c + w)^2 - w^2), where c is the chunk's length. In the
- * penumbra's dark half, the second edge must not hide the light that is left. A strip along the second edge
- * that is half as wide as the dark half lets this light pass. A wider strip would leave light where two
- * pieces of one surface meet that lie in different chunks. */
+ * the surfaces. Derived: at the rim of a ball, two edges lie one behind the other, a chunk apart. At the rim,
+ * the sum of the light that the two edges absorb is about right. For a receiver that lies w behind the second
+ * edge, the sum before this edge has a penumbra of the width sqrt((c + w)^2 - w^2), where c is the chunk's
+ * length. In the penumbra's dark half, the second edge must not hide the light that is left. A strip along
+ * the second edge that is half as wide as the dark half lets this light pass. A wider strip would leave light
+ * where two pieces of one surface meet that lie in different chunks. */
 static int edge_of(double length, double behind) {
   return (int)fmin(round(sqrt(length * (length + 2 * behind)) / 4), GREATEST_EDGE);
 }
@@ -203,8 +203,8 @@ static int reach_at(const cascade_sum *sum, int scale) {
 }
 
 /* Adds two sums: a, and b after a blur. b is one channel of the light that the groups up to a level have
- * absorbed. b may lie on a much farther level than a. Then b is blurred on that level, where blurs are cheap,
- * and afterwards doubled level by level until it is as fine as a. */
+ * absorbed. If b lies on a farther level than a, the function blurs b on the farther level, where blurs are
+ * cheap, and afterwards doubles b level by level until b is as fine as a. */
 static void bring(cascade_sum sum, cascade_blur blur, const cascade_crew *crew) {
   const cascade_level *from = sum.level_b;
   if (from->scale == sum.level->scale) {
@@ -239,8 +239,8 @@ static void bring(cascade_sum sum, cascade_blur blur, const cascade_crew *crew) 
   crew->works->add(crew, &sum);
 }
 
-/* Adds a group to the sum of the groups behind it. Before that, blurs this sum from the omega of the last
- * added group to the omega of the new group. */
+/* Blurs the sum of the groups behind a group, from the omega of the last added group to the omega of the new
+ * group, and then adds the new group to the sum. */
 static void pass_group(int channels, cascade_level *from, cascade_level *level, const cascade_group *group,
                        double receiver, int reach, const cascade_crew *crew) {
   cascade_blur blur = blur_towards(from, receiver, group->omega, level);
@@ -302,8 +302,8 @@ static int reach_behind(const soft_cascade *cascade, int index, int g, double re
 }
 
 /* Sums the groups from the farthest to the nearest. Levels with thicker groups are summed less often. Empty
- * groups are left out; this saves blurs and keeps kernels close to boxes. Returns the nearest level whose sum
- * is not empty; null if nothing is in the light's way. */
+ * groups are left out, which saves blurs and keeps kernels close to boxes. Returns the nearest level whose
+ * sum is not empty; null if no matter is in the light's way. */
 static cascade_level *pass_all(soft_cascade *cascade, double receiver, const cascade_crew *crew) {
   cascade_level *sum = NULL;
   bool due = false;
@@ -312,7 +312,7 @@ static cascade_level *pass_all(soft_cascade *cascade, double receiver, const cas
     uint64_t period = period_of(i);
     due = due || level->renewed || cascade->chunks % period == 0;
     if (due) level->filled = false;
-    /* the sum of this level is used for `period` - 1 further chunks; so it is made for a receiver in the
+    /* the sum of this level is used for `period` - 1 further chunks; so the sum is made for a receiver in the
      * middle of these chunks */
     double served = hl_cascade_chunks_on(cascade, receiver, (double)(period - 1) / 2);
     for (int g = 0; g < level->count && due; g++) {
@@ -381,12 +381,12 @@ static void refill_piece(void *data, size_t index, int worker) {
   }
 }
 
-/* The least variance of a blur that is carried out, in squared pixels. It is a third of the variance of a
- * bilinear look-up; weaker blurs are left out. */
+/* The least variance of a blur that is carried out, in squared pixels. This least variance is a third of the
+ * variance of a bilinear look-up. Weaker blurs are left out. */
 static const double LEAST_VARIANCE = 0.05;
 
 /* Finds the light that all groups absorb on the way to receivers around omega = receiver, and stores it in
- * cascade->absorbed, in the tiles that are read. Returns false if nothing is in the light's way. */
+ * cascade->absorbed, in the tiles that are read. Returns false if no matter is in the light's way. */
 static bool find_shade(soft_cascade *cascade, double receiver, const cascade_crew *crew) {
   if (cascade->emission != NULL) return hl_cascade_pass_emission(cascade, receiver, crew);
   cascade_level *level = pass_all(cascade, receiver, crew);
@@ -493,9 +493,9 @@ void hl_cascade_find_chunks(const light_shadow *planned, int first, cascade_slab
   }
 }
 
-/* Sets the fraction of a slab's light that samples read from the buffer. They read the other fraction from
- * the buffer's second planes. The first fraction is 0 at the beginning of a chunk, and 1 once the chunk has
- * its whole length. */
+/* Sets the fraction of a slab's light that samples read from the buffer. Samples read the rest from the
+ * buffer's second planes. The fraction is 0 at the beginning of a chunk, and 1 once the chunk has its whole
+ * length. */
 static void before_shading(light_shadow *shadow, int sheet, shadow_lookup *lookup) {
   lookup->young = young_of(shadow->state, shadow->setup.sheets, sheet);
 }
@@ -506,7 +506,7 @@ static void before_slab(light_shadow *shadow, int sheet, attenuate_job *job) {
   job->marks = true;
 }
 
-/* Prepares a tile so that the next slab also attenuates the buffer's planes SHADOW_SECOND, and is counted in
+/* Prepares a tile so that the next slab also attenuates the buffer's planes SHADOW_SECOND, and is added to
  * the moments. */
 static void before_tile(const light_shadow *shadow, size_t tile, attenuate_job *job) {
   const soft_cascade *cascade = shadow->state;

@@ -33,8 +33,8 @@ int hl_cascade_doubling_reach(int from, int to) {
   return reach;
 }
 
-/* Marks whether a tile is all zeros, after some of its rows were computed. The tile's other rows are not read
- * by anything. So if the computed rows are zeros, the whole tile is cleared. */
+/* Marks whether a tile is all zeros, after some of its rows were computed. No code reads the tile's other
+ * rows. So if the computed rows are zeros, the whole tile is cleared. */
 static void note_zeros(const cascade_level *level, const cascade_field *field, int x, int y, tile_rows rows,
                        int above_zero) {
   unsigned char *zeros = &field->zeros[y * level->tiles_x + x];
@@ -59,7 +59,8 @@ static bool sum_is_zeros(const add_task *task, int x0, int x1, int y) {
   for (int i = 0; i < 2; i++) {
     if (fields[i] == NULL) continue;
     int scale = levels[i]->scale, own = sum->level->scale, first = x0, last = x1, top = y, bottom = y;
-    if (scale == own && x0 == x1) { /* the usual case is tested before any other function is called */
+    if (scale == own && x0 == x1) { /* the usual case of a single tile on the output's level, tested without
+                                     * calling another function */
       if (!fields[i]->zeros[y * sum->level->tiles_x + x0]) return false;
       continue;
     }
@@ -75,7 +76,7 @@ static bool row_is_zeros(const cascade_level *level, const cascade_field *field,
 }
 
 /* Computes a sum in a piece of a row of tiles. In most rows, the inputs are all zeros, and the output was all
- * zeros before; for such a row the function returns at once. */
+ * zeros before; the function returns at once for these rows. */
 static void add_tiles(const add_task *task, row_piece piece) {
   const cascade_level *level = task->sum.level;
   const cascade_field *a = task->sum.a, *to = task->sum.to;
@@ -229,7 +230,7 @@ typedef struct merge_task {
   add_task sums[MERGE_SUMS];
 } merge_task;
 
-/* Merges one row of tiles of the farther level, and the rows of the nearer level that it covers. */
+/* Merges one row of tiles of the farther level, and the rows of the nearer level that this row covers. */
 static void merge_row(void *data, size_t index, int worker) {
   merge_task *task = data;
   size_t first = index * (size_t)task->ratio, end = first + (size_t)task->ratio;
@@ -247,7 +248,7 @@ void hl_cascade_find_merge_sums(const cascade_merger *merger, cascade_sum sums[M
                       *of_spare[2] = {spare->absorbed, spare->thin};
   const cascade_field *to[2] = {second->absorbed, second->thin}, *old[2] = {first->absorbed, first->thin};
   for (int i = 0; i < 2; i++) {
-    /* the matter that goes to `first` passes through the fields of the group `second`, which get their own
+    /* the fields of the group `second` hold, for a while, the matter that goes to `first`; they get their own
      * matter last */
     const cascade_sum of_kind[3] = {
         {level, of_b[i], of_b[1], level, of_a[i], next, to[i], READ_EVERYWHERE},

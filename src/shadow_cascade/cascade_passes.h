@@ -1,5 +1,5 @@
-/* shadow_cascade/cascade_passes.h - passes over whole fields of a cascade. A task works on a piece of a row
- * of tiles, and skips tiles that are all zeros. */
+/* shadow_cascade/cascade_passes.h - declares passes over whole fields of a cascade. A task of a pass works on
+ * a piece of a row of tiles, and skips tiles that are all zeros. */
 #ifndef HL_SHADOW_CASCADE_CASCADE_PASSES_H
 #define HL_SHADOW_CASCADE_CASCADE_PASSES_H
 
@@ -10,8 +10,7 @@
 enum { ROW_PIECES = 2 };
 typedef struct row_piece {
   int y, first, end;
-  /* the row of tiles, and the piece's columns of tiles from the first one to the one before the last
-   * number */
+  /* y: the row of tiles; first, end: the piece's columns of tiles, from `first` to `end` - 1 */
 } row_piece;
 
 static inline size_t hl_cascade_row_pieces(const cascade_level *level) {
@@ -26,14 +25,13 @@ static inline row_piece hl_cascade_row_piece(const cascade_level *level, size_t 
 /* The blur of a pass over a field. */
 typedef struct cascade_blur {
   double variance;     /* the variance of the blur where the light is widest, in squared pixels of the level;
-                        * columns and rows have fractions of it */
-  double resampled[2]; /* the variance, along rows and along columns, by which resampling blurs; it is
-                        * subtracted from `variance` */
+                        * columns and rows of tiles have fractions of this variance */
+  double resampled[2]; /* the variance, along rows and along columns, by which resampling blurs; this variance
+                        * is subtracted from `variance` */
 } cascade_blur;
 
-/* A sum of fields: to = a + (1 - thin) b. In one kind of sum, a and b are both on the same level as `to`, or
- * both on a level twice as fine. In the other kind, a is on the level of `to`, and b is on a level twice as
- * coarse. */
+/* A sum of fields: to = a + (1 - thin) b. In one kind of sum, a and b are on the level of `to`, or on a level
+ * twice as fine. In the other kind, a is on the level of `to`, and b is on a level twice as coarse. */
 typedef struct cascade_sum {
   const cascade_level *level_a;  /* the level of the fields a and thin */
   const cascade_field *a, *thin; /* a may be null, which stands for zeros, only if b is coarser than `to`.
@@ -52,8 +50,8 @@ typedef struct cascade_blurred_sum {
   const cascade_level *level;
   const cascade_field *from, *a, *thin, *to; /* a and thin may be null, which stands for zeros */
   cascade_blur blur;
-  /* `to` is computed in the tiles that are read, and within this number of pixels of the buffer around
-   * them */
+  /* `to` is computed in the tiles that are read, and within this number of pixels of the buffer around these
+   * tiles */
   int reach;
 } cascade_blurred_sum;
 void hl_cascade_blur_add(const cascade_crew *crew, const cascade_blurred_sum *sum);
@@ -77,7 +75,7 @@ typedef struct cascade_merger {
 /* The number of sums that a merge takes after the groups are split. */
 enum { MERGE_SUMS = 6 };
 void hl_cascade_find_merge_sums(const cascade_merger *merger, cascade_sum sums[MERGE_SUMS]);
-/* Merges two groups. Each row of tiles goes through all steps before the next row does. */
+/* Merges two groups. Each row of tiles goes through all steps before the next row begins. */
 void hl_cascade_merge(const cascade_crew *crew, const cascade_merger *merger);
 
 /* The task of adding the light that a chunk's slabs absorbed to the groups at the chunk's two ends. */

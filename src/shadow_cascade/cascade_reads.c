@@ -3,8 +3,8 @@
 
 #include <string.h>
 
-/* Writes 1 for each tile that is read. The entry of a tile is one row and one column farther than the tile,
- * as a summed-area table needs it. */
+/* Writes 1 for each tile that is read. The entry of a tile lies one row and one column farther than the tile,
+ * because a summed-area table begins with a row and a column of zeros. */
 static void mark_tiles(cascade_reads *reads, const occupancy *occupancy, const int32_t *needed_until,
                        int first_sheet, int last_sheet) {
   size_t width = (size_t)reads->tiles_x, words = (size_t)occupancy->tile_words;

@@ -1,5 +1,5 @@
-/* shadow_cascade/cascade_reads.h - finds where a cascade's buffer is read before it is refilled. This decides
- * which tiles the cascade's passes must compute. */
+/* shadow_cascade/cascade_reads.h - finds where a cascade's buffer is read before the next refill, because the
+ * cascade's passes need to compute only these tiles. */
 #ifndef HL_SHADOW_CASCADE_CASCADE_READS_H
 #define HL_SHADOW_CASCADE_CASCADE_READS_H
 
@@ -10,21 +10,21 @@
  * table. */
 typedef struct cascade_reads {
   int tiles_x, tiles_y;
-  uint32_t *before; /* owned; [tiles_y + 1][tiles_x + 1]; for each entry, the number of read tiles above it
-                     * and to its left */
+  uint32_t *before; /* owned; [tiles_y + 1][tiles_x + 1]; for each entry, the number of read tiles above the
+                     * entry and to its left */
 } cascade_reads;
 
 /* READ_EVERYWHERE: the reach of a pass that must compute all tiles, because its results are kept. */
 enum { READ_EVERYWHERE = -1 };
 
 /* Marks the tiles that the next sheets touch in the light's view, because the picture's slabs look up the
- * buffer there. needed_until: [tiles]; if the picture is shared, only tiles are marked that this part needs
- * at the slab of the first sheet; if null, all tiles may be marked. */
+ * buffer in these tiles. needed_until: [tiles]; if the picture is shared, only tiles that this part needs at
+ * the slab of the first sheet are marked; null if all tiles may be marked. */
 void hl_cascade_reads_find(cascade_reads *reads, const occupancy *occupancy, const int32_t *needed_until,
                            int first_sheet, int last_sheet);
 
-/* The two rows of the summed-area table that enclose a band of rows of tiles: one above the band, one below
- * it. */
+/* The two rows of the summed-area table that enclose a band of rows of tiles: one row above the band, and one
+ * row below the band. */
 typedef struct read_band {
   const uint32_t *upper, *lower;
 } read_band;
@@ -34,9 +34,9 @@ typedef struct read_band {
 typedef struct read_row {
   int scale, reach, tiles_x;
   int around;                     /* the number of tiles to either side in which reads count */
-  bool any;                       /* whether any tile is read; only then is `blocks` set */
+  bool any;                       /* whether any tile is read; `blocks` is set only if so */
   read_band all;                  /* the band around the whole row of tiles */
-  read_band blocks[TILE / BLOCK]; /* four bands, one for each four rows of pixels of the row of tiles */
+  read_band blocks[TILE / BLOCK]; /* a band for each four rows of pixels of the row of tiles */
 } read_row;
 
 read_row hl_cascade_read_row(const cascade_reads *reads, int scale, int y, int reach);

@@ -1,6 +1,6 @@
 /* shadow_hard/hard.c - makes hard shadows (section 3 of the paper). A light has one shadow buffer,
- * perpendicular to the light's direction. Each slab attenuates the buffer, as seen from the light's
- * centre. */
+ * perpendicular to the light's direction. Each slab, as seen from the light's centre, attenuates the buffer.
+ */
 #include "shadow/shadow_method.h"
 
 static bool is_read_cubic(const shadow_setup *setup) {

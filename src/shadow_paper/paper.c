@@ -17,7 +17,7 @@
 #include "shadow/blur.h"
 
 typedef struct soft_paper {
-  const light_emission *emission; /* the light's emission image; if null, convolutions use a box */
+  const light_emission *emission; /* the light's emission image; null if convolutions use a box */
   bool parallel;
   double size;         /* the width L of the virtual light (see_light()); for parallel light, L / Z */
   double light_height; /* height of a near light, measured along the sheets' normal */
@@ -27,10 +27,10 @@ typedef struct soft_paper {
                         * convolution */
   int reach;           /* number of pixels beyond a tile that convolutions may read; the buffer's margin has
                         * the same width */
-  /* [slabs]; for each slab, the sum of the reaches of all convolutions before the slab, in pixels;
-   * widen_needs() works with it */
+  /* [slabs]; for each slab, the sum of the reaches of all convolutions before the slab, in pixels; scratch
+   * memory of widen_needs() */
   int32_t *reached;
-  int32_t *far; /* [tiles of the buffer]; widen_needs() works with it */
+  int32_t *far; /* [tiles of the buffer]; scratch memory of widen_needs() */
 } soft_paper;
 
 /* Sets the virtual light of section 5.2, (1) and (3). The virtual light is the orthogonal projection of the
@@ -74,8 +74,8 @@ static int widest_reach(const soft_paper *soft, const sheet_stack *sheets) {
   return (int)fmin(soft->emission != NULL ? soft->emission->reach * (widest + 2) + 3 : widest / 2 + 3, 1024);
 }
 
-/* One convolution, from the buffer to its second planes and back. It works tile by tile, on all channels of a
- * tile at once. */
+/* One convolution, from the buffer to its second planes and back. The convolution works tile by tile, on all
+ * channels of a tile at once. */
 typedef struct convolution {
   shadow_buffer *buffer;
   const int32_t *needed_until; /* borrowed from the light_shadow */
@@ -83,7 +83,7 @@ typedef struct convolution {
                                 * depends */
   unsigned char *wanted;       /* [tiles]; 1 for tiles that the convolution can change */
   shadow_plane kind;           /* the kind of planes that is convolved now */
-  bool last;                   /* whether this kind of planes is the last one that is convolved at this
+  bool last;                   /* whether this kind of planes is the last kind that is convolved at this
                                 * sheet */
   const blur_functions *blur;
   blur_box box;
@@ -159,8 +159,8 @@ static void copy_back(void *data, size_t index, int worker) {
   }
 }
 
-/* Convolves the planes of one kind; planes of other kinds stay as they are. last: whether the sheet has no
- * further planes to convolve; the lit blocks of the tiles are then found again. */
+/* Convolves the planes of one kind, and no planes of other kinds. last: whether the sheet has no further
+ * planes to convolve; the lit blocks of the tiles are then found again. */
 static void convolve_planes(const soft_paper *soft, convolution *task, shadow_plane kind, bool last,
                             hl_pool *pool) {
   size_t rows = (size_t)task->buffer->tiles_y;
@@ -201,7 +201,7 @@ static bool any_touched(const shadow_buffer *buffer, int x, int y, int around) {
   return false;
 }
 
-/* Returns whether any pixel in a tile, or within `reach` pixels around it, is below 1. */
+/* Returns whether any pixel in a tile, or within `reach` pixels around the tile, is below 1. */
 static bool any_below_one(const shadow_buffer *buffer, int x, int y, int reach) {
   const ptrdiff_t stride = (ptrdiff_t)buffer->stride;
   for (int c = 0; c < buffer->channels; c++) {
@@ -216,10 +216,10 @@ static bool any_below_one(const shadow_buffer *buffer, int x, int y, int reach) 
   return false;
 }
 
-/* Marks the tiles of a row that can change. The marks depend only on pixels within reach, because the parts
- * of a shared picture know only such pixels. So all parts set the same marks. With different marks, the
- * parts' pictures would have different bytes, because the sum of an emission image's weights is not exactly
- * 1. */
+/* Marks the tiles of a row that a convolution can change. The marks depend only on pixels within reach,
+ * because the parts of a shared picture know only these pixels. So all parts set the same marks. With
+ * different marks, the parts' pictures would have different bytes, because the sum of an emission image's
+ * weights is not exactly 1. */
 static void find_wanted(void *data, size_t index, int worker) {
   (void)worker;
   const convolution *task = data;
@@ -280,9 +280,9 @@ static int next_width(const soft_paper *soft, double owed) {
 /* Convolves at a sheet, as section 5.2, (2) of the paper says: the widths dx are added up until the sum
  * exceeds two pixels. The buffer is then convolved by the integer part of the sum, and the rest is kept for a
  * later sheet. An emission image has one tap per pixel, and along an axis the number of taps is at most the
- * number of cells. So a greater width takes several convolutions. If shadow is null, nothing is convolved,
- * and only the reach is found. Returns the sum of the reaches of the convolutions at this sheet, in
- * pixels. */
+ * number of cells. So a greater width takes several convolutions. shadow: null if nothing is to be convolved
+ * and only the reach is wanted. Returns the sum of the reaches of the convolutions at this sheet, in pixels.
+ */
 static int pass_sheet(soft_paper *soft, const sheet_stack *sheets, int sheet, const light_shadow *shadow) {
   double width = owed_width(soft, sheets, sheet);
   int reach = 0;
@@ -317,7 +317,7 @@ static void advance_paper(light_shadow *shadow, const occupancy *occupancy, int 
 /* ---- the pixels that a part of the picture needs ---- */
 
 /* Raises a tile's value to the greatest value of four neighbouring tiles minus the edge of a tile. sign: 1
- * for the neighbours before the tile in the order of rows, -1 for the neighbours after it. */
+ * for the neighbours before the tile in the order of rows, -1 for the neighbours after the tile. */
 static void raise_tile(const shadow_buffer *buffer, int32_t *far, int x, int y, int sign) {
   static const int beside[4][2] = {{-1, 0}, {-1, -1}, {0, -1}, {1, -1}};
   int32_t *tile = &far[(ptrdiff_t)y * buffer->tiles_x + x];
@@ -354,10 +354,10 @@ static int32_t last_slab(const int32_t *reached, int slabs, int32_t far) {
 
 /* Raises needed_until in tiles whose pixels affect, by convolutions, pixels that the picture reads. Derived:
  * let reached(k) be the sum of the reaches of all convolutions before slab k. A pixel of slab k affects a
- * pixel that is d pixels away and is read in slab s, if d <= reached(s) - reached(k). So the tile of this
- * pixel is needed until the last k with reached(k) <= reached(s) - d. For a tile that is n tiles away, d is
- * at least 16 (n - 1) + 1. The greatest value of reached(s) - 16 n is found in two passes over the tiles.
- * Each pass hands values on from neighbour to neighbour. */
+ * pixel that is d pixels away and is read in slab s, if d <= reached(s) - reached(k). So the affecting
+ * pixel's tile is needed until the last k with reached(k) <= reached(s) - d. For a tile that is n tiles away,
+ * d is at least 16 (n - 1) + 1. The greatest value of reached(s) - 16 n is found in two passes over the
+ * tiles. Each pass hands values on from neighbour to neighbour. */
 static void widen_needs(light_shadow *shadow, int32_t *needed_until) {
   const shadow_buffer *buffer = shadow->buffer;
   const sheet_stack *sheets = shadow->setup.sheets;

@@ -5,7 +5,8 @@
 #include "shadow_sublights/sublights.h"
 
 /* Divides a line of pixels into `count` segments of `length` pixels. Returns the number of the segment that
- * holds a position; -1 before the first segment, `count` after the last one. */
+ * holds a position; -1 for a position before the first segment, `count` for a position after the last
+ * segment. */
 static int segment_of(float position, int length, int count) {
   return position < 0 ? -1 : position >= (float)(length * count) ? count : (int)position / length;
 }
@@ -28,8 +29,8 @@ blocks_under hl_sublight_blocks(const sublight_maps *maps, int axis, int tile, i
   return under;
 }
 
-/* The lit blocks of a sub-light in a row of blocks, from block `first` to block `last`: one bit each, with
- * block `first` in bit 0. There may be at most 64 blocks. */
+/* The lit blocks of a sub-light in a row of blocks, from block `first` to block `last`: one bit for each
+ * block, with block `first` in bit 0. The row must have at most 64 blocks. */
 static uint64_t lit_in_row(const sublights *all, const sublight *sublight, int row, int first, int last) {
   const uint16_t *tiles = sublight->lit + (size_t)(row / 4) * (size_t)all->tiles_x;
   uint64_t bits = 0;

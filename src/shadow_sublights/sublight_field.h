@@ -1,5 +1,5 @@
-/* shadow_sublights/sublight_field.h - attenuates the buffer of one sub-light by a slab, which is classified
- * as seen from the light's centre. */
+/* shadow_sublights/sublight_field.h - declares functions that attenuate the buffer of one sub-light by a
+ * slab, which was classified as seen from the light's centre. */
 #ifndef HL_SHADOW_SUBLIGHTS_SUBLIGHT_FIELD_H
 #define HL_SHADOW_SUBLIGHTS_SUBLIGHT_FIELD_H
 
@@ -29,7 +29,7 @@ typedef slab_rows half_pixel_tile_function(const half_pixel_job *job, int tile_x
 /* The place of a slab in a sub-light's view. scale, shift: map a position in the sub-light's buffer, in
  * pixels (u, v), to a position in the slab: scale * position + shift. */
 typedef struct sublight_place {
-  int shifted; /* whether the scale is 1, so that the slab is only shifted */
+  int shifted; /* whether the scale is 1, so that the slab's image is only shifted */
   float scale[2], shift[2];
   int half[2]; /* set if `shifted`: `shift` in half pixels, rounded to whole numbers */
 } sublight_place;
@@ -42,17 +42,18 @@ typedef struct sublight_job {
   /* [slab_tiles_y][slab_tiles_x]; for each tile of the slab, the rows in which some pixel is below 1 */
   const slab_rows *rows;
   int slab_tiles_x, slab_tiles_y;
-  sublight_place place; /* of the slab. Around the slab's tiles there are 32 pixels of ones */
+  sublight_place place; /* the slab's place; the slab's tiles are surrounded by 32 pixels of ones */
   sublight_pixel *transmittance[HL_CHANNELS]; /* pixel (0,0) of the sub-light's buffer; rows are `stride`
                                                * apart */
   sublight_pixel *outside[HL_CHANNELS];       /* pixel (0,0) of the light at the outside of surfaces, laid out
-                                               * as the transmittance; null if there is none */
+                                               * as the transmittance; null if the buffer does not keep this
+                                               * light */
   size_t stride;                              /* number of pixels from row to row; a row has a margin of
                                                * one tile on either side */
   int tiles_x;
   /* a number between 0 and 1 that is added to a pixel's new value, before the value is truncated to a whole
-   * number. It changes from slab to slab. So haze attenuates light by the right amount on average, even if
-   * each single slab absorbs less than 1 / SUBLIGHT_ONE of the light */
+   * number. The number changes from slab to slab, so that haze attenuates light by the right amount on
+   * average, even if each single slab absorbs less than 1 / SUBLIGHT_ONE of the light */
   float carry;
   int channels;
 } sublight_job;

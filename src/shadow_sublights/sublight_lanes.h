@@ -1,12 +1,12 @@
 /* shadow_sublights/sublight_lanes.h - multiplies one tile of one sub-light's buffer by the scaled and shifted
  * slab, a row of sixteen pixels at a time.
  *
- * Each pixel of the sub-light is multiplied by the slab's transmittance at the nearest half pixel, a pixel's
- * middle or a place half-way between two middles. Values at half pixels come from cubic convolution with a =
- * -1 (Keys, "Cubic convolution interpolation for digital image processing", 1981), with weights -1/8, 5/8,
- * 5/8, -1/8. These weights sharpen the slab by about as much as the bilinear look-up of the buffer blurs it.
- * The weights have the variance -1/4 half-way between middles, and at the middles there is no weighting. The
- * look-up has the variance 1/6 on average. */
+ * Each pixel of the sub-light is multiplied by the slab's transmittance at the nearest half pixel. Half
+ * pixels are the middles of pixels and the places half-way between two middles. Values at half pixels come
+ * from cubic convolution with a = -1 (Keys, "Cubic convolution interpolation for digital image processing",
+ * 1981), with weights -1/8, 5/8, 5/8, -1/8. These weights sharpen the slab by about as much as the bilinear
+ * look-up of the buffer blurs it. The weights have the variance -1/4 half-way between middles, and no
+ * variance at the middles. The look-up has the variance 1/6 on average. */
 #ifndef HL_SHADOW_SUBLIGHTS_SUBLIGHT_LANES_H
 #define HL_SHADOW_SUBLIGHTS_SUBLIGHT_LANES_H
 
@@ -31,8 +31,8 @@ LANES_INLINE lanes middle_along(const float *at, ptrdiff_t step) {
 LANES_INLINE slab_rows any_below_one(lanes x) { return lanes_bits(x < 1.0f) != 0; }
 
 /* Finds which rows of a tile, and of the first row below the tile, have a pixel below 1. The first pixel to
- * the right of the tile counts, too. Pixels farther away need not be tested: for values between pixels of the
- * tile they have negative weights, so they cannot bring such a value below 1. */
+ * the right of the tile counts, too. Pixels farther away need no test: they have negative weights in values
+ * between pixels of the tile, and so cannot bring such a value below 1. */
 LANES_INLINE uint32_t rows_below_one(const float *corner, ptrdiff_t stride) {
   uint32_t rows = 0;
   for (int row = 0; row <= TILE; row++) {
@@ -77,8 +77,8 @@ LANES_INLINE lanes_int nearest_halves(float scale, float start, float size) {
  * reads differs from 2 i by `first` to first + count
  * - 1. weight[k] is 1 for pixels with the difference first + k, else 0. */
 typedef struct row_taps {
-  /* count: the number of different half pixels that pixels read, counted from `first`; 0 if there are too
-   * many for the weights */
+  /* count: the number of different differences, counted from `first`; 0 if the number is too great for the
+   * weights */
   int first, count;
   lanes_int half; /* for each pixel, the half pixel that it reads, limited to the slab and its margin */
   lanes weight[SUBLIGHT_TAPS];
@@ -179,8 +179,9 @@ LANES_INLINE void darken_block(const sublight_job *job, sublight_pixel *plane, s
     plane[at + (size_t)(i / BLOCK) * job->stride + (size_t)(i % BLOCK)] = 0;
 }
 
-/* Blocks that have become dark lose the rest of their light. From then on the slab's blocks over them may be
- * skipped, so that what they would keep depends on the part of a shared picture. */
+/* Blocks that have become dark lose the rest of their light, because afterwards a part of a shared picture
+ * may skip the slab's blocks over dark blocks, and the light that the dark blocks kept would differ between
+ * the parts. */
 static uint32_t sublight_lit(const sublight_job *job, int tile_x, int tile_y, uint32_t lit) {
   size_t corner = (size_t)(tile_y * TILE) * job->stride + (size_t)tile_x * TILE;
   uint32_t left = 0;
@@ -210,7 +211,7 @@ LANES_INLINE lanes composite_sublight(const sublight_job *job, int channel, ptrd
 
 /* Composites the slab into the light at the outside of surfaces. light: the sub-light's transmittance before
  * the slab. Derived: with T, Y, t and k = k' of attenuate.h, Y becomes T t + k (Y - T t). If full light comes
- * to the slab, Y becomes t + k (1 - t). This number is stored as slab_outside, so k follows from it. */
+ * to the slab, Y becomes t + k (1 - t). This number is stored as slab_outside, from which k follows. */
 LANES_INLINE void composite_outside(const sublight_job *job, int channel, ptrdiff_t offset, lanes light,
                                     lanes slab_transmittance, lanes slab_outside) {
   sublight_pixel *at = job->outside[channel] + offset;
@@ -258,8 +259,8 @@ static int sublight_tile(const sublight_job *job, int tile_x, int tile_y) {
  *
  * Multiplies a row of tiles of one sub-light's buffer by a slab that is only shifted, not scaled: for a
  * parallel light, or a sub-light as high above the sheets as the light's centre. The function goes through
- * the slab's tiles. In each tile, the rows with pixels below 1 are known. Each such row multiplies the
- * sixteen pixels of the sub-light that lie under it. */
+ * the slab's tiles. In each tile, the rows with pixels below 1 are known. Each row with pixels below 1
+ * multiplies the sixteen pixels of the sub-light that lie under the row. */
 
 /* The number of tiles of the slab by which memory is prefetched ahead of the current tile. */
 enum { SHIFTED_TILES = 16 };

@@ -38,7 +38,7 @@ static void find_tiles(const light_shadow *shadow, sublights *all) {
 }
 
 /* Buffers have a margin of a tile on the left and on the right, because the slab's tiles reach across their
- * edges. After the last row of a buffer there are ROWS_BEYOND further rows, which look-ups may read. */
+ * edges. The last row of a buffer is followed by ROWS_BEYOND further rows, which look-ups may read. */
 enum { ROWS_BEYOND = 7 };
 static void lay_out_planes(sublights *sublights) {
   /* a row of pixels fills whole lines of the cache */
@@ -151,14 +151,13 @@ static bool slab_position(const view *sublight, const view *slab, vec3 normal, d
 
 float hl_sublight_carry(int slabs, int i, int count) {
   double turn = slabs * 0.6180339887498949 + (double)i / count;
-  /* The carry keeps a distance from 0 and 1; so a whole number plus the carry is always truncated to the same
-   * whole number. */
+  /* The carry keeps a distance from 0 and 1, so that a whole number plus the carry is always truncated to
+   * this whole number. */
   return (float)(1.0 / 128 + (turn - floor(turn)) * 63 / 64);
 }
 
-/* The greatest shift of the slab, in pixels, for which the functions are used that shift the slab without
- * scaling it. Grazing light may shift the slab farther. Then the general functions are used, which clamp
- * positions. */
+/* The greatest shift of the slab, in pixels, for which sublight_row(), which only shifts the slab, is used.
+ * Grazing light may shift the slab farther; the general function, which clamps positions, is then used. */
 static const double FARTHEST_SHIFT = 1 << 20;
 
 bool hl_sublight_place(const view *sublight, const view *slab, vec3 normal, double height,
@@ -212,8 +211,8 @@ typedef struct sublight_task {
   const sublight_functions *functions;
   int x0, x1, y0, y1;          /* the first and the last column, and the first and the last row, of the slab's
                                 * tiles in which some pixel is below 1 */
-  bool ends_run;               /* whether the slab is the last one of its run; if so, the lit blocks are found
-                                * after it */
+  bool ends_run;               /* whether the slab is the last slab of its run, after which the lit blocks are
+                                * found */
   const int32_t *needed_until; /* borrowed: sublights_until of the light_shadow */
   int slab_after;              /* the number of the next slab, counted as in needed_until */
 } sublight_task;
@@ -241,7 +240,7 @@ static bool any_present(const sublight_job *job, int x0, int x1, int y0, int y1)
   return false;
 }
 
-/* Finds the rectangle around the slab's tiles in which some pixel is below 1. If there are no such tiles, x1
+/* Finds the rectangle around the slab's tiles in which some pixel is below 1. If no tile has such a pixel, x1
  * becomes less than 0. */
 static void bound_present(sublight_task *task) {
   const shadow_buffer *slab = task->slab;
@@ -316,8 +315,8 @@ static void composite_row(const sublight_task *task, sublight *sublight, int y) 
   }
 }
 
-/* Marks the tiles as dark that this part of a shared picture does not need any more. Dark tiles are skipped.
- * Blocks of the slab are then skipped, too, if only dark tiles of sub-lights would read them. */
+/* Marks tiles as dark if this part of a shared picture does not need them any more. Dark tiles are skipped,
+ * and so are blocks of the slab that only dark tiles of sub-lights would read. */
 static void forget_tiles(const sublight_task *task, sublight *sublight, int y) {
   const sublights *all = task->sublights;
   const size_t tiles_x = (size_t)all->tiles_x, row = (size_t)y * tiles_x;
@@ -344,8 +343,8 @@ static void advance_row(void *data, size_t index, int worker) {
   const sublight_task *task = data;
   const sublights *all = task->sublights;
   sublight *sublight =
-      &all->sublight[index % (size_t)all->count]; /* consecutive tasks are all sub-lights for one row of
-                                                   * tiles, then all sub-lights for the next row. So the
+      &all->sublight[index % (size_t)all->count]; /* consecutive tasks handle all sub-lights for one row of
+                                                   * tiles, then all sub-lights for the next row, so that the
                                                    * slab's pixels for a row stay in the cache */
   int y = (int)(index / (size_t)all->count);
   if (task->ends_run && task->needed_until != NULL) forget_tiles(task, sublight, y);
@@ -356,8 +355,8 @@ static void advance_row(void *data, size_t index, int worker) {
 
 /* ---- the slab ---- */
 
-/* Fills rows of a tile with ones. rows: has one bit for each of the tile's sixteen rows; rows whose bit is 1
- * are filled. */
+/* Fills rows of a tile with ones. of_copies: its lowest sixteen bits stand for the tile's rows; rows whose
+ * bit is 1 are filled. */
 static void fill_ones(float *pixels, size_t stride, slab_rows of_copies) {
   for (uint32_t rows = of_copies & ((1u << TILE) - 1); rows != 0; rows &= rows - 1)
     for (size_t i = 0, row = (size_t)__builtin_ctz(rows); i < TILE; i++) pixels[row * stride + i] = 1;
@@ -384,7 +383,7 @@ static void move_row(void *data, size_t index, int worker) {
   }
 }
 
-/* Fills a row of the slab's tiles with ones again, so that the next slab can be written into them. */
+/* Fills a row of the slab's tiles with ones again, so that the next slab can be written into these tiles. */
 static void clear_row(void *data, size_t index, int worker) {
   (void)worker;
   const sublight_task *task = data;
@@ -461,7 +460,8 @@ static size_t first_pixel_of_tile(const shadow_buffer *slab, size_t tile) {
 }
 
 /* Prepares a tile so that the next slab also attenuates the planes SHADOW_SECOND. The slab's transmittance
- * begins at 1 in each slab; these planes keep what is left of the light of the light's centre. */
+ * begins at 1 in each slab; the planes SHADOW_SECOND keep the fraction of light that is left on the way from
+ * the light's centre. */
 static void before_tile(const light_shadow *shadow, size_t tile, attenuate_job *job) {
   const shadow_buffer *slab = shadow->buffer;
   if (!slab->has_second) return;
@@ -506,8 +506,8 @@ static hl_status check_sublights(const light_shadow *shadow, hl_error *error) {
                  all->count, bytes / 1e9);
 }
 
-/* Blocks in which some light of the light's centre is left count as lit, too, so that this light is known in
- * every part of a shared picture, whatever sub-lights the part needs. */
+/* Blocks in which some light from the light's centre is left count as lit, too, so that every part of a
+ * shared picture knows this light, whatever sub-lights the part needs. */
 static void find_lit(light_shadow *shadow, size_t tile) {
   shadow_buffer *slab = shadow->buffer;
   hl_sublights_find_lit(shadow->state, slab, tile);

@@ -1,11 +1,11 @@
-/* shadow_sublights/sublights.h - makes soft shadows as the mean of many sharp ones (beyond the paper).
+/* shadow_sublights/sublights.h - makes soft shadows as the mean of many sharp shadows (beyond the paper).
  *
  * M x M sub-lights stand for the light. Each sub-light is a point, or a direction, and has a shadow buffer of
  * its own, parallel to the sheets. A slab is classified once, in the view of the light's centre. Seen from a
- * sub-light, the slab's image is the same image, only scaled and shifted. So the slab is not classified again
- * for a sub-light. The sub-light's buffer is multiplied by the slab's transmittance at the nearest half
- * pixel. A buffer's pixels have 16 bits. Each buffer is looked up at a sample through a map of its own. A
- * sample takes the mean over all buffers. */
+ * sub-light, the slab has the image that the light's centre sees, only scaled and shifted. So the slab is not
+ * classified again for each sub-light: the sub-light's buffer is multiplied by the slab's transmittance at
+ * the nearest half pixel. A buffer's pixels have 16 bits. Each buffer is looked up at a sample through a map
+ * of its own. A sample takes the mean over all buffers. */
 #ifndef HL_SHADOW_SUBLIGHTS_SUBLIGHTS_H
 #define HL_SHADOW_SUBLIGHTS_SUBLIGHTS_H
 
@@ -15,7 +15,8 @@
 enum { SUBLIGHT_REACH = 31 /* number of pixels beyond a tile of the slab's buffer that may be read */ };
 
 /* Maps positions on the slab, in pixels along u and v, to positions in a sub-light's buffer: scale *
- * (position - shift). The numbers are floats, so that any device finds the same blocks. */
+ * (position - shift). The numbers are floats, so that every device finds the blocks that the processors find.
+ */
 typedef struct sublight_map {
   float scale[2], shift[2];
 } sublight_map;
@@ -33,8 +34,8 @@ typedef struct sublight_maps {
 typedef struct sublight {
   view view;
   sublight_pixel *pixels; /* pixel (0,0) of the first channel of the transmittance; a part of `memory`. The
-                           * other channels follow, each a plane apart; the channels of the light at the
-                           * outside of surfaces come after them */
+                           * other channels follow, each a plane apart, and then the channels of the light at
+                           * the outside of surfaces */
   /* [tiles]; the blocks that had light at the end of the last run of slabs, one bit each; a part of
    * `flags` */
   uint16_t *lit;
@@ -44,12 +45,13 @@ typedef struct sublight {
   bool reaches;           /* whether the slab lies beyond the sub-light, so that the sub-light's rays reach
                            * the slab */
   sublight_place place;   /* the place of the current slab in the sub-light's view */
-  sublight_maps maps;     /* of the next run of slabs */
+  sublight_maps maps;     /* the maps for the next run of slabs */
 } sublight;
 
 typedef struct sublights {
   int count, channels, tiles_x, tiles_y;
-  int kinds; /* number of kinds of planes: 1, or 2 if there is light at the outside of surfaces */
+  int kinds; /* number of kinds of planes: 1, or 2 if buffers also keep the light at the outside of
+              * surfaces */
   size_t stride, plane;
   int slabs; /* number of slabs that have been composited so far */
   /* the arrays below lie in one block of memory, which lay_out_sublights() lays out */
@@ -62,7 +64,7 @@ typedef struct sublights {
   size_t moved_floats;
   slab_rows *rows; /* [tiles of the slab]; the rows in which some pixel is below 1 */
   uint32_t *found; /* [tiles of the slab]; for each tile, the run of slabs for which the tile's lit blocks
-                    * were found last; if 0, they were never found */
+                    * were found last; 0 if they were never found */
 } sublights;
 
 /* ---- for a device ---- */
@@ -75,15 +77,17 @@ static inline int hl_sublight_run(int slab) { return (slab + LIT_SLABS - 1) / LI
 /* Makes the view of sub-light i of a planned shadow. */
 void hl_sublight_view(const light_shadow *shadow, int i, view *view);
 
-/* Finds the place of a slab in a sub-light's view. Both views are parallel to the sheets and have the same
- * axes, so the slab's pixels are only scaled and shifted. slab: the view of the light's centre. height: of
- * the slab's middle. Returns false if the slab lies behind the sub-light or behind the light's centre. */
+/* Finds the place of a slab in a sub-light's view. The views of the slab and of the sub-light are parallel to
+ * the sheets and have the same axes, so the slab's pixels are only scaled and shifted. slab: the view of the
+ * light's centre. height: the height of the slab's middle. Returns false if the slab lies behind the
+ * sub-light or behind the light's centre. */
 bool hl_sublight_place(const view *sublight, const view *slab, vec3 normal, double height,
                        sublight_place *place);
 
 /* Finds the number that is added before values are truncated in a slab (`carry` of sublight_field.h): the
- * fractional part of a multiple of the golden ratio. So the numbers of any successive slabs are spread evenly
- * between 0 and 1. slabs: the number of slabs before the slab. i: the sub-light's number among `count`. */
+ * fractional part of a multiple of the golden ratio. The numbers of successive slabs are therefore spread
+ * evenly between 0 and 1. slabs: the number of slabs before the slab. i: the sub-light's number among
+ * `count`. */
 float hl_sublight_carry(int slabs, int i, int count);
 
 /* Finds a sub-light's maps for the run of slabs that begins at a height. */
@@ -99,7 +103,7 @@ typedef struct blocks_under {
 blocks_under hl_sublight_blocks(const sublight_maps *maps, int axis, int tile, int tiles);
 
 /* Sets slab->tile_lit of a tile: the blocks of the next slab that light of some sub-light still reaches. Only
- * one task works on a tile. */
+ * one task may work on a tile at a time. */
 void hl_sublights_find_lit(const sublights *sublights, shadow_buffer *slab, size_t tile);
 
 #endif
