@@ -1,4 +1,4 @@
-/* hot/grid.c - compiles the hot functions of grids: they find bounds of cells, and the cells that show
+/* hot/grid.c - compiles the hot functions of grids, which find bounds of cells and the cells that show
  * something. */
 #include "hot/tables.h"
 

@@ -1,8 +1,7 @@
-/* hot/tables.h - declares the tables of hot functions. There is one table for each room and each instruction
- * set.
+/* hot/tables.h - declares the tables of hot functions. Each room has one table for each instruction set.
  *
  * A file ROOM.c of this folder is compiled once for each instruction set, with the set's name as HL_HOT_SET.
- * It defines the table HL_HOT(ROOM). tables.c joins the tables of each instruction set. */
+ * The file defines the table HL_HOT(ROOM). tables.c joins the tables of each instruction set. */
 #ifndef HL_HOT_TABLES_H
 #define HL_HOT_TABLES_H
 

@@ -1,5 +1,5 @@
-/* hot/view.c - compiles the hot functions of views. They find the tiles and sheets that bricks touch, and the
- * points at which rays enter and leave boxes. */
+/* hot/view.c - compiles the hot functions of views. The hot functions of views find the tiles and sheets that
+ * bricks touch, and the points at which rays enter and leave boxes. */
 #include "hot/tables.h"
 
 #include "view/brick_ranges_lanes.h"

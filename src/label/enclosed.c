@@ -26,7 +26,7 @@ static void find_weights(float weights[PARTS][TAPS]) {
       weights[part][tap] = (float)spline((part + 0.5) / PARTS - 0.5 - (tap - TAPS / 2));
 }
 
-/* Copies the coefficients on which a voxel's parts depend. Beyond the field's ends the coefficients at its
+/* Copies the coefficients on which a voxel's parts depend. Beyond the field's ends, the coefficients at the
  * border repeat. */
 static void find_window(const label_field *field, size_t x, size_t y, size_t z,
                         float window[TAPS][TAPS][TAPS]) {
@@ -82,8 +82,8 @@ static void measure_slice(void *data, size_t z, int worker) {
 
 void hl_label_enclose(hl_pool *pool, label_enclosed *enclosed) {
   enum { STEPS_OF_NEWTON = 2 };
-  /* the greatest distance of the level from 1/2; with a level farther away, sheets would miss things that are
-   * a voxel thin */
+  /* the greatest distance of the level from 1/2; with a level farther from 1/2, sheets would miss things that
+   * are a voxel thin */
   static const double FARTHEST = 0.01;
   measuring job = {.enclosed = enclosed};
   find_weights(job.weights);

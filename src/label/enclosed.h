@@ -14,7 +14,8 @@ typedef struct label_enclosed {
   double slope; /* result: the mean length of the gradient at the surface, per voxel edge */
 } label_enclosed;
 
-/* Finds the level at which a field encloses the wanted volume, and the mean slope of the field there. */
+/* Finds the level at which a field encloses the wanted volume, and the mean slope of the field at this level.
+ */
 void hl_label_enclose(hl_pool *pool, label_enclosed *enclosed);
 
 #endif

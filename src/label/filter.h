@@ -23,7 +23,7 @@ typedef struct label_filter {
 /* The number of floats that the filters need as working space for each thread. */
 size_t hl_label_line_floats(const size_t size[3]);
 
-/* Filters a field along x, y and z. Beyond the field's ends the values at its border repeat. */
+/* Filters a field along x, y and z. Beyond the field's ends, the values at the border repeat. */
 void hl_label_filter(hl_pool *pool, const label_field *field, const label_filter *filter);
 
 #endif

@@ -7,17 +7,17 @@ enum { CELL = 2 }; /* length of a cell's edge in voxels */
 
 enum { LEVEL_OF_FACES = HL_LEVEL_FALL + 1 }; /* the number of planes with sums over faces */
 
-/* The filter that blurs cells, [1 2 1] / 4, so that there are no steps from cell to cell. */
+/* The filter [1 2 1] / 4 that blurs the sums of cells, so that the sums have no steps from cell to cell. */
 static const label_filter BLUR = {2, {0.5f, 0.25f, 0}};
 
 /* The weight of an imaginary face that is added, at every voxel, to the sums over the faces of the label's
- * border. On this imaginary face the field has the values that it should have, so that the face asks for no
+ * border. On the imaginary face, the field has the values that it should have, so that the face asks for no
  * correction. The imaginary face decides the result for a voxel that lies far from any border. An imaginary
  * voxel of the same weight, which is not thin, is added to the sums over voxels. */
 static const float FAINT = 1e-3f;
 
-/* The least fall of the field across the border's faces. A smaller fall counts as this one, so that the field
- * is not made too steep. */
+/* The least fall of the field across the border's faces. A smaller fall counts as the least fall, so that the
+ * field is not made too steep. */
 static const float LEAST_FALL = 0.04f;
 
 /* Limits of a field's values, which must fit the bytes that store them (occupancy.c). */
@@ -43,7 +43,7 @@ static float *plane_of(const label_levels *levels, int plane) {
 /* ---- the border ---- */
 
 /* A row of voxels, and the rows around it. At the field's ends the row itself takes the place of a missing
- * row. The members are indices of the rows' first voxels. */
+ * row. Each member holds indices of the first voxels of rows. */
 typedef struct border_row {
   size_t at, beside[4]; /* the row; the rows before and after it along y, before and after it along z */
   size_t across[2][2];  /* [before, after along z][before, after along y] */
@@ -88,10 +88,11 @@ static void add_faces(const level_job *job, const border_row *row, size_t x, flo
 
 /* ---- thin parts ---- */
 
-/* Marks the voxels of a row that lie in a block of 2x2x2 voxels of which at least seven are the label's.
- * Where no such block is, the label is one voxel thin. Derived: let (a, b, c) be a plane's normal, a >= b >=
- * c >= 0. Seven corners of a cube of edge 1 lie between two such planes only if these are at least a + b
- * apart, which is 1 or more. So a plate that is one voxel thin has no such block, whatever its orientation.
+/* Marks the voxels of a row that lie in a block of 2x2x2 voxels of which at least seven are the label's. A
+ * part of the label without such a block is one voxel thin. Derived: let (a, b, c) be a plane's normal, a >=
+ * b >= c >= 0. Seven corners of a cube of edge 1 lie between two planes with this normal only if the planes
+ * are at least a + b apart, which is 1 or more. So a plate that is one voxel thin has no such block, whatever
+ * its orientation.
  */
 static void mark_thick(const level_job *job, const border_row *row, unsigned char *squares,
                        unsigned char *marks) {

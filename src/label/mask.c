@@ -15,8 +15,8 @@
  * to 1 while the sum of their occupancies rises from SHARE_FROM to SHARE_TO. The other matter belongs to the
  * rest. The common share is divided among the labels in proportion to the squares of their occupancies.
  * Derived: between two labels with the occupancies a and 1 - a, the first label's fraction a^2 / (a^2 + (1 -
- * a)^2) rises from 0 to 1 with the slope 2 in the middle, as the common share does. If three labels meet,
- * their fractions still add up to 1. */
+ * a)^2) rises from 0 to 1 with the slope 2 in the middle, like the common share. If three labels meet, their
+ * fractions still add up to 1. */
 static const float SHARE_FROM = 0.25f, SHARE_TO = 0.75f;
 /* In the weights of colours, the occupancy of all labels times this factor is added to the labels' common
  * share. So the labels' colours continue to places where the share is 0. */
@@ -25,7 +25,7 @@ static const float FAINT = 1e-3f;
  * rounding to bytes. */
 static const float LEAST = 1.0f / 16;
 
-/* Slopes fade while a mask's numbers go this far beyond the factor 1. */
+/* Slopes fade to 0 where a mask's numbers go from the factor 1 to this distance beyond it. */
 static const double FADING = 0.5;
 
 typedef struct mask_job {
@@ -109,7 +109,8 @@ static void fill_slice(void *data, size_t k, int worker) {
 
 /* The slope along an axis, at the voxel `at`: the central difference. Beyond the lattice's ends the numbers
  * at the border repeat. Where numbers go beyond the factor 1, as behind the wall of a mesh, the factor
- * stays 1. The slope is 0 there, and fades before so that its direction does not depend on the lattice. */
+ * stays 1. The slope is 0 where the numbers are far beyond 1, and fades before, so that the slope's direction
+ * does not depend on the lattice. */
 static signed char slope_at(const mask_job *job, size_t at, size_t place, size_t count, size_t step) {
   const uint16_t *factors = job->factors;
   int before = factors[place > 0 ? at - step : at], after = factors[place + 1 < count ? at + step : at];

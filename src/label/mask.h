@@ -15,11 +15,11 @@
 /* The greatest number of voxels of a mask, because the bytes of its colours are numbered by 32 bits. */
 #define HL_MASK_VOXELS ((size_t)1 << 29)
 
-/* The bricks of a lattice tell where the lattice is uniform, so that frames need not read its points there.
- * Each brick has two words, [bk][bj][bi][2]. Along each axis, brick b covers the points from HL_MASK_BRICK b
- * to HL_MASK_BRICK (b + 1), both included. These are all the points that are interpolated at positions in the
- * brick. The lower 16 bits of the first word are a factor, and its other bits are the flags below. The second
- * word is a colour. */
+/* The bricks of a lattice tell where the lattice is uniform, so that frames need not read the points of
+ * uniform bricks. Each brick has two words, [bk][bj][bi][2]. Along each axis, brick b covers the points from
+ * HL_MASK_BRICK b to HL_MASK_BRICK (b + 1), both included. The covered points are all points between which
+ * positions in the brick are interpolated. The lower 16 bits of the first word are a factor, and its other
+ * bits are the flags below. The second word is a colour. */
 enum {
   HL_MASK_BRICK_SHIFT = 2,
   HL_MASK_BRICK = 1 << HL_MASK_BRICK_SHIFT,

@@ -8,15 +8,15 @@
 #include "label/enclosed.h"
 #include "label/levels.h"
 
-/* The filter that smooths along an axis. Derived: it is G - sigma^2 / 2 * (second difference of G), where G
- * is a Gaussian of standard deviation sigma = 2 voxels, cut at 6. Its variance is therefore 0. So flat and
- * gently curved surfaces stay in their places, up to terms of the fourth power of the scale, and the steps
- * between voxels are smoothed away. */
+/* The filter that smooths along an axis. Derived: the filter is G - sigma^2 / 2 * (second difference of G),
+ * where G is a Gaussian of standard deviation sigma = 2 voxels, cut at 6. The filter's variance is therefore
+ * 0. So smoothing removes the steps between voxels, but leaves flat and gently curved surfaces in their
+ * places, up to terms of the fourth power of the scale. */
 static const label_filter SMOOTHING = {7,
                                        {0.292382144f, 0.238724523f, 0.123441568f, 0.028311217f, -0.011604395f,
                                         -0.014332039f, -0.006349609f, -0.004382337f}};
-/* A filter like SMOOTHING, with a standard deviation of 1 voxel, cut at 3. It smooths the roughness that
- * mending leaves. */
+/* A filter like SMOOTHING, with a standard deviation of 1 voxel, cut at 3. This filter smooths the roughness
+ * that mending leaves. */
 static const label_filter FINISHING = {
     4, {0.555422454f, 0.257481129f, -0.014940464f, -0.018044430f, -0.002207463f}};
 /* The filter that turns values at the voxels' centres into the B-spline's coefficients. Derived: the spline
@@ -25,9 +25,9 @@ static const label_filter FINISHING = {
 static const label_filter TO_COEFFICIENTS = {2, {1.5f, -10.0f / 36, 1.0f / 36}};
 
 /* Smoothing and mending alternate, ROUNDS times each. Mending corrects voxels whose centres are on the wrong
- * side of the surface and whose values differ from 1/2 by more than TOLERATED: it changes the value by PUSH
- * times the excess over TOLERATED. So thin things do not vanish. Surfaces that smoothing has moved by less
- * than a voxel are not corrected, and stay smooth. */
+ * side of the surface and whose values differ from 1/2 by more than TOLERATED: mending changes the value by
+ * PUSH times the excess over TOLERATED, so that thin things do not vanish. Surfaces that smoothing has moved
+ * by less than a voxel are not corrected, and stay smooth. */
 enum { ROUNDS = 2 };
 static const float TOLERATED = 0.12f, PUSH = 2.5f;
 

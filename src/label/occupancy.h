@@ -1,9 +1,9 @@
-/* label/occupancy.h - makes a smooth field, the occupancy, of labels of a label map. Its surface is the
- * labels' own surface.
+/* label/occupancy.h - makes a smooth field, the occupancy, of labels of a label map. The surface of the field
+ * is the labels' surface.
  *
  * The voxels of a label map are numbers that name regions. The occupancy of a label, or of several labels
- * together, is a field that is 1 within them and 0 outside. It is reconstructed by the B-spline, and passes
- * 1/2 at a smooth surface without the stairs of the voxels. */
+ * together, is a field that is 1 within them and 0 outside. The occupancy is reconstructed by the B-spline,
+ * and passes 1/2 at a smooth surface without the stairs of the voxels. */
 #ifndef HL_LABEL_OCCUPANCY_H
 #define HL_LABEL_OCCUPANCY_H
 
@@ -44,7 +44,7 @@ void hl_label_worked(hl_label_work *work, size_t voxels, int steps);
 
 /* Makes the occupancy of all labels of a list together, over their common part. labels: [count], rising.
  * *made is null if no voxel has one of the labels. The call takes seven and a half bytes of memory for each
- * voxel of the part, of which *made keeps one. work: the part's voxels are reported to it. */
+ * voxel of the part, of which *made keeps one. work: the function reports the part's voxels to it. */
 hl_status hl_label_occupancy(hl_context *context, hl_pool *pool, const hl_volume *map, const int64_t *labels,
                              size_t count, const hl_label_part *part, hl_label_work *work, hl_volume **made,
                              hl_error *error);

@@ -17,7 +17,7 @@ static float coefficient(const hl_volume *o, size_t i, size_t j, size_t k) {
   return ((const unsigned char *)hl_volume_row(o, j, k))[i];
 }
 
-/* Finds the neighbours of a coordinate. Beyond the ends the coordinate at the border repeats. */
+/* Finds the neighbours of a coordinate. Beyond the grid's ends, the coordinate at the border repeats. */
 static void neighbours(size_t at, size_t count, size_t found[3]) {
   found[0] = at > 0 ? at - 1 : 0;
   found[1] = at;

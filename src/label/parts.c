@@ -3,7 +3,7 @@
 #include "core/memory.h"
 #include "label/occupancy.h"
 
-/* Width of the margin around the labels, in voxels. Beyond it their occupancy is 0. */
+/* Width of the margin around the labels, in voxels, beyond which the labels' occupancy is 0. */
 enum { MARGIN = 8 };
 
 /* The least and the greatest coordinates of a label's voxels, both included. */
@@ -56,8 +56,8 @@ static void bound_slice(void *data, size_t z, int worker) {
   }
 }
 
-/* The part of a map's grid between the given bounds, with a margin. Its size is 0 if the bounds hold no
- * voxels. */
+/* The part of a map's grid between the given bounds, with a margin. The part's size is 0 if the bounds hold
+ * no voxels. */
 static hl_label_part part_of(const hl_volume *map, const label_bounds *bounds) {
   hl_label_part part = {{0}, {0}};
   for (int axis = 0; axis < 3 && bounds->high[axis] >= 0; axis++) {

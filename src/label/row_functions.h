@@ -1,6 +1,6 @@
-/* label/row_functions.h - functions on rows and voxels of a field, which take most of the time when labels
- * are smoothed. They are compiled once for each instruction set (row_sets.c), and give the same bytes with
- * each. */
+/* label/row_functions.h - declares functions on rows and voxels of a field, which take most of the time when
+ * labels are smoothed. The functions are compiled once for each instruction set (row_sets.c), and give the
+ * same bytes with every set. */
 #ifndef HL_LABEL_ROW_FUNCTIONS_H
 #define HL_LABEL_ROW_FUNCTIONS_H
 
@@ -43,9 +43,8 @@ typedef struct label_row_functions {
    * and after it. reach: 2, 4 or HL_FILTER_REACH. out, [count], overlaps no row. */
   void (*weigh)(const float *taps, int reach, const float *const rows[HL_FILTER_ROWS], size_t count,
                 float *out);
-  /* Sets the elements of `crossed` to 1 for voxels that the surface at `level` may cross, and to 0 for the
-   * others. Returns the number of these other voxels that are above the level. crossed: [count]; overlaps
-   * nothing. */
+  /* Sets the elements of `crossed` to 1 for voxels that the surface at `level` may cross, and to 0 for other
+   * voxels. Returns how many of the other voxels are above the level. crossed: [count]; overlaps nothing. */
   int32_t (*find_crossed)(const row_neighbours *rows, size_t count, float level, float *crossed);
   /* Measures a voxel that the surface at `level` may cross, and adds the results to measures,
    * [HL_ENCLOSED_MEASURES]. weights: the weights of the coefficients at the middles of the voxel's parts.

@@ -28,7 +28,8 @@ static void weigh(const float *taps, int reach, const float *const rows[HL_FILTE
 /* Finds which voxels of a row the surface may cross. Derived: a voxel's corner lies 0.87 voxels from its
  * middle. `over` is the field's value above the level. If |over| is more than the length of the gradient g
  * times this distance, the surface does not cross the voxel. At an extremum of the field, the gradient in the
- * voxel's middle says little, and so its length counts as at least a fifth. `square` is the square of 2 g. */
+ * voxel's middle may be far smaller than beside it, so the gradient's length counts as at least a fifth.
+ * `square` is the square of 2 g. */
 static int32_t find_crossed(const row_neighbours *rows, size_t count, float level, float *restrict crossed) {
   const float least = 4 * 0.2f * 0.2f, reach = 0.25f;
   int32_t whole = 0;
@@ -66,9 +67,9 @@ static void find_parts(const float weights[PARTS][TAPS], const float window[TAPS
         for (int i = 0; i < PARTS; i++) parts[k][j][i] += weights[k][tap] * planes[tap][j][i];
 }
 
-/* Finds the differences between neighbouring parts along a line of PARTS rows of `width` values. They are
- * central differences, but one-sided differences at the line's ends. The function is inlined, so that the
- * compiler knows the width. */
+/* Finds the differences between neighbouring parts along a line of PARTS rows of `width` values. The
+ * differences are central, but one-sided at the line's ends. The function is inlined, so that the compiler
+ * knows the width. */
 static inline __attribute__((always_inline)) void find_differences(const float *rows, int width,
                                                                    float *restrict differences) {
   for (int n = 0; n < width; n++) {
@@ -80,7 +81,7 @@ static inline __attribute__((always_inline)) void find_differences(const float *
       differences[at * width + n] = 0.5f * (rows[(at + 1) * width + n] - rows[(at - 1) * width + n]);
 }
 
-/* The least length of a gradient, per part of a voxel. A shorter gradient counts as one of this length. */
+/* The least length of a gradient, per part of a voxel. A shorter gradient counts as having this length. */
 static const float LEAST_GRADIENT = 0.05f / PARTS;
 
 /* Finds the lengths of the gradients at the parts, and the fraction of each part above the level. Derived: if

@@ -16,12 +16,12 @@ typedef struct joint_place {
   hl_label *labels; /* owned; [label_count]; the labels of which the volume was made, without their names */
   size_t label_count;
   double rest;     /* for a mask: the factor of matter outside the labels */
-  hl_volume *made; /* the volume that was made; null if there is none yet */
+  hl_volume *made; /* the volume that was made; null if no volume was made yet */
 } joint_place;
 
 typedef struct shelf {
   place places[PLACES];
-  int next; /* the place that is filled next; the volume that it holds is released then */
+  int next; /* the place that is filled next, after the volume in it was released */
   joint_place lattice, solids;
 } shelf;
 

@@ -1,5 +1,5 @@
-/* label/shelf.h - describes the shelf of a label map: its occupancies and its last mask, which are kept from
- * scene to scene. */
+/* label/shelf.h - describes the shelf of a label map: the map's occupancies, its last mask and its last solid
+ * volume, which are kept from scene to scene. */
 #ifndef HL_LABEL_SHELF_H
 #define HL_LABEL_SHELF_H
 
@@ -8,10 +8,10 @@
 #include "label/occupancy.h"
 
 /* Gets the occupancies of labels. Occupancies that were made of the map before are taken from the shelf.
- * hl_label_occupancy() makes the others; the boxes that hold the labels are found in one pass over the map.
- * labels: [count]; data values, rising. made: [count]; retained for the caller; an element is null if no
- * voxel has the label; all are null after a failure. threads: 0 for one per processor. work: the voxels of
- * all these labels' boxes are reported to it; if null, progress is reported for these labels alone. Any
+ * hl_label_occupancy() makes the other occupancies; the boxes that hold the labels are found in one pass over
+ * the map. labels: [count]; data values, rising. made: [count]; retained for the caller; an element is null
+ * if no voxel has the label; all are null after a failure. threads: 0 for one per processor. work: receives
+ * the voxels of all these labels' boxes; null if progress is to be reported for these labels alone. Any
  * thread may call this function. */
 hl_status hl_label_occupancies(hl_context *context, int threads, hl_volume *map, const int64_t *labels,
                                size_t count, hl_label_work *work, hl_volume **made, hl_error *error);

@@ -2,12 +2,11 @@
  * directions.
  *
  * Scattering in media depends on the angle to the light, so media need to know how wide the light looks. A
- * parallel light looks the same from everywhere: it is one cap of directions. Other lights are cut into
+ * parallel light looks the same from everywhere, and is one cap of directions. Other lights are cut into
  * parts. Each part is replaced by a round cap of directions. The mean cosine of the angle to the part's
  * middle is the same for the cap as for the part. Derived: with h = sqrt(1 + q^2), a disk of radius q at
  * distance 1, at a right angle to the view, has the mean cosine 2 (h - 1) / q^2. A cap within an angle of
- * cosine c has the mean cosine (1 + c) /
- * 2. So c = (3 - h) / (1 + h). */
+ * cosine c has the mean cosine (1 + c) / 2. So c = (3 - h) / (1 + h). */
 #ifndef HL_LIGHT_LIGHT_CAPS_H
 #define HL_LIGHT_LIGHT_CAPS_H
 
@@ -24,7 +23,7 @@ typedef struct light_cap {
 } light_cap;
 
 typedef struct light_caps {
-  int count; /* number of parts; if 0, the light is parallel or a point, and is not divided into parts */
+  int count; /* number of parts; 0 if the light is parallel or a point, and so is not divided into parts */
   light_cap cap[MOST_CAPS];
 } light_caps;
 

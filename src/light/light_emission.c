@@ -167,7 +167,8 @@ void hl_light_emission_steps(const light_emission *emission, double width, int s
                            EMISSION_GREATEST_STEP);
 }
 
-/* Distributes the weight of each cell among the four taps around it, by the cell's distances from them. */
+/* Distributes the weight of each cell among the four taps around the cell, by the cell's distances from these
+ * taps. */
 void hl_light_emission_taps(const light_emission *emission, double width, const int step[2],
                             const double slope[2], emission_taps *taps) {
   enum { GRID = EMISSION_SIDE + 3 };

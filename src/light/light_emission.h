@@ -2,9 +2,9 @@
  *
  * The light is cut into cells of equal area. Each cell has the image's mean colour in it. A penumbra is a sum
  * of sharp shadows, one for each cell. The shadow of a cell is shifted in proportion to the cell's offset
- * from the light's middle, and weighted by the cell's red, green and blue. These shifts and weights are the
- * penumbra's taps. Derived: the light at x is T(x) = mean over the light's points y of colour(y) t(x, y),
- * where t(x, y) is the transmittance from y to x. */
+ * from the light's middle, and weighted by the cell's red, green and blue. The shifts and weights of all
+ * cells are the penumbra's taps. Derived: the light at x is T(x) = mean over the light's points y of
+ * colour(y) t(x, y), where t(x, y) is the transmittance from y to x. */
 #ifndef HL_LIGHT_LIGHT_EMISSION_H
 #define HL_LIGHT_LIGHT_EMISSION_H
 
@@ -15,8 +15,8 @@ enum {
   EMISSION_SIDE = 12,
   EMISSION_CELLS = EMISSION_SIDE * EMISSION_SIDE,
   EMISSION_TAPS = (EMISSION_SIDE + 3) * (EMISSION_SIDE + 3),
-  /* the greatest distance between neighbouring taps, in pixels. It is the greatest width of the box blur in
-   * cascade_emission.c */
+  /* the greatest distance between neighbouring taps, in pixels. This distance is the greatest width of the
+     box blur in cascade_emission.c */
   EMISSION_GREATEST_STEP = 88
 };
 
@@ -41,8 +41,9 @@ typedef struct light_emission {
 } light_emission;
 
 /* Finds the mean colours of side x side cells of an emission image (cells of the unit square of
- * hl_light_point). They are divided by `mean`, the mean colour of the whole image. In a channel that is dark
- * everywhere, the results are 1. weights: [side * side]; cell (i, j) has the index i * side + j. */
+ * hl_light_point). The cells' colours are divided by `mean`, the mean colour of the whole image. In a channel
+ * that is dark everywhere, the results are 1. weights: [side * side]; cell (i, j) has the index i * side + j.
+ */
 void hl_light_emission_weights(const light_source *source, int side, float (*weights)[HL_CHANNELS],
                                double mean[HL_CHANNELS]);
 
@@ -51,7 +52,7 @@ void hl_light_emission_weights(const light_source *source, int side, float (*wei
 hl_status hl_light_emission_create(hl_context *context, const light_source *source, light_emission **emission,
                                    hl_error *error);
 /* Sets the positions of the cells on the plane of hl_light_on_sheets(), in units of the greater of the
- * light's two widths there. */
+ * light's two widths on this plane. */
 void hl_light_emission_see(const light_source *source, const sheet_light *seen, vec3 normal,
                            light_emission *emission);
 /* Sets the cells' positions in the orthogonal projection of the light, along the buffer's axes, in units of
@@ -75,7 +76,7 @@ typedef struct emission_taps {
  * pixels. */
 void hl_light_emission_steps(const light_emission *emission, double width, int step[2]);
 /* Finds the taps of a penumbra. slope: the slope, along u and v, at which rays come to the receivers. The
- * taps depend on it if the light is tilted against the sheets. */
+ * taps depend on the slope if the light is tilted against the sheets. */
 void hl_light_emission_taps(const light_emission *emission, double width, const int step[2],
                             const double slope[2], emission_taps *taps);
 

@@ -1,5 +1,5 @@
-/* light/light_extent.c - points on a light, and the light's mean position and variances as seen from the
- * sheets. */
+/* light/light_extent.c - finds points on a light, and the light's mean position and variances as seen from
+ * the sheets. */
 #include "light/light_extent.h"
 
 #include "elementary/elementary.h"
@@ -31,8 +31,8 @@ static vec3 onto_plane(vec3 x, vec3 normal) {
   return vec3_subtract(x, vec3_scale(normal, vec3_dot(x, normal)));
 }
 
-/* Chooses a first axis u within the sheets. It is the projection of the light's direction; for a light that
- * is a parallelogram, the projection of one of its edges. The axis is turned to the principal axis later. */
+/* Chooses a first axis u within the sheets: the projection of the light's direction, or of an edge if the
+ * light is a parallelogram. turn_to_axes() turns this axis to the principal axis later. */
 static vec3 first_axis(const light_source *source, vec3 normal) {
   vec3 along = source->shape.kind->parallelogram ? source->shape.edge1 : source->direction;
   vec3 axis = onto_plane(along, normal);
@@ -115,7 +115,7 @@ double hl_sheet_light_squared_width(const sheet_light *light, int axis, double s
   return 12 * fmax(xx - 2 * slope * xz + slope * slope * zz, 0);
 }
 
-/* The average size is the mean of two extents: the extents of the light's projection along its two principal
+/* The average size is the mean of the extents of the light's projection along the projection's two principal
  * axes. */
 double hl_light_average_size(const light_source *source, vec3 normal) {
   vec3 u = vec3_perpendicular(normal), v = vec3_cross(normal, u);

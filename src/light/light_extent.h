@@ -1,4 +1,4 @@
-/* light/light_extent.h - points on an extended light, and the light's size as seen from the sheets. */
+/* light/light_extent.h - finds points on an extended light, and the light's size as seen from the sheets. */
 #ifndef HL_LIGHT_LIGHT_EXTENT_H
 #define HL_LIGHT_LIGHT_EXTENT_H
 
@@ -25,7 +25,8 @@ void hl_sublight_point(const light_source *source, int side, int i, int j, doubl
 typedef struct sheet_light {
   vec3 middle; /* the middle of the light's projection; frame space; for parallel light the mean direction
                 * of travel */
-  vec3 u, v;   /* unit vectors within the sheets: the principal axes of the projection; u is the longer one */
+  vec3 u, v;   /* unit vectors within the sheets: the principal axes of the projection; u is the longer
+                * axis */
   double width_u, width_v; /* widths, along u and v, of a box that has the same variances as the projection:
                             * frame units; for parallel light, frame units per frame unit of height */
   mat3 spread; /* mean of the matrix x x' over the light. x is the offset of a point of the light from the

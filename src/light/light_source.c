@@ -55,9 +55,9 @@ light_source hl_light_in_sector(const light_source *whole, const light_sectors *
 
 /* Finds the axes of the sectors into which the rays of a light within the content are divided: three at the
  * angle phi to the eye's direction, and three at this angle to the opposite direction, turned by 60 degrees.
- * For phi = 54.7 degrees they are the axes of an octahedron, seen at a right angle to a face. For phi = 45
- * degrees every direction lies within 59 degrees of an axis. Wide pictures need axes closer to the eye's
- * direction, so that their corners' rays still cross the sheets. */
+ * For phi = 54.7 degrees, the sectors' axes are the axes of an octahedron, seen at a right angle to a face.
+ * For phi = 45 degrees every direction lies within 59 degrees of an axis. Wide pictures need axes closer to
+ * the eye's direction, so that their corners' rays still cross the sheets. */
 light_sectors hl_light_sectors(vec3 eye_direction, double widest) {
   const double usual = 45 * HL_PI / 180, flattest = 75 * HL_PI / 180, closest = 15 * HL_PI / 180;
   double phi = fmax(fmin(usual, flattest - widest), closest);
@@ -153,8 +153,8 @@ void hl_lit_region(const view *view, const light_source *source, double low[2], 
     cut((double[2]){-reach, -reach}, (double[2]){reach, reach}, low, high);
   }
   if (source->shadows != HL_SHADOWS_HARD)
-    /* Matter outside the lit region casts penumbrae into it. So the bounds are not reduced to the light's
-     * cone and screen. */
+    /* Matter outside the lit region casts penumbrae into the lit region. So the bounds of soft shadows are
+     * not reduced to the light's cone and screen. */
     return;
   if (source->screen.picture.pixels != NULL && bound_screen(view, source, lit_low, lit_high))
     cut(lit_low, lit_high, low, high);

@@ -30,10 +30,10 @@ typedef struct light_sectors {
  * its outermost ray, radians. */
 light_sectors hl_light_sectors(vec3 eye_direction, double widest);
 
-/* The fraction of a ray's light that belongs to sector i. It is max(0, cos_i - least)^2, divided by the sum
- * of these numbers over all sectors. cos_i is the cosine of the angle between the ray and axis i. */
+/* The fraction of a ray's light that belongs to sector i. The fraction is max(0, cos_i - least)^2, divided by
+ * the sum of these squares over all sectors. cos_i is the cosine of the angle between the ray and axis i. */
 typedef struct sector_fraction {
-  int count; /* number of sectors; if 0, the fraction belongs to a whole light */
+  int count; /* number of sectors; 0 if the fraction belongs to a whole light */
   int sector;
   float axis[LIGHT_SECTORS][3];
   float least;
@@ -44,8 +44,8 @@ sector_fraction hl_sector_fraction(const light_sectors *sectors, int sector);
 
 /* A picture that a light projects, or that is on the light's surface. */
 typedef struct light_picture {
-  const float *pixels; /* borrowed from the scene; [height][width][3]: linear RGB, top row first; null if
-                        * there is none */
+  const float *pixels; /* borrowed from the scene; [height][width][3]: linear RGB, top row first; null if the
+                        * light has no such picture */
   int width, height;
 } light_picture;
 
@@ -89,8 +89,8 @@ light_source hl_light_in_sector(const light_source *whole, const light_sectors *
 
 /* ---- The brightness of a spot light by direction ---- */
 
-/* The brightness of a spot light in a direction is smoothstep((cos(angle to the axis) - outer) * scale). It
- * is 0 outside the cone, and 1 within the cone's soft edge. */
+/* The brightness of a spot light in a direction is smoothstep((cos(angle to the axis) - outer) * scale). The
+ * brightness is 0 outside the cone, and 1 inside the cone's soft edge. */
 typedef struct light_cone {
   float axis[3]; /* unit vector along which light travels in the middle of the cone; frame space */
   float outer;   /* cosine of the angle at which the cone's light begins */
@@ -99,7 +99,7 @@ typedef struct light_cone {
 } light_cone;
 
 /* Makes the cone of a light. content: the middle of the lit content. pixel: edge of a picture's pixel at this
- * middle, frame units. The soft edge of the cone is at least one such pixel wide. */
+ * middle, frame units. The soft edge of the cone is at least one pixel of the picture wide. */
 light_cone hl_light_cone(const light_source *source, vec3 content, double pixel);
 
 /* ---- The region of a light's view that its screen, its cone or its sector lights ---- */

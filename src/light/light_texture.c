@@ -27,8 +27,8 @@ static view view_of_screen(const light_source *source, int width, int height) {
 }
 
 /* The length of a vector of the screen after the light has projected it to the content's middle. The length
- * is measured at a right angle to the light's ray there. If the content lies between the light and the
- * screen, the vector keeps its length. */
+ * is measured at a right angle to the light's ray at the content's middle. If the content lies between the
+ * light and the screen, the vector keeps its length. */
 static double length_at_content(const light_source *source, const view *view, vec3 step, vec3 content) {
   vec3 way = source->direction;
   double magnified = 1;
@@ -162,8 +162,9 @@ static hl_status make_level(hl_context *context, kernel_fraction *below, const t
 /* ---- blur by the light's extent ---- */
 
 /* The standard deviations, along u and v, by which the light's extent blurs the image; in pixels of the
- * image. For parallel light they hold at the distance 1 behind the screen, for near light at an infinite
- * distance. They are the light's spread, projected onto the screen along the ray to the content's middle. */
+ * image. For parallel light, the deviations hold at the distance 1 behind the screen, for near light at an
+ * infinite distance. The deviations are the light's spread, projected onto the screen along the ray to the
+ * content's middle. */
 static void spread_on_screen(const light_source *source, const view *view, vec3 content,
                              double deviation[2]) {
   vec3 ray = source->parallel ? source->direction : vec3_normalise(vec3_subtract(content, source->position));
@@ -192,7 +193,8 @@ static double blur_at(const light_source *source, const view *view, vec3 point) 
 /* FIRST_BLUR: the standard deviation of level 0's blur, in pixels of the picture. Each level's standard
  * deviation is sqrt(2) times the standard deviation of the level before. The edge of a level's pixel is
  * LEVEL_PIXEL times the level's standard deviation, but at least LEAST_PIXEL times the edge of a picture's
- * pixel. It is larger where a side of the level would have more than GREATEST_LEVEL_SIDE pixels. */
+ * pixel. The edge is larger if a side of the level would otherwise have more than GREATEST_LEVEL_SIDE pixels.
+ */
 static const double FIRST_BLUR = 1.4, LEVEL_PIXEL = 0.5, LEAST_PIXEL = 0.7;
 enum { GREATEST_LEVEL_SIDE = 8192 };
 
@@ -214,7 +216,7 @@ static level_plan plan_level(const light_texture *texture, const double deviatio
 }
 
 /* Makes the blurred levels of a texture. The texture's memory begins with the averaged image, which has
- * `averaged` floats; the levels follow it. */
+ * `averaged` floats, followed by the levels. */
 static hl_status make_levels(hl_context *context, const light_source *source, const view *view,
                              const texture_use *use, light_texture *texture, size_t averaged,
                              hl_error *error) {
@@ -263,8 +265,8 @@ static hl_status make_levels(hl_context *context, const light_source *source, co
 
 /* ---- the screen ---- */
 
-/* The number of pixels along a side of the averaged image. It is the length of the projected image's side in
- * pixels of the picture, but at most the image's own number of pixels. */
+/* The number of pixels along a side of the averaged image: the length of the projected image's side in pixels
+ * of the picture, but at most the image's own number of pixels. */
 static int resolution(double length, int count, double pixel, float *sharpness) {
   double wanted = ceil(length / pixel);
   int chosen = wanted < 1 ? 1 : wanted < count ? (int)wanted : count;

@@ -5,11 +5,12 @@
  * whatever the resolution of the shadow buffer. An image that is finer than the picture is averaged once a
  * frame, to about the size of the picture's pixels.
  *
- * An extended light with soft shadows blurs the image: at a sample, it is convolved with the scaled shape of
- * the light. For parallel light, the scale is the distance of the sample behind the screen. For a near light,
- * the scale is 1 - Zs / Z, where Zs and Z are the distances of the screen and of the sample from the light
- * (eq. (5) with the screen as occluder). Blurred levels of the image, each of twice the variance of the one
- * before, are made once a frame; each sample interpolates between two of them. */
+ * An extended light with soft shadows blurs the image: at a sample, the image is convolved with the scaled
+ * shape of the light. For parallel light, the scale is the distance of the sample behind the screen. For a
+ * near light, the scale is 1 - Zs / Z, where Zs and Z are the distances of the screen and of the sample from
+ * the light (eq. (5) with the screen as occluder). Blurred levels of the image are made once a frame. The
+ * variance of each level's blur is twice the variance of the level before. Each sample interpolates between
+ * two levels. */
 #ifndef HL_LIGHT_LIGHT_TEXTURE_H
 #define HL_LIGHT_LIGHT_TEXTURE_H
 
@@ -36,7 +37,7 @@ typedef struct light_texture {
   float sharpness[2]; /* along u and v: the edge of a pixel of the image, in pixels of the picture; at least
                        * 1 */
   float beyond[4];    /* for parallel light: maps frame space to the distance behind the screen along the
-                       * rays. For near light, the factor w of `map` is used instead */
+                       * rays. For near light, the factor w of `map` takes the place of this distance */
   int parallel;
   /* The inverse square of the distance behind the screen at which the blur equals the blur of level 0. For a
    * near light, 1 - Zs / Z takes the place of the distance. At 2^l times this square the blur is the blur of
@@ -46,11 +47,12 @@ typedef struct light_texture {
                     * the blur at the distance 1 */
   int level_count; /* number of levels; 0 if the light's extent does not blur the image */
   texture_level level[TEXTURE_LEVELS];
-  float *memory; /* owned; the memory of the averaged image and the blurred levels; null if neither is
-                  * needed */
+  float *memory; /* owned; the memory of the averaged image and the blurred levels; null if the texture needs
+                  * neither the averaged image nor levels */
 } light_texture;
 
-/* The content that a light texture falls on, and the size of the picture's pixels there; frame space. */
+/* The content that a light texture falls on, and the size of the picture's pixels at this content; frame
+ * space. */
 typedef struct texture_use {
   const vec3 *points; /* [point_count]; borrowed; corners of the content, frame space */
   int point_count;

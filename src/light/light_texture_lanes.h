@@ -6,8 +6,8 @@
 #include "simd/gathers.h"
 #include "view/rays_lanes.h"
 
-/* The fraction by which the screen covers a position along one axis. It rises from 0 to 1 across each edge of
- * the screen, over a width of 1 / sharpness. */
+/* The fraction by which the screen covers a position along one axis. The fraction rises from 0 to 1 across
+ * each edge of the screen, over a width of 1 / sharpness. */
 LANES_INLINE lanes within_edges(lanes u, float size, lanes sharpness) {
   lanes half = lanes_set(0.5f);
   return lanes_clamp(lanes_fma(u, sharpness, half), 0, 1) *
@@ -61,8 +61,8 @@ LANES_INLINE void sharp_pattern(const light_texture *texture, lanes blur, lanes 
 /* Interpolates between the two levels of a light texture whose variances enclose the variance of the sample's
  * blur; the variance of the result is linear in the weights. If the sample's variance is below the variance
  * of level 0, the result is a mean of level 0 and the image itself. The weight of level 0 is then the square
- * of the ratio of the two variances, so that the image stays sharp as long as it can. In the image itself,
- * too, the edges of the screen are blurred. */
+ * of the ratio of the two variances, so that the image stays sharp as long as possible. The edges of the
+ * screen are blurred in the image itself, too. */
 LANES_INLINE void soft_pattern(const light_texture *texture, lanes blur, lanes u, lanes v, lanes ahead,
                                lanes pattern[3]) {
   lanes variance = lanes_min(blur * blur * texture->first, lanes_set(1e30f));

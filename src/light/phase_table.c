@@ -32,8 +32,8 @@ static double s_of(double g, double cosine) {
 
 static double cosine_of(double g, double s) { return fmin(fmax((1 + g * g - s * s) / (2 * g), -1), 1); }
 
-/* The mean of the phase function p over a cap: the directions that are within acos(c) of the cap's middle. c
- * is below 1. T is the angle between the cap's middle and the direction in which light goes straight on.
+/* The mean of the phase function p over a cap: the directions that are within acos(c) of the cap's middle. c:
+ * below 1. T is the angle between the cap's middle and the direction in which light goes straight on.
  * towards: the cosine of T.
  *
  * Derived: all directions at one angle t from straight on form a ring, on which p has one value. The cap
@@ -79,8 +79,8 @@ static bool scatters_unevenly(const hl_scene_volume *volume) {
   return volume->anisotropy != 0 && volume->shading != HL_SHADING_FLAT;
 }
 
-/* Returns whether some light of a scene is wide: whether its size matters to the phase function. near: only
- * lights that are not parallel are looked at. */
+/* Returns whether some light of a scene is wide: whether its size matters to the phase function. near:
+ * whether only lights that are not parallel count. */
 static bool has_wide_light(const hl_scene_description *scene, bool near) {
   bool found = false;
   for (size_t i = 0; i < scene->light_count; i++)
@@ -89,14 +89,14 @@ static bool has_wide_light(const hl_scene_description *scene, bool near) {
   return found;
 }
 
-/* Returns whether the tables need rows for caps of all sizes. They need them for lights that are wide and
- * near, and for the sky. */
+/* Returns whether the tables need rows for caps of all sizes, because a light is wide and near, or because
+ * the scene has a sky. */
 static bool needs_caps(const hl_scene_description *scene) {
   return scene->sky.type != HL_SKY_NONE || has_wide_light(scene, true);
 }
 
 /* The number of tables that a scene needs. A volume that scatters unevenly needs a table for its anisotropy
- * g. If light is scattered more than once in it, it also needs a table for g^2. */
+ * g. If light is scattered more than once in the volume, the volume also needs a table for g^2. */
 static size_t wanted_tables(const hl_scene_description *scene) {
   size_t count = 0;
   if (scene->render.compositing != HL_COMPOSITING_LIGHT ||

@@ -3,11 +3,12 @@
 
 #include "scene/light/light_kind.h"
 
-/* Sets of points. They are chosen so that every half-plane contains nearly the same fraction of the points as
- * of the light's area. scripts/light_points finds the points, and says how. Points of disks are given as
- * points of the unit square, which hl_light_point() maps to the disk. With sixteen points on a disk,
- * penumbrae of straight edges have a root mean square error of 0.0326 of the light. The error is 0.028 to
- * 0.036 depending on the edge's direction. With the turned grid of hl_sublight_grid_point() it is 0.0362. */
+/* Sets of points for lights with few sub-lights. The points are chosen so that every half-plane contains
+ * nearly the same fraction of the points as of the light's area. scripts/light_points finds the points, and
+ * explains the search. Points of disks are given as points of the unit square, which hl_light_point() maps to
+ * the disk. With sixteen points on a disk, penumbrae of straight edges have a root mean square error of
+ * 0.0326 of the light. The error is 0.028 to 0.036 depending on the edge's direction. With the turned grid of
+ * hl_sublight_grid_point(), the error is 0.0362. */
 enum { SEARCHED_SIDES = 3, MOST_SEARCHED = 16 };
 typedef double square_points[MOST_SEARCHED][2];
 
@@ -74,7 +75,7 @@ void hl_sublight_grid_point(int side, int i, int j, double square[2]) {
   square[1] = (j + 1 - (i + 0.5) / side) / side;
 }
 
-/* Polygons have no common shape, so their points are the turned grid's. */
+/* Polygons have no common shape, so their sub-lights stand at the points of the turned grid. */
 void hl_sublight_point(const light_source *source, int side, int i, int j, double square[2]) {
   const light_kind *kind = source->shape.kind;
   if (side < 2 || side >= 2 + SEARCHED_SIDES || kind->outline) {

@@ -138,7 +138,8 @@ static double pixel_at_content(const frame *frame, double middle_depth) {
   return edge * fmax(nearest, middle_depth / 3);
 }
 
-/* The volume of a box whose corners hl_frame_content() found. It is above 0 even if the box is flat. */
+/* The volume of a box whose corners hl_frame_content() found. The result is above 0 even if the box is flat.
+ */
 static double box_volume(const vec3 corners[8]) {
   vec3 x = vec3_subtract(corners[1], corners[0]), y = vec3_subtract(corners[2], corners[0]),
        z = vec3_subtract(corners[4], corners[0]);
@@ -146,10 +147,10 @@ static double box_volume(const vec3 corners[8]) {
 }
 
 /* The mean of the centres of the content's boxes, each weighted by the volume of its box. Derived: let a box
- * have the volume V and the centre c. If a box is cut into parts, the sum of V c over the parts is V c of the
- * whole box. So a volume that is cut into parts keeps its middle, if the boxes around the relevant bricks of
- * the parts fill the box around all relevant bricks. The directions of near lights, and so the directions of
- * sheets, follow from the middle. */
+ * have the volume V and the centre c. If a box is cut into parts, the sum of V c over the parts equals V c of
+ * the whole box. So a volume that is cut into parts keeps its middle, if the boxes around the relevant bricks
+ * of the parts fill the box around all relevant bricks. The directions of near lights, and so the directions
+ * of sheets, follow from the middle. */
 static vec3 content_middle(const frame *frame) {
   vec3 sum = {0, 0, 0};
   double volumes = 0;
@@ -163,8 +164,8 @@ static vec3 content_middle(const frame *frame) {
 }
 
 /* Sets eye_direction and the sizes of pixels at the content. If the eye is outside the content, eye_direction
- * is half way between the direction straight ahead and the direction to the content's middle. Otherwise it is
- * straight ahead. */
+ * is half way between the direction straight ahead and the direction to the content's middle. Otherwise
+ * eye_direction is the direction straight ahead. */
 static void look(frame *frame) {
   vec3 start, forward;
   hl_view_ray(&frame->eye, frame->eye.width / 2.0, frame->eye.height / 2.0, &start, &forward);
@@ -190,7 +191,8 @@ static void look(frame *frame) {
  * GREATEST_OVERSAMPLED_SIDE: the greatest number of the frame's pixels along a side of the frame. */
 enum { GREATEST_OVERSAMPLING = 8, GREATEST_OVERSAMPLED_SIDE = 4096 };
 
-/* The number that the voxels need, or the greater one that the scene asks for. */
+/* The oversampling of a frame: the number that the voxels need, or the number that the scene asks for if it
+ * is greater. */
 
 static int oversampling(const frame *frame, const hl_scene_description *scene) {
   int longer = scene->width > scene->height ? scene->width : scene->height,

@@ -47,7 +47,7 @@ hl_status hl_frame_eye(const hl_camera *camera, int width, int height, view *eye
 hl_status hl_frame_set_up_eye(frame *frame, const hl_scene_description *scene, hl_error *error);
 
 /* Returns whether the picture of any volume or mesh depends on arriving light. Flat colours and maximum
- * projections do not depend on it. */
+ * projections do not depend on arriving light. */
 bool hl_is_lit(const hl_scene_description *scene);
 
 static inline bool hl_is_maximum(const hl_render_settings *settings) {

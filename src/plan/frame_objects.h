@@ -22,11 +22,11 @@ typedef struct volume_look {
 
 /* A volume of the frame. Its grid is the plan's grid with the same index. */
 typedef struct frame_volume {
-  const char *name;                 /* the volume's name; borrowed; null if it has none */
+  const char *name;                 /* the volume's name; borrowed; null if the volume has no name */
   const hl_volume *volume;          /* the volume; borrowed for its own colours and for the range of its
                                      * values */
-  const hl_volume *tints;           /* the mask whose colours tint the volume; borrowed; null if there is
-                                     * none */
+  const hl_volume *tints;           /* the mask whose colours tint the volume; borrowed; null if the volume
+                                     * has no mask */
   const classifier *classifier;     /* borrowed; the transfer function's tables */
   double empty;                     /* the data value of the space beyond the volume */
   uint64_t version, tables_version; /* versions of the grid's voxels, and of all tables that follow from the
@@ -48,8 +48,8 @@ typedef struct frame_light {
   /* whether the light that a sample receives is the intensity divided by the square of the sample's
    * distance */
   bool is_inverse_square;
-  bool projects_image, shows_image; /* whether the light projects a picture, and whether it shows one on its
-                                     * surface */
+  bool projects_image, shows_image; /* whether the light projects a picture, and whether the light shows a
+                                     * picture on its own surface */
   /* whether the light shows a picture of several colours on its surface, so that its colours come from
    * different places */
   bool has_colored_image;
@@ -60,15 +60,15 @@ typedef struct frame_light {
 /* A mesh of the frame, or an isosurface of a volume. Its primitives are the primitives of the mesh with the
  * same index in the frame's surfaces. */
 typedef struct frame_mesh {
-  const char *name; /* the mesh's name; borrowed; null if it has none */
+  const char *name; /* the mesh's name; borrowed; null if the mesh has no name */
   int object;       /* the mesh's number in the layer of objects; an isosurface has the number of its
                      * volume */
   surface_look look;
 } frame_mesh;
 
-/* Three functions that describe a volume, a light and a mesh of the scene for the frame. framed: the scene in
- * frame space, which must live until the frame ends. The caller sets the volume's classifier, its value
- * beyond the volume, and its versions. */
+/* hl_frame_volume(), hl_frame_light() and hl_frame_mesh() describe a volume, a light and a mesh of the scene
+ * for the frame. framed: the scene in frame space, which must live until the frame ends. The caller sets the
+ * volume's classifier, its value beyond the volume, and its versions. */
 frame_volume hl_frame_volume(const framed_scene *framed, size_t index);
 frame_light hl_frame_light(const framed_scene *framed, size_t index);
 frame_mesh hl_frame_mesh(const framed_scene *framed, size_t index);

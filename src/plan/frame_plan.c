@@ -60,8 +60,8 @@ bool hl_layers_measure(const hl_layers *wanted) {
                             wanted->normal != NULL || wanted->object != NULL);
 }
 
-/* Chooses the sweep in which depth and normals are measured. For the eye it goes from front to back. Adds
- * such a sweep if there is none. */
+/* Chooses the sweep in which depth and normals are measured: a sweep that goes from front to back for the
+ * eye. If no sweep does, the function adds one. */
 static int choose_measuring_sweep(const frame *frame, plan_sweeps *sweeps) {
   int chosen = 0;
   while (chosen < sweeps->count && sweeps->sheets[chosen].back_to_front) chosen++;

@@ -1,5 +1,5 @@
-/* plan/frame_plan.h - describes the plan of a frame: everything that is decided before its first sheet, as
- * plain data in frame space.
+/* plan/frame_plan.h - describes the plan of a frame: everything that is decided before the frame's first
+ * sheet, as plain data in frame space.
  *
  * A plan is made once (render/plan_frame.c) and never changes afterwards. A back end (render/backend.h) makes
  * the picture of a plan; the processors and a device read the same plan. A part of a shared picture is the
@@ -25,10 +25,10 @@ typedef struct plan_picture {
   int tiles_x;             /* number of the frame's tiles in a row of tiles */
   size_t tiles;            /* number of the frame's tiles */
   picture_share share;     /* the division of the picture into parts, and the part that this renderer makes */
-  const hl_layers *layers; /* borrowed; the layers that are wanted; null if there is none */
+  const hl_layers *layers; /* borrowed; the layers that are wanted; null if no layer is wanted */
 } plan_picture;
 
-/* The volumes of a frame, and how their samples are made. */
+/* The volumes of a frame, and the way in which their samples are made. */
 typedef struct plan_volumes {
   frame_volume *list; /* owned; [count]; the properties of the volumes */
   grid *grids;        /* owned; [count]; the volumes made ready for sampling */
@@ -39,20 +39,21 @@ typedef struct plan_volumes {
   bool splat; /* whether densities are splatted; if not, they are gathered */
 } plan_volumes;
 
-/* Light that does not travel from sheet to sheet, because it is found on grids of its own. */
+/* Light that does not travel from sheet to sheet, because other grids than the sheets hold it. */
 typedef struct plan_fields {
   bool scatters;                  /* whether media scatter light more than once */
   const scatter_field *scattered; /* borrowed; the light that media scatter more than once; null if the frame
                                    * has no such light */
-  const sky_light *sky;           /* borrowed; the light of the sky; null if there is no sky */
+  const sky_light *sky;           /* borrowed; the light of the sky; null if the scene has no sky */
   const phase_tables *phases;     /* borrowed; the means of phase functions over wide lights */
 } plan_fields;
 
 /* A light of a sweep. */
 typedef struct light_plan {
   const light_source *source;
-  light_emission *emission; /* owned; the picture on the light's own surface; null if there is none */
-  light_shadow shadow;      /* the shadow as it was planned; a back end works on a copy of it
+  light_emission *emission; /* owned; the picture on the light's own surface; null if the light has no such
+                             * picture */
+  light_shadow shadow;      /* the planned shadow, of which a back end makes a copy to work on
                              * (hl_light_shadow_begin) */
   shadow_layouts memory;    /* the memory that the shadow's method takes */
 } light_plan;
@@ -76,7 +77,7 @@ typedef struct plan_sweeps {
 } plan_sweeps;
 
 typedef struct frame_plan {
-  hl_render_settings settings; /* settings of the scene; its texts are not used */
+  hl_render_settings settings; /* settings of the scene; the texts in the settings are not used */
   plan_picture picture;
   double unit;                 /* the length in the world of one unit of frame space */
   double ambient[HL_CHANNELS]; /* ambient light, which comes from all directions: R, G, B */
@@ -108,8 +109,8 @@ hl_status hl_plan_sweeps(hl_context *context, frame_plan *plan, hl_error *error)
  * from front to back. */
 bool hl_layers_measure(const hl_layers *wanted);
 
-/* Plans the shadows of all lights. This is the last step of planning; the picture must have been divided into
- * parts before. */
+/* Plans the shadows of all lights. Planning shadows is the last step of planning; the picture must have been
+ * divided into parts before. */
 hl_status hl_plan_lights(hl_context *context, frame_plan *plan, hl_error *error);
 
 /* ---- the tiles that light reaches ---- */

@@ -53,8 +53,8 @@ static void move_volume(const hl_frame_space *space, hl_scene_volume *volume) {
     function->plane.second_scale = hl_plane_second_scale(&function->plane) / space->unit;
 }
 
-/* Converts gradient opacity to frame space: gradients are values per unit of length. points: receives the new
- * points of the function; there must be room for them. */
+/* Converts gradient opacity to frame space: gradients are values per unit of length. points: room for all
+ * points of the function; receives the new points. */
 static void move_gradients(const hl_frame_space *space, hl_transfer_function *function,
                            hl_opacity_point *points) {
   if (function->gradient_opacity_count == 0) return;
@@ -73,8 +73,8 @@ static void move_cut(const hl_frame_space *space, hl_cut *cut) {
   cut->radius /= space->unit;
 }
 
-/* Converts cuts whose lengths are in the world to frame space. cuts: receives the volume's cuts; there must
- * be room for them. */
+/* Converts cuts whose lengths are in the world to frame space. cuts: room for all cuts of the volume;
+ * receives the converted cuts. */
 static void move_cuts(const hl_frame_space *space, hl_scene_volume *volume, hl_cut *cuts) {
   if (volume->cut_count == 0) return;
   memcpy(cuts, volume->cuts, volume->cut_count * sizeof *cuts);

@@ -1,5 +1,5 @@
-/* plan/framed_scene.h - converts a scene to frame space. Its origin is the middle of the scene's volumes, and
- * its unit of length is about the volumes' smallest voxel edge. */
+/* plan/framed_scene.h - converts a scene to frame space. The origin of frame space is the middle of the
+ * scene's volumes, and its unit of length is about the volumes' smallest voxel edge. */
 #ifndef HL_PLAN_FRAMED_SCENE_H
 #define HL_PLAN_FRAMED_SCENE_H
 
@@ -23,8 +23,8 @@ typedef struct framed_scene {
   double (*vertices)[3];       /* owned; the vertices of all polygonal lights */
   hl_opacity_point *gradients; /* owned; the points of gradient opacity, of all volumes */
   hl_cut *cuts;                /* owned; the cuts of the volumes */
-  /* owned; [light_count]; where the light is a sun of the sky: the fraction of its light that lights media;
-   * for other lights 0 */
+  /* owned; [light_count]; for a light that is a sun of the sky, the fraction of its light that lights media;
+   * 0 for other lights */
   double *sun_parts;
   uint64_t *plane_marks; /* owned; [volume_count]; marks of functions of two numbers: functions with different
                           * contents have different marks */
@@ -32,7 +32,7 @@ typedef struct framed_scene {
                 * units long */
 } framed_scene;
 
-/* Makes the framed scene of a scene. scene: borrowed; it must live as long as the framed scene. */
+/* Makes the framed scene of a scene. scene: borrowed; must live as long as the framed scene. */
 hl_status hl_framed_scene_create(hl_context *context, const hl_scene *scene, framed_scene *framed,
                                  hl_error *error);
 void hl_framed_scene_release(hl_context *context, framed_scene *framed);

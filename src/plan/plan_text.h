@@ -1,4 +1,5 @@
-/* plan/plan_text.h - writes the plan of a frame as text. The text shows why a frame is made as it is. */
+/* plan/plan_text.h - writes the plan of a frame as text. The text shows the decisions by which the frame is
+ * made. */
 #ifndef HL_PLAN_PLAN_TEXT_H
 #define HL_PLAN_PLAN_TEXT_H
 

@@ -105,8 +105,8 @@ static void line_through(const light_image *image, double u, double v, double wa
 static double cross2(const double a[2], const double b[2]) { return a[0] * b[1] - a[1] * b[0]; }
 static double dot2(const double a[2], const double b[2]) { return a[0] * b[0] + a[1] * b[1]; }
 
-/* A number from -1 to 3 that rises with a direction's angle. It is computed without trigonometric functions,
- * because the last digits of these differ between machines. */
+/* A number from -1 to 3 that rises with a direction's angle. The number is computed without trigonometric
+ * functions, because the last digits of their results differ between machines. */
 static double turn_of(const double way[2]) {
   double sum = fabs(way[0]) + fabs(way[1]), part = sum > 0 ? way[1] / sum : 0;
   return way[0] >= 0 ? part : 2 - part;
@@ -115,7 +115,7 @@ static double turn_of(const double way[2]) {
 /* Sets the cells' keys. Let m be the direction of the line through the picture's middle c, and m' = (-m_y,
  * m_x) the direction across it. Derived: the line through p along d crosses the line through c along m' at c
  * + t m', where t = cross(p - c, d) / cross(m', d). The key is t. If the light's image lies in the picture or
- * near it, the lines do not all run along m. The key is then the angle of the line. */
+ * near it, some lines do not run along m. The key is then the angle of the line through p. */
 static void set_keys(const share_content *content, const picture_share *share, share_cell *cells) {
   const frame *frame = content->frame;
   const light_image image = image_of(&frame->eye, brightest(content, share));
@@ -163,9 +163,9 @@ static bool cell_of(const frame *frame, const picture_share *share, vec3 point, 
   return true;
 }
 
-/* Calls `act` for visible bricks of a grid. Of all bricks one in `step` is sampled, and stands for `step`
- * bricks. The grid's list of relevant bricks is not used, because for voxels in pages the list depends on the
- * memory of a process. */
+/* Calls `act` for visible bricks of a grid. Of `step` bricks, the function samples one, which stands for all
+ * of them. The grid's list of relevant bricks is not used, because for voxels in pages the list depends on
+ * the memory of a process. */
 static void visit_grid(const share_content *content, const picture_share *share, const grid *grid,
                        size_t step, brick_action *act, share_arrays *arrays) {
   size_t bricks = grid->relevant_count > 0 ? hl_grid_bricks(grid) : 0, cell;
@@ -222,8 +222,8 @@ static int compare_cells(const void *a, const void *b) {
 
 /* Divides the ordered cells into bands of equal weight: a cell belongs to the band in which the middle of the
  * cell's weight lies. Then gives the bands to the parts: first in forward order, then in backward order, and
- * so on by turns. So the last part gets two neighbouring bands. With three bands for each part, the first
- * part gets two neighbouring bands, too. */
+ * so on by turns. By this order, the last part gets two neighbouring bands. With three bands for each part,
+ * the first part gets two neighbouring bands, too. */
 static void cut_bands(const picture_share *share, const share_cell *cells, int bands, int32_t *part_of) {
   double sum = 0, before = 0;
   const int parts = share->parts;
@@ -237,8 +237,8 @@ static void cut_bands(const picture_share *share, const share_cell *cells, int b
 
 /* ---- how many bands ---- */
 
-/* Adds a brick's weight to the part over which the brick lies, at the brick's depth. It does so for each
- * number of bands. */
+/* Adds a brick's weight, at the brick's depth, to the part over which the brick lies, for each number of
+ * bands. */
 static void place_brick(const share_content *content, const picture_share *share, share_arrays *arrays,
                         size_t cell, double height, double bricks) {
   (void)share;
@@ -315,8 +315,8 @@ static bool waits_at_depths(const share_content *content, const picture_share *s
 
 /* Returns whether parts are bands, and not rows of cells in turn. Rows in turn divide the work more equally.
  * But if shadows are divided among the parts, a band needs less light. If no shadows are cast, a band needs
- * fewer voxels, which matters if several ranks share the voxels. It must not matter whether voxels lie in a
- * scratch file, because each process decides that for itself. */
+ * fewer voxels, which matters if several ranks share the voxels. The result must not depend on whether voxels
+ * lie in a scratch file, because each process decides for itself whether they do. */
 static bool is_cut_in_bands(const share_content *content, const picture_share *share) {
   const frame *frame = content->frame;
   bool soft = false;

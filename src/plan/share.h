@@ -1,13 +1,13 @@
 /* plan/share.h - divides a picture among several renderers: finds the pixels that each renderer makes.
  *
- * An eye's ray and a light's ray that meet lie in one plane with the eye and the light. In the picture these
- * planes are lines through the light's image. If the image is infinitely far away, the lines are parallel. So
- * a band of the picture along such lines looks up only a band of the light's shadow buffer, over all sheets.
- * Each part of a picture is such a band, for the brightest light whose method lets parts work through their
- * own light. Bands consist of whole cells, and each band has about the same amount of matter under it. Where
- * parts wait for each other at each depth, a part may have two or three bands, so that the parts have more
- * equal amounts of matter at each depth. Where all parts need all light anyway, rows of cells are given to
- * the parts in turn. */
+ * An eye's ray and a light's ray that meet lie in one plane with the eye and the light. In the picture, such
+ * planes appear as lines through the light's image. If the image is infinitely far away, the lines are
+ * parallel. So a band of the picture along such lines looks up only a band of the light's shadow buffer, over
+ * all sheets. Each part of a picture is a band along the lines of the brightest light whose shadow method
+ * lets parts work through their own light. Bands consist of whole cells, and each band has about the same
+ * amount of matter under it. Where parts wait for each other at each depth, a part may have two or three
+ * bands, so that the parts have more equal amounts of matter at each depth. Where all parts need all light
+ * anyway, rows of cells are given to the parts in turn. */
 #ifndef HL_PLAN_SHARE_H
 #define HL_PLAN_SHARE_H
 
@@ -16,8 +16,8 @@
 #include "plan/frame.h"
 #include "plan/frame_objects.h"
 
-/* A picture's division into parts. It is made in cells. A cell is `oversampling` tiles of the frame wide and
- * high. Therefore its number of picture pixels equals the number of frame pixels in a tile. */
+/* The division of a picture into parts, which consist of cells. A cell is `oversampling` tiles of the frame
+ * wide and high, so that a cell has as many pixels of the picture as a tile has pixels of the frame. */
 typedef struct picture_share {
   int part, parts;                /* part: number of this renderer's part; parts: number of parts */
   const light_exchange *exchange; /* borrowed; exchanges light with the other parts; null if light is not
@@ -41,8 +41,8 @@ typedef struct share_content {
 void hl_share_count(int width, int height, int parts, hl_layout *layout);
 
 /* Divides a picture into parts; the result is the same on every machine. share: its members part and parts
- * must be set. If there is only one part, nothing is done. The caller owns `share`, and must release it after
- * a failure, too. */
+ * must be set. A single part needs no division, and the function does nothing. The caller owns `share`, and
+ * must release it after a failure, too. */
 hl_status hl_share_create(hl_context *context, const share_content *content, picture_share *share,
                           hl_error *error);
 void hl_share_release(hl_context *context, picture_share *share);

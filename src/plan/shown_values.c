@@ -19,7 +19,7 @@ typedef struct shown_values {
   const hl_transfer_function *function; /* the volume's transfer function; borrowed */
   double low, step; /* low: the data value of the coordinate 0; step: the difference between the data values
                      * of neighbouring coordinates */
-  double nothing;   /* the data value below which there is no matter */
+  double nothing;   /* the data value below which matter does not exist */
   double end;       /* the distance, in entries of the table, by which the ends of ranges are moved */
 } shown_values;
 

@@ -3,8 +3,8 @@
  *
  * In:  a transfer function, and the volume's classifier, whose tables give values their coordinates. Out: for
  * each entry of these tables, the range of the values between this entry and the next one that have an
- * opacity above 0. In this table a maximum projection looks up the greatest value that is shown in a range of
- * values. */
+ * opacity above 0. In the made table, a maximum projection looks up the greatest value that is shown in a
+ * range of values. */
 #ifndef HL_PLAN_SHOWN_VALUES_H
 #define HL_PLAN_SHOWN_VALUES_H
 
@@ -12,9 +12,10 @@
 
 enum { SHOWN_ENTRIES = CLASSIFIER_ENTRIES + 2 };
 
-/* The first three numbers of an entry's row in the table of shown values. All of them are table coordinates.
- * Between the entry and the next one, the function shows values above SHOWN_FROM and up to SHOWN_TO.
- * SHOWN_BELOW is the greatest shown value below the entry; -1: there is no such value. */
+/* The first three numbers of an entry's row in the table of shown values. The three numbers are table
+ * coordinates. Between the entry and the next one, the function shows values above SHOWN_FROM and up to
+ * SHOWN_TO. SHOWN_BELOW is the greatest shown value below the entry; -1 if no value below the entry is shown.
+ */
 enum { SHOWN_FROM, SHOWN_TO, SHOWN_BELOW };
 
 /* Fills the table of a volume. function: the volume's transfer function, in frame space. rows:

@@ -15,8 +15,8 @@ static const double STEEPEST = 0.5;
  * direction (80 degrees). */
 static const double FLATTEST_EYE_RAY = 0.05, FLATTEST_LIGHT = 0.17;
 
-/* The least |cos| of the angle between a slicing axis h and the eye's rays through the picture's corners. It
- * is 0 unless all these rays cross the sheets in the same direction. */
+/* The least |cos| of the angle between a slicing axis h and the eye's rays through the picture's corners. The
+ * result is 0 unless all these rays cross the sheets in the same direction. */
 static double flattest_eye_ray(const view *eye, vec3 h) {
   double least = INFINITY, sense = 0;
   for (int corner = 0; corner < 4; corner++) {
@@ -55,8 +55,8 @@ static vec3 slicing_axis(const frame *frame, const hl_render_settings *settings,
  * rays, floors would shade themselves. */
 static const double FLATTEST = 0.2, FLATTEST_ALONE = 0.35;
 
-/* Whether, for all rays of a light, the cosine of the angle to the sheets' normal is at least `least`. They
- * are the rays from the centre of a near light, or the rays from the whole disk of a soft parallel light. */
+/* Returns whether, for all rays of a light, the cosine of the angle to the sheets' normal is at least
+ * `least`. The rays come from the centre of a near light, or from the whole disk of a soft parallel light. */
 static bool rays_cross(const frame *frame, const light_source *source, vec3 h, double least) {
   if (source->parallel) {
     double off = hl_acos(fmin(fmax(vec3_dot(source->direction, h), -1), 1));
@@ -102,8 +102,8 @@ static bool eye_crosses(const frame *frame, vec3 h, bool back_to_front) {
 
 /* The slicing axis of one light. Some rays of a near light, or of a wide parallel light, may not cross the
  * sheets of the half-way vector. Then the axis leans towards the middle of the light's rays, but no farther
- * than needed. So the axis moves without a jump as the light moves. For a parallel light it leans no farther
- * than the eye allows. Returns false if no sheets suit both a near light and the eye. */
+ * than needed. So the axis moves without a jump as the light moves. For a parallel light, the axis leans no
+ * farther than the eye allows. Returns false if no sheets suit both a near light and the eye. */
 static bool axis_of_light(const frame *frame, const hl_render_settings *settings, const light_source *source,
                           vec3 *h, bool *back_to_front) {
   const bool wide = source->parallel;
@@ -221,8 +221,8 @@ static void place_sheets(const frame *frame, sheet_stack *sheets) {
   sheets->first = (low + high) / 2 - (sheets->count - 1) * 0.5 * sheets->spacing;
 }
 
-/* Adds a sector of a light to the sweep that has sectors of the same direction; if there is none, adds a
- * sweep. */
+/* Adds a sector of a light to the sweep that has sectors of the same direction; if no sweep has such sectors,
+ * adds a sweep. */
 static void add_sector(const frame *frame, int light, sweep_sheets *sweeps, int *count) {
   vec3 axis = frame->lights[light].direction;
   int s = 0;
@@ -255,9 +255,9 @@ void hl_frame_add_eye_sweep(const frame *frame, sweep_sheets *sweeps, int *count
   place_sheets(frame, &added->sheets);
 }
 
-/* Adds a light without shadows to any sweep with room. If there is none, adds a sweep whose sheets are
- * parallel to the picture. light: the light's index; if it is -1, the function only makes sure that there is
- * a sweep with room. */
+/* Adds a light without shadows to any sweep with room. If no sweep has room, the function adds a sweep whose
+ * sheets are parallel to the picture. light: the light's index; -1 if the function is only to make sure that
+ * a sweep with room exists. */
 static void add_plain_light(const frame *frame, int light, sweep_sheets *sweeps, int *count) {
   int s = 0;
   while (s < *count && sweeps[s].light_count == FRAME_LIGHTS) s++;
@@ -283,7 +283,7 @@ static bool has_sun(const frame *frame, const sweep_sheets *sweep) {
   return any;
 }
 
-/* Refuses sheets of a number that is too large. */
+/* Refuses a sweep with too many sheets. */
 static hl_status refuse_sheets(const frame *frame, const sheet_stack *sheets, hl_error *error) {
   bool can_rise = sheets->spacing < GRID_MARGIN * frame->content.voxel;
   return hl_fail(

@@ -11,7 +11,7 @@
 typedef struct sweep_sheets {
   sheet_stack sheets;
   bool back_to_front; /* whether the eye's rays meet the sheets from the last to the first. The lights' rays
-                       * always meet them from the first to the last */
+                       * always meet the sheets from the first to the last */
   /* whether the sweep's lights are sectors of lights; the slicing direction is then the direction of these
    * sectors */
   bool of_sectors;
@@ -32,8 +32,8 @@ int hl_frame_sweeps(const frame *frame, const hl_render_settings *settings, swee
 /* Adds a sweep without lights, whose sheets are parallel to the picture and go front to back for the eye. */
 void hl_frame_add_eye_sweep(const frame *frame, sweep_sheets *sweeps, int *count);
 
-/* Refuses a sweep that has too many sheets. Also refuses a sweep whose sheets are not crossed by all rays of
- * the eye and of the lights that cast shadows. */
+/* Refuses a sweep that has too many sheets, and a sweep whose sheets are not crossed by all rays of the eye
+ * and of the lights that cast shadows. */
 hl_status hl_frame_check_sweeps(const frame *frame, const sweep_sheets *sweeps, int count, hl_error *error);
 
 #endif

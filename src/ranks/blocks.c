@@ -118,8 +118,8 @@ static bool serve(hl_ranks *ranks) {
 
 static void *run_server(void *data) {
   hl_ranks *ranks = data;
-  prctl(PR_SET_TIMERSLACK, 1000UL, 0UL, 0UL, 0UL); /* without this call, each pause may last 50 microseconds
-                                                    * longer */
+  prctl(PR_SET_TIMERSLACK, 1000UL, 0UL, 0UL, 0UL); /* without this call, each pause of the thread may last 50
+                                                    * microseconds longer */
   for (int asked = 0; !atomic_load(&ranks->server->stopped);) {
     asked = serve(ranks) ? 0 : asked + (asked < INT32_MAX);
     if (asked > 0) hl_ranks_pause(asked);
@@ -262,7 +262,7 @@ void hl_blocks_release(hl_blocks *blocks, bool together) {
 
 /* ---- fetching ---- */
 
-/* Reserves one of the fetches for the calling thread. Waits until one of them is free. */
+/* Reserves one of the fetches for the calling thread, and waits until a fetch is free. */
 static block_fetch *begin_fetch(hl_blocks *blocks) {
   block_fetch *fetch = NULL;
   pthread_mutex_lock(&blocks->lock);

@@ -4,7 +4,7 @@
  * A rank that needs a part sends requests to the ranks whose blocks overlap the part. In each of these ranks
  * a thread answers with packed copies. The messages are two-sided, because blocks may have any layout in
  * their owner's memory, with ghosts and strides. One-sided messages would not work: over TCP, Open MPI 4.1
- * answers them only while the owner calls MPI. */
+ * answers one-sided messages only while the owner calls MPI. */
 #ifndef HL_RANKS_BLOCKS_H
 #define HL_RANKS_BLOCKS_H
 

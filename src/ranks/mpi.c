@@ -28,7 +28,7 @@ static const char *const names[MPI_FUNCTIONS] = {[MPI_INITIALIZED] = "MPI_Initia
 /* ---- loading ---- */
 
 /* Sets the functions and handles. Returns null if the library has all functions and handles, else the name of
- * the missing one. */
+ * a missing function or handle. */
 static const char *missing_of(const mpi_library *kind, void *library, mpi *mpi) {
   *mpi = (struct mpi){.name = kind->name, .calls = kind->calls};
   for (int n = 0; n < MPI_FUNCTIONS; n++) {

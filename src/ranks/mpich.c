@@ -1,5 +1,5 @@
-/* ranks/mpich.c - defines MPICH's handles and constants. The source is the header of MPICH 4.0. Its binary
- * interface is the same since 3.1, and Intel MPI and MVAPICH share it. */
+/* ranks/mpich.c - defines MPICH's handles and constants. The source is the header of MPICH 4.0. MPICH's
+ * binary interface has not changed since 3.1, and Intel MPI and MVAPICH share it. */
 #define _GNU_SOURCE
 #include <dlfcn.h>
 #include <stddef.h>

@@ -10,7 +10,7 @@
 #include "core/context.h"
 #include "core/memory.h"
 
-/* The most values or bytes that one call of MPI transfers, because MPI counts them by an int. */
+/* The greatest number of values or bytes that one call of MPI transfers, because MPI counts by an int. */
 enum { MOST_VALUES = 1 << 28 };
 
 /* ---- waiting ---- */
@@ -69,7 +69,7 @@ hl_status hl_ranks_begin_step(hl_ranks *ranks, ranks_step step, const size_t dim
 }
 
 /* Messages must be shorter than 2^31 bytes; callers send only some megabytes. Messages between two ranks keep
- * their order, so one tag serves all of them. */
+ * their order, so one tag serves all messages. */
 void hl_ranks_send(hl_ranks *ranks, const void *from, size_t bytes, void *to, size_t most,
                    mpi_handle *pending) {
   const mpi_calls *calls = ranks->mpi.calls;

@@ -20,20 +20,22 @@ struct hl_ranks {
   hl_context *context;
   mpi mpi;
   int rank, size;
-  bool started;                          /* whether hl_ranks_join() started MPI; if so, this library must end
-                                          * it, too */
+  bool started;                          /* whether hl_ranks_join() started MPI; if so, this library must also
+                                          * end MPI */
   uint64_t *numbers;                     /* owned; [size], memory of hl_ranks_compare() */
   pthread_mutex_t calling;               /* held during each call of MPI */
   struct hl_block_server *server;        /* owned (blocks.h); null if no blocks are shared */
-  atomic_uint_least64_t bytes, requests; /* received from other ranks */
+  atomic_uint_least64_t bytes, requests; /* the bytes that were received from other ranks, and the requests
+                                          * for them */
   atomic_uint_least64_t nanoseconds;     /* the sum of the times during which threads waited for bytes from
                                           * other ranks */
 };
 
-/* Waits until a request is done. Other threads can call MPI meanwhile. */
+/* Waits until a request is done. While the function waits, other threads can call MPI. */
 void hl_ranks_wait(hl_ranks *ranks, mpi_handle request);
 
-/* Pauses between two tests of a request. asked: the number of tests so far; pauses grow with it. */
+/* Pauses between two tests of a request. asked: the number of tests so far; the more tests, the longer the
+ * pause. */
 void hl_ranks_pause(int asked);
 
 /* Tags of messages. The tags of replies to requests (blocks.c) begin at TAG_REPLY. */
@@ -47,17 +49,17 @@ void hl_ranks_barrier(hl_ranks *ranks);
  * bytes. to: [size][bytes]. */
 void hl_ranks_gather(hl_ranks *ranks, const void *from, size_t bytes, void *to);
 
-/* What ranks do together before their scenes are compared. A rank with another file or another option would
- * take part in another collective than the other ranks. */
+/* The steps that ranks take together before their scenes are compared. A rank with another file or another
+ * option would take part in another collective than the other ranks. */
 typedef enum ranks_step { RANKS_SHARE_VOLUME = 1, RANKS_COPY_LABELS } ranks_step;
 
 /* Fails on all ranks if they do not all begin the same step, with an array of the same dimensions. */
 hl_status hl_ranks_begin_step(hl_ranks *ranks, ranks_step step, const size_t dimension[3], hl_error *error);
 
-/* Begins to send this rank's bytes to all other ranks, and to receive theirs. Ranks may send different
- * numbers of bytes, each at most `most`. to: [size][most]; this rank's own row is left as it is. pending: [2
- * size], memory of the caller. All ranks begin these exchanges in the same order. The arrays must not change
- * before hl_ranks_receive() returns. */
+/* Begins to send this rank's bytes to all other ranks, and to receive the bytes of the other ranks. Ranks may
+ * send different numbers of bytes, each at most `most`. to: [size][most]; this rank's own row is not changed.
+ * pending: [2 size], memory of the caller. All ranks begin these exchanges in the same order. The arrays must
+ * not change before hl_ranks_receive() returns. */
 void hl_ranks_send(hl_ranks *ranks, const void *from, size_t bytes, void *to, size_t most,
                    mpi_handle *pending);
 /* Lets an exchange that was begun make progress. */

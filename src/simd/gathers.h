@@ -26,9 +26,9 @@ LANES_INLINE void lanes_store_offsets(lanes_offsets *offsets, lanes_int value) {
   __asm__ volatile("" : : "r"(offsets) : "memory");
 }
 
-/* Loads four bytes for each of sixteen lanes, at base + offset (bytes). These are plain loads, because gather
- * instructions were four times slower on processors with the mitigations against data sampling (measured).
- * clang 19 nevertheless generates some gather instructions for AVX-512. */
+/* Loads four bytes for each of sixteen lanes, at base + offset (bytes). The loads are plain loads, because
+ * gather instructions were four times slower on processors with the mitigations against data sampling
+ * (measured). clang 19 nevertheless generates some gather instructions for AVX-512. */
 LANES_CALL lanes_int lanes_load_words(const unsigned char *base, const lanes_offsets *offsets) {
 #define LANES_WORD(lane) lanes_word(base + offsets->at[lane])
   return (lanes_int){LANES_WORD(0),  LANES_WORD(1),  LANES_WORD(2),  LANES_WORD(3),
@@ -128,8 +128,9 @@ LANES_CALL void lanes_gather_quads(const float *table, lanes_int index, lanes qu
 #endif
 }
 
-/* Gathers table[4 index + c] as first[c] and table[4 (index + 1) + c] as second[c], for c from 0 to columns -
- * 1. It takes one or two loads for each lane, where separate columns would take two loads each. */
+/* Gathers table[4 index + c] as first[c] and table[4 (index + 1) + c] as second[c], for c from 0 to columns
+ * - 1. The function takes one or two loads for each lane, while separate columns would take two loads each.
+ */
 LANES_INLINE void gather_rows_of_four(const float *table, lanes_int index, int columns, lanes *first,
                                       lanes *second) {
 #if defined(__AVX512F__)
@@ -182,7 +183,7 @@ LANES_INLINE __m128 two_pairs(const float *table, int32_t first, int32_t second)
 }
 #endif
 
-/* Gathers table[index] and table[index + 1], by one load for both. */
+/* Gathers table[index] and table[index + 1] by a single load for the two numbers. */
 LANES_CALL void lanes_gather_pairs(const float *table, lanes_int index, lanes *first, lanes *second) {
 #if defined(__AVX512F__)
   lanes_offsets offsets;

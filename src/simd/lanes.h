@@ -1,9 +1,10 @@
-/* simd/lanes.h - operations on sixteen floats at a time, in one source for every instruction set.
+/* simd/lanes.h - defines operations on sixteen floats at a time, in one source for every instruction set.
  *
  * The compiler's vector extensions translate each operation to one 512-bit, two 256-bit or four 128-bit
- * instructions. These are always the same IEEE operations in the same order, so the bytes of a picture do not
- * depend on the processor. Intrinsics are used only for operations that the extensions lack (minimum, gather,
- * fused multiply-add). A product and a sum are fused only by lanes_fma() (-ffp-contract=off). */
+ * instructions. The instructions always do the same IEEE operations in the same order, so the bytes of a
+ * picture do not depend on the processor. Intrinsics are used only for operations that the extensions lack
+ * (minimum, gather, fused multiply-add). A product and a sum are fused only by lanes_fma()
+ * (-ffp-contract=off). */
 #ifndef HL_SIMD_LANES_H
 #define HL_SIMD_LANES_H
 
@@ -104,8 +105,8 @@ LANES_CALL lanes_int lanes_from_bits(uint32_t bits) {
   return (lanes_set_int((int32_t)bits) & one_bit) != 0;
 }
 
-/* Two functions: the lesser number, a < b ? a : b, and the greater number, a > b ? a : b. If either number is
- * NaN, the result is b, as with the processor's instructions. */
+/* lanes_min() gives the lesser number, a < b ? a : b, and lanes_max() the greater number, a > b ? a : b. If a
+ * or b is NaN, the result is b, as with the processor's instructions. */
 LANES_CALL lanes lanes_min(lanes a, lanes b) {
 #if defined(__AVX512F__)
   return (lanes)_mm512_min_ps((__m512)a, (__m512)b);
@@ -177,7 +178,7 @@ LANES_CALL lanes fma_in_doubles(lanes a, lanes b, lanes c) {
   if (!any_lane(middle | subnormal)) return rounded;
   lanes_double back = sum - product, lost = (product - (sum - back)) + (addend - back);
   lanes_long even = ((lanes_long)sum & 1) - 1, inexact = (lost < 0.0) | (lost > 0.0);
-  lanes_long outwards = (lost > 0.0) ^ (sum < 0.0); /* a mask: all bits are set, or no bits */
+  lanes_long outwards = (lost > 0.0) ^ (sum < 0.0); /* a mask: each element has all bits set, or no bit */
   return __builtin_convertvector((lanes_double)((lanes_long)sum + (inexact & even & (-2 * outwards - 1))),
                                  lanes);
 }

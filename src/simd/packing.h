@@ -1,4 +1,4 @@
-/* simd/packing.h - packing: moves chosen lanes of a vector side by side, and back. */
+/* simd/packing.h - packs lanes: moves chosen lanes of a vector side by side, and back. */
 #ifndef HL_SIMD_PACKING_H
 #define HL_SIMD_PACKING_H
 

@@ -7,8 +7,8 @@
 
 #include <halflight/compose.h>
 
-/* Gives a grey blue to meshes that have the first standard colour, because volumes and their surfaces have
- * that colour. */
+/* Gives a grey blue to meshes that have the first standard colour, because volumes and their isosurfaces have
+ * the first standard colour. */
 static void set_apart(hl_scene_mesh *meshes, size_t count) {
   static const double grey_blue[3] = {0.24, 0.33, 0.45};
   double first[3];
@@ -64,7 +64,7 @@ hl_status join_meshes(hl_context *context, const hl_scene_mesh *added, size_t co
 /* ---- scenes ---- */
 
 /* Adds meshes to a scene. A mesh with the first standard colour gets the standard colour of its place in the
- * list instead. */
+ * list. */
 static hl_status join_colored(hl_context *context, const hl_scene_mesh *meshes, size_t count,
                               hl_scene **scene, hl_error *error) {
   const size_t before = hl_scene_describe(*scene)->mesh_count;

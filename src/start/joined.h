@@ -17,8 +17,8 @@ hl_status join_meshes(hl_context *context, const hl_scene_mesh *added, size_t co
                       hl_scene **scene, hl_error *error);
 
 /* Makes one scene of two: the volumes and meshes of the first scene, and after them the volumes and meshes of
- * the second. Light, background and settings are taken from the first scene. Its camera keeps its direction,
- * and is moved so that it frames everything. */
+ * the second scene. Light, background and settings are taken from the first scene. The camera of the first
+ * scene keeps its direction, and is moved so that it frames everything. */
 hl_status join_scenes(hl_context *context, hl_scene *base, hl_scene *added, hl_scene **scene,
                       hl_error *error);
 

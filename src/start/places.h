@@ -11,8 +11,8 @@
 enum {
   MOST_SLICE_SIDE = 8192,           /* greatest number of samples in a row, of rows, and of layers of a
                                      * slice */
-  MOST_SLICE_SAMPLES = 16 << 20,    /* the most samples of all rows of a slice */
-  MOST_LAYERED_SAMPLES = 512 << 20, /* the most samples of all layers of a slice */
+  MOST_SLICE_SAMPLES = 16 << 20,    /* greatest number of samples of all rows of a slice */
+  MOST_LAYERED_SAMPLES = 512 << 20, /* greatest number of samples of all layers of a slice */
   MOST_DEPTH_SIDE = 64              /* greatest side, in pixels, of a picture from which a depth is read */
 };
 
@@ -24,8 +24,8 @@ typedef enum slice_source {
   SLICE_OF_PICTURE = 2 /* the values that the picture shows; for a smoothed volume, the smoothed values */
 } slice_source;
 
-/* Finds the volume from which a slice is cut. number: the number of the scene's volume. Returns null if there
- * is no such volume. */
+/* Finds the volume from which a slice is cut. number: the number of the scene's volume. Returns null if the
+ * scene has no such volume. */
 const hl_volume *sliced_volume(const hl_scene *scene, long long number, slice_source source);
 
 /* Makes the values of a plane, row by row, in the machine's byte order. A value has four bytes if floats hold

@@ -30,7 +30,8 @@ static void put_numbers(FILE *out, const double *numbers, size_t count) {
 }
 
 /* Writes the grid of voxels. `axes` are the steps from a voxel to its neighbours, in the world, from which
- * the page finds the box of the voxels. unit: the factor that converts the grid's lengths to the volume's. */
+ * the page finds the box of the voxels. unit: the factor that converts the grid's lengths to the volume's
+ * unit. */
 static void put_grid(FILE *out, const hl_volume_info *info, double unit) {
   const double origin[3] = {unit * info->origin[0], unit * info->origin[1], unit * info->origin[2]};
   fprintf(out, "\"dimensions\":[%zu,%zu,%zu],\"origin\":", info->dimensions[0], info->dimensions[1],
@@ -46,7 +47,7 @@ static void put_grid(FILE *out, const hl_volume_info *info, double unit) {
   fputc(']', out);
 }
 
-/* Writes the grid of the label map that masks a volume, or null if there is none. */
+/* Writes the grid of the label map that masks a volume, or null if the volume has no mask. */
 static void put_mask(FILE *out, const hl_scene_volume *volume) {
   const hl_volume *mask = volume->mask.volume;
   hl_volume_info info = {.struct_size = sizeof info};
@@ -109,7 +110,7 @@ static void put_series(FILE *out, const hl_volume *volume) {
   fputc(']', out);
 }
 
-/* Returns whether the volume's cuts are the automatic ones, which remove the table or another holder. */
+/* Returns whether the volume's cuts are the automatic cuts, which remove the table or another holder. */
 static bool has_chosen_cuts(hl_context *context, const hl_scene_volume *volume) {
   hl_scene *chosen = NULL;
   if (volume->cut_count == 0 ||
@@ -177,7 +178,7 @@ static void put_volume(FILE *out, hl_context *context, const hl_scene_volume *vo
 }
 
 /* Writes the names of the choices of one of the options by which scenes are composed. Writes an empty list if
- * there is no such option. */
+ * the option does not exist. */
 static void put_choices(FILE *out, const char *name, const char *option) {
   const hl_setting_choice *choices = hl_option_choices(option);
   fprintf(out, ",\"%s\":[", name);
