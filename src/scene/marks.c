@@ -43,8 +43,8 @@ hl_status hl_marks_check(const hl_mark *marks, size_t count, hl_error *error) {
   return status;
 }
 
-/* Copies the text and the points of a mark. After a failure, *to holds the parts that were copied before
- * it. */
+/* Copies the text and the points of a mark. After a failure, *to holds the parts that were copied before the
+ * failure. */
 static hl_status copy_mark(hl_context *context, const hl_mark *from, hl_mark *to, hl_error *error) {
   *to = (hl_mark){.kind = from->kind, .point_count = from->point_count};
   const size_t bytes = from->point_count * sizeof *from->points;

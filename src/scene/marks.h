@@ -1,4 +1,4 @@
-/* scene/marks.h - describes the marks of a scene: measures and texts that stand in it. */
+/* scene/marks.h - describes the marks of a scene: measures and texts that stand in the scene. */
 #ifndef HL_SCENE_MARKS_H
 #define HL_SCENE_MARKS_H
 
@@ -18,14 +18,14 @@ typedef struct hl_mark_rule {
   size_t least, most; /* the least and the greatest number of points */
 } hl_mark_rule;
 
-/* The rule of a kind of mark; null if there is no such kind. */
+/* The rule of a kind of mark; null if the kind does not exist. */
 const hl_mark_rule *hl_mark_rule_of(int kind);
 
 /* Checks the marks of a description. Errors name the field ("/marks/0/points"). */
 hl_status hl_marks_check(const hl_mark *marks, size_t count, hl_error *error);
 
-/* Copies marks with their texts and points. *copy is owned by the caller (hl_marks_release); it is null if
- * there are no marks. */
+/* Copies marks with their texts and points. *copy: owned by the caller (hl_marks_release); null if `count` is
+ * 0. */
 hl_status hl_marks_copy(hl_context *context, const hl_mark *marks, size_t count, hl_mark **copy,
                         hl_error *error);
 /* Releases an array of marks with their points and texts. marks: may be null. */

@@ -1,5 +1,5 @@
-/* scene/order.c - finds the order in which frames use lights, volumes and meshes (order.h). Each of them has
- * a key, which contains its settings. Keys are compared byte by byte. */
+/* scene/order.c - finds the order in which frames use lights, volumes and meshes (order.h). Each light,
+ * volume and mesh has a key, which contains its settings. Keys are compared byte by byte. */
 #include "scene/order.h"
 
 #include <string.h>
@@ -102,8 +102,8 @@ static int compare_bytes(const void *a, const void *b, size_t count) {
 }
 
 /* Compares the voxels of volumes with equal size and storage. Voxels that are not in memory count as equal,
- * because their histograms have been found equal before. Voxels of sparse pages count as equal, too, if there
- * is no memory for two rows. */
+ * because their histograms have been found equal before. Voxels of sparse pages also count as equal if memory
+ * for two rows is lacking. */
 static int compare_voxels(const hl_volume *a, const hl_volume *b) {
   if (a == b || a == NULL || b == NULL || !hl_volume_is_in_memory(a) || !hl_volume_is_in_memory(b)) return 0;
   const size_t row = a->dimension[0] * hl_storage_bytes(a->storage);
@@ -134,7 +134,7 @@ static void write_mesh(const void *data, hl_key *key) {
   hl_key_add_whole(key, (int64_t)mesh->mesh->mark);
 }
 
-/* Compares meshes. Meshes with equal keys have the same triangles and spheres. */
+/* Compares the normals of meshes with equal keys. Such meshes have the same triangles and spheres. */
 static int compare_meshes(const void *a, const void *b) {
   const hl_mesh_description *first = &((const hl_scene_mesh *)a)->mesh->description,
                             *second = &((const hl_scene_mesh *)b)->mesh->description;

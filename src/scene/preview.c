@@ -16,8 +16,8 @@
 
 enum { MOST_LEVELS = 3, LEAST_VOXELS = 64 * 64 * 64 };
 
-/* A volume, and copies of it from fine to coarse. There are no copies if the volume can have no copies of
- * this kind. */
+/* A volume, and its copies from fine to coarse. `count` is 0 if the volume can have no copies of this kind.
+ */
 typedef struct levels {
   hl_volume *volume;               /* the volume; retained */
   hl_coarser_kind kind;            /* the use for which the copies are made: as labels or as values */
@@ -25,15 +25,15 @@ typedef struct levels {
   size_t count;
 } levels;
 
-/* Two numbers whose product is the greatest number of lists of copies for a scene's volume. MAPS: there are
- * lists for the volume and for its mask. KINDS: each of the two may be used as values and as labels. */
+/* Two numbers whose product is the greatest number of lists of copies for a scene's volume. MAPS: the volume
+ * and its mask have lists. KINDS: the volume and the mask may each be used as values and as labels. */
 enum { MAPS = 2, KINDS = 2 };
 
 struct hl_preview {
   hl_context *context;
   pthread_mutex_t adding; /* held while `volumes` is read or grows */
   size_t count;
-  levels volumes[]; /* [count]; there is room for all kinds of all volumes and masks */
+  levels volumes[]; /* [count]; with room for all kinds of all volumes and masks */
 };
 
 static void release_levels(levels *l) {
@@ -79,8 +79,8 @@ static bool is_known(const hl_preview *preview, const hl_volume *volume) {
          levels_of(preview, volume, HL_COARSER_LABELS) != NULL;
 }
 
-/* Makes the copies of a volume for a use, if it can have copies and has none yet. If memory is short, the
- * copies that were made are kept, and no further copies are tried later. */
+/* Makes the copies of a volume for a use, if the volume can have such copies and has none yet. If memory is
+ * short, the copies that were made are kept, and no further copies are tried later. */
 static hl_status add_levels(hl_preview *preview, hl_volume *volume, hl_coarser_kind kind, hl_error *error) {
   if (volume == NULL || levels_of(preview, volume, kind) != NULL) return HL_OK;
   levels *l = &preview->volumes[preview->count];
@@ -142,7 +142,7 @@ static double edge_of(const hl_scene_volume *volume, hl_volume *map) {
 }
 
 /* The coarsest copy of a volume, or of its mask, whose voxels are not much longer than the distance between
- * sheets; null if no copy is used. */
+ * sheets; null if the volume has no copies, or if all copies are coarser. */
 static hl_volume *copy_for(const hl_preview *preview, const hl_scene_volume *volume, const hl_volume *map,
                            hl_coarser_kind kind, double apart) {
   const levels *l = levels_of(preview, map, kind);
@@ -151,7 +151,8 @@ static hl_volume *copy_for(const hl_preview *preview, const hl_scene_volume *vol
   return NULL;
 }
 
-/* Replaces a volume and its mask by their coarser copies. Returns false if both stay as they are. */
+/* Replaces a volume and its mask by their coarser copies. Returns false if neither the volume nor the mask is
+ * replaced. */
 static bool replace(const hl_preview *preview, hl_scene_volume *volume, double apart) {
   hl_volume *copy = copy_for(preview, volume, volume->volume, kind_of(volume), apart);
   hl_volume *mask = copy_for(preview, volume, volume->mask.volume, HL_COARSER_LABELS, apart);

@@ -1,4 +1,5 @@
-/* scene/scene.c - defaults of descriptions, and scenes: checked deep copies of a description.
+/* scene/scene.c - sets defaults of descriptions, and makes scenes, which are checked deep copies of
+ * descriptions.
  *
  * A scene owns every array and text of its copy and holds a reference to each volume.
  */
@@ -122,7 +123,7 @@ static void destroy(hl_scene *scene) {
   hl_release(context, scene);
 }
 
-/* Copies an array into memory that the caller owns. The copy is null if there are no items. */
+/* Copies an array into memory that the caller owns. The copy is null if `count` is 0. */
 static hl_status copy_array(hl_context *context, const void *items, size_t count, size_t size,
                             const char *what, void **copy, hl_error *error) {
   *copy = NULL;
@@ -164,8 +165,8 @@ hl_status hl_transfer_function_copy(hl_context *context, const hl_transfer_funct
   return status;
 }
 
-/* Copies a volume's transfer function. For a function of two numbers, opacity and colour become its outline,
- * a function of the value alone. */
+/* Copies a volume's transfer function. For a function of two numbers, opacity and colour become the
+ * function's outline, which depends on the value alone. */
 static hl_status copy_function(hl_context *context, const hl_transfer_function *from, const hl_volume *volume,
                                hl_transfer_function *to, hl_error *error) {
   hl_status status = hl_transfer_function_copy(context, from, to, error);
@@ -175,8 +176,8 @@ static hl_status copy_function(hl_context *context, const hl_transfer_function *
   return hl_plane_outline(context, volume->minimum, volume->maximum, to, error);
 }
 
-/* Copies a volume. A pointer in *to is null until *to owns what it points to, so that release_volume() can be
- * called after a failure. */
+/* Copies a volume. A pointer in *to is null until *to owns the memory behind the pointer, so that
+ * release_volume() can be called after a failure. */
 static hl_status copy_volume(hl_context *context, const hl_scene_volume *from, hl_scene_volume *to,
                              hl_error *error) {
   *to = *from;
@@ -276,7 +277,7 @@ void hl_light_images_release(hl_context *context, hl_light *light) {
 typedef struct light_picture {
   const float *pixels; /* [height][width][3]; linear RGB; null if there is no image */
   int width, height;
-  const char *file; /* name of the image's file; null if there is none */
+  const char *file; /* name of the image's file; null if the image has no file */
 } light_picture;
 
 static hl_status copy_picture(hl_context *context, light_picture from, const float **pixels,
@@ -289,7 +290,7 @@ static hl_status copy_picture(hl_context *context, light_picture from, const flo
   return status == HL_OK ? copy_text(context, from.file, file, error) : status;
 }
 
-/* Copies a light's images. A pointer in *to is null until *to owns what it points to. */
+/* Copies a light's images. A pointer in *to is null until *to owns the memory behind the pointer. */
 static hl_status copy_images(hl_context *context, const hl_light *from, hl_light *to, hl_error *error) {
   const hl_light_texture *texture = &from->texture;
   const hl_light_emission *emission = &from->emission;
@@ -325,7 +326,7 @@ static hl_status copy_lights(hl_scene *scene, const hl_scene_description *from, 
   return status;
 }
 
-/* Copies a sky's image, if it has one. */
+/* Copies the image of a sky, if the sky is an image. */
 static hl_status copy_sky(hl_scene *scene, const hl_sky *from, hl_error *error) {
   hl_sky *to = &scene->description.sky;
   to->file = NULL;
@@ -335,8 +336,8 @@ static hl_status copy_sky(hl_scene *scene, const hl_sky *from, hl_error *error) 
                       &to->pixels, &to->file, error);
 }
 
-/* Returns whether bright spots of the sky's image become lights of the scene (suns). They do only if the
- * scene has shadows, half-vector slicing and lit matter. */
+/* Returns whether bright spots of the sky's image become lights of the scene (suns). Bright spots become suns
+ * only if the scene has shadows, half-vector slicing and lit matter. */
 static bool has_suns(const hl_scene_description *d) {
   return d->sky.suns && d->sky.strength > 0 && d->render.shadows != HL_SHADOWS_OFF &&
          d->render.slicing == HL_SLICING_HALF_VECTOR && d->render.compositing == HL_COMPOSITING_LIGHT;

@@ -1,4 +1,4 @@
-/* scene/scene.h - struct hl_scene: a checked deep copy of a description. */
+/* scene/scene.h - declares struct hl_scene, a checked deep copy of a description. */
 #ifndef HL_SCENE_SCENE_H
 #define HL_SCENE_SCENE_H
 
@@ -17,14 +17,14 @@
 struct hl_scene {
   hl_context *context;
   atomic_int references;
-  hl_scene_description description; /* the description as it was given; its arrays and texts are owned by
-                                     * the scene */
+  hl_scene_description description; /* the description as the program gave it; the scene owns its arrays and
+                                     * texts */
   /* the description with all lights in the world, and with the scene's cuts in its volumes. The suns of the
-   * sky follow the lights, and the sky's image lacks them. The array of lights is owned */
+   * sky follow the lights, and the sky's image lacks the suns' light. The array of lights is owned */
   hl_scene_description placed;
-  sky_suns suns;      /* the suns of the sky; if placed.sky.suns is set, they are lights of `placed` */
+  sky_suns suns;      /* the suns of the sky; if placed.sky.suns is set, the suns are lights of `placed` */
   placed_cuts cut;    /* the volumes of `placed`, if the scene has cuts of its own */
-  drawn_scene *drawn; /* owned; the form of the scene that frames draw; null until a frame asks for it */
+  drawn_scene *drawn; /* owned; the form of the scene that frames draw; empty until a frame asks for it */
   char *field_errors; /* owned; JSON that says how much the volumes' fields differ from their files
                        * (field_errors.c); null if no difference is known */
   uint64_t sky_mark;  /* a number that identifies the pixels of the sky's image, for the keys of kept
@@ -41,10 +41,10 @@ hl_status hl_scene_draw(const hl_scene *scene, const drawn_scene **drawn, hl_err
 hl_status hl_field_errors_write(hl_context *context, const hl_scene_description *description, char **text,
                                 hl_error *error);
 
-/* Frees the pixels and file names of a light's texture and emission, where they are owned. */
+/* Frees the pixels and file names of a light's texture and emission, which the light must own. */
 void hl_light_images_release(hl_context *context, hl_light *light);
 
-/* Copies labels with their names into one block (hl_release). The copy is null if there are no labels. */
+/* Copies labels with their names into one block (hl_release). The copy is null if `count` is 0. */
 hl_status hl_labels_copy(hl_context *context, const hl_label *labels, size_t count, const hl_label **copy,
                          hl_error *error);
 

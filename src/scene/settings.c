@@ -34,7 +34,7 @@ bool hl_setting_is_for(const hl_setting *setting, int type) {
   return setting->only_for == 0 || (setting->only_for >> type & 1) != 0;
 }
 
-/* The number of doubles in a setting's field; if 0, the field is an int. */
+/* The number of doubles in a setting's field; 0 if the field is an int. */
 static size_t doubles_of(const hl_setting *setting) {
   switch (setting->type) {
     case HL_SETTING_NUMBER: return 1;

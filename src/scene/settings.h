@@ -26,7 +26,7 @@ bool hl_setting_is_standard(const hl_setting *setting, const void *object);
 /* Sets the fields of all settings of an object to their defaults. */
 void hl_settings_defaults(hl_setting_kind kind, void *object);
 
-/* Adds the fields of all settings that objects of a type have to a key, in the order of the rows. */
+/* Adds to a key the fields of all settings that objects of a type have, in the order of the rows. */
 void hl_settings_key_add(hl_setting_kind kind, const void *object, int type, hl_key *key);
 
 /* The name of one of a setting's choices; null if no choice has this value. */
@@ -42,7 +42,7 @@ hl_status hl_setting_check(const hl_setting *setting, const void *object, const 
 hl_status hl_settings_check_key(hl_setting_kind kind, const char *key, const void *object, const char *place,
                                 hl_error *error);
 
-/* Checks all settings that objects of this type have, in the rows' order. */
+/* Checks all settings that objects of a type have, in the order of the rows. */
 hl_status hl_settings_check(hl_setting_kind kind, const void *object, int type, const char *place,
                             hl_error *error);
 

@@ -1,7 +1,8 @@
 /* scene/settings_table.c - defines the tables of settings: one row for each key of a scene.
  *
- * A new setting is a field of a public struct and a row here; scripts/settings then writes it into the schema
- * and the manual page. Ranges, defaults and names stand nowhere else. */
+ * A new setting needs a field in a public struct and a row in this file. scripts/settings then writes the
+ * setting into the schema and the manual page. Ranges, defaults and names of settings stand only in this
+ * file. */
 #include <stddef.h>
 
 #include <halflight/settings.h>

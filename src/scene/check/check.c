@@ -35,8 +35,8 @@ static hl_status check_camera(const hl_camera *camera, hl_error *error) {
 
 /* ---- checks of several parts together: distances beside voxels, brightness ---- */
 
-/* Checks that a light is not too bright at a distance as short as a voxel. Derived: if a light's brightness
- * falls with the square of the distance, it is intensity / d^2 at the distance d. */
+/* Checks that a light is not too bright at a distance as short as a voxel. Derived: a light that falls with
+ * the square of the distance has the brightness intensity / d^2 at the distance d. */
 static hl_status check_brightness(const hl_checker *check, const hl_light *light,
                                   const hl_frame_space *space) {
   double brightness = fmax(fmax(light->color[0], light->color[1]), light->color[2]) * light->intensity;
@@ -109,8 +109,8 @@ static hl_status check_second(const hl_scene_description *d, size_t v, hl_error 
   return HL_OK;
 }
 
-/* Checks that the scene can use a field in bricks: if the field has several levels, it must be a sum of
- * B-splines. */
+/* Checks that the scene can use a field in bricks: the scene must not splat the field, and if the field has
+ * several levels, the scene's kernel must be "bspline" or "interpolating". */
 static hl_status check_bricks(const hl_scene_description *d, size_t v, hl_error *error) {
   const hl_kernel kernel = d->render.kernel;
   if (d->volumes[v].volume->bricks == NULL) return HL_OK;

@@ -7,8 +7,8 @@
 #include "scene/check/limits.h"
 #include "scene/settings.h"
 
-/* The object whose values are checked, and where errors are stored. place: the JSON pointer of the object,
- * such as "/lights/3". */
+/* The object whose values are checked, and the place at which errors are stored. place: the JSON pointer of
+ * the object, such as "/lights/3". */
 typedef struct hl_checker {
   hl_error *error;
   char place[80];
@@ -17,8 +17,8 @@ typedef struct hl_checker {
 /* Reports a bad value: fails with the line "PLACE/KEY: PROBLEM". */
 hl_status hl_check_refuse(const hl_checker *check, const char *key, const char *problem);
 
-/* Two checks by the tables of settings. hl_check_key() checks one setting. hl_check_settings() checks all
- * settings that an object of a type has; for kinds of objects without types, `type` is 0. */
+/* By the tables of settings, hl_check_key() checks one setting, and hl_check_settings() checks all settings
+ * that an object of a type has. type: 0 for kinds of objects without types. */
 hl_status hl_check_key(const hl_checker *check, hl_setting_kind kind, const char *key, const void *object);
 hl_status hl_check_settings(const hl_checker *check, hl_setting_kind kind, const void *object, int type);
 
@@ -26,12 +26,13 @@ hl_status hl_check_settings(const hl_checker *check, hl_setting_kind kind, const
 hl_status hl_check_range(const hl_checker *check, const char *key, double value, double low, double high,
                          const char *mend);
 
-/* Check the opacity and the colour of point `index` of the list `key` of a transfer function's points. */
+/* hl_check_point_opacity() and hl_check_point_color() check the opacity and the colour of point `index` of
+ * the list `key` of a transfer function's points. */
 hl_status hl_check_point_opacity(const hl_checker *check, const char *key, size_t index, double opacity);
 hl_status hl_check_point_color(const hl_checker *check, const char *key, size_t index, const double color[3]);
 
-/* Two checks of vectors. hl_check_point() checks that coordinates are within HL_LIMIT_LENGTH, and
- * hl_check_direction() that a direction is not zero. */
+/* hl_check_point() checks that coordinates are within HL_LIMIT_LENGTH, and hl_check_direction() checks that a
+ * direction is not zero. */
 hl_status hl_check_point(const hl_checker *check, const char *key, const double v[3]);
 hl_status hl_check_direction(const hl_checker *check, const char *key, const double v[3]);
 

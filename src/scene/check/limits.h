@@ -1,4 +1,5 @@
-/* scene/check/limits.h - limits that several checks share; the range of each setting is in settings_table.c.
+/* scene/check/limits.h - defines limits that several checks share; the range of each setting is in
+ * settings_table.c.
  */
 #ifndef HL_SCENE_CHECK_LIMITS_H
 #define HL_SCENE_CHECK_LIMITS_H
@@ -18,11 +19,11 @@
 /* greatest number of pixels along a side of the image of a transfer function of two numbers */
 #define HL_LIMIT_PLANE_SIDE 4096
 #define HL_LIMIT_LENGTH     1e15 /* greatest coordinate or length; its square and its cube are finite */
-/* The greatest distance of a volume from the origin. A camera that frames such a volume stands within
- * HL_LIMIT_LENGTH. */
+/* The greatest distance of a volume from the origin. A camera that frames a volume at this distance stands
+ * within HL_LIMIT_LENGTH of the origin. */
 #define HL_LIMIT_CORNER 1e14
-/* The greatest intensity. It is large because light may fall off with the square of a distance that is given
- * in nanometres. */
+/* The greatest intensity of a light. The limit is large because light may fall off with the square of a
+ * distance that is given in nanometres. */
 #define HL_LIMIT_INTENSITY 1e35
 /* The greatest brightness of a light at a distance of one voxel edge. Sums and products of such numbers still
  * fit floats. */
@@ -38,6 +39,6 @@
 #define HL_LIMIT_SLABS_AT_ONCE 64
 #define HL_LIMIT_SHININESS     10000
 #define HL_LIMIT_EMISSION      1e6
-#define HL_LIMIT_EXPOSURE      32 /* greatest exposure, in stops, either way */
+#define HL_LIMIT_EXPOSURE      32 /* greatest magnitude of an exposure, in stops */
 
 #endif

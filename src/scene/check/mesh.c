@@ -1,4 +1,4 @@
-/* scene/check/mesh.c - checks a mesh of a scene: its settings, and where its corners are. */
+/* scene/check/mesh.c - checks a mesh of a scene: its settings, and the places of its corners. */
 #include <math.h>
 #include <stdio.h>
 

@@ -5,8 +5,8 @@
 #include "scene/check/checker.h"
 #include "scene/geometry/placement.h"
 
-/* Two checks of a setting. One refuses a length that is too great, the other a point that is too far away.
- * key: the key of the setting, which belongs to the object that `check` names. */
+/* hl_check_reach() refuses a length that is too great, and hl_check_distance() refuses a point that is too
+ * far from the volumes. key: the key of the setting, which belongs to the object that `check` names. */
 hl_status hl_check_reach(const hl_checker *check, const char *key, double length,
                          const hl_frame_space *space);
 hl_status hl_check_distance(const hl_checker *check, const char *key, const double point[3],

@@ -9,7 +9,8 @@
 #include "scene/geometry/placement.h"
 #include "scene/label/label_table.h"
 
-/* Checks that points are sorted by value. At most two points may have one value; they make a step. */
+/* Checks that points are sorted by value. At most two points may have the same value; two such points make a
+ * step. */
 static hl_status check_order(const hl_checker *check, const char *key, size_t index, double before2,
                              double before, double value) {
   if (value < before)
@@ -69,8 +70,8 @@ hl_status hl_transfer_function_check(const hl_transfer_function *function, const
   return status == HL_OK ? hl_plane_check(&function->plane, place, error) : status;
 }
 
-/* Checks the three scale factors. Each factor is the product of `scale` and one number of axis_scale; errors
- * tell the product. */
+/* Checks the three scale factors of a volume. Each factor is the product of `scale` and one number of
+ * axis_scale; errors tell the product. */
 static hl_status check_axis_scales(const hl_checker *check, const hl_scene_volume *volume) {
   const double *axis = volume->axis_scale;
   if (axis[0] == 1 && axis[1] == 1 && axis[2] == 1) return HL_OK;
@@ -180,7 +181,8 @@ static hl_status check_placement(const hl_checker *check, const hl_scene_volume 
   return HL_OK;
 }
 
-/* Checks the data values; if they are stored as floats, also checks the stored values. */
+/* Checks the data values of a volume. If the volume stores floats, the function also checks the stored
+ * values. */
 static hl_status check_values(const hl_checker *check, const hl_volume *volume) {
   double greatest = fmax(fabs(volume->minimum), fabs(volume->maximum)), stored = 0;
   if (volume->storage == HL_STORAGE_F32)

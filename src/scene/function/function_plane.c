@@ -1,6 +1,6 @@
 /* scene/function/function_plane.c - the boxes, polygons, images and curves of a transfer function of two
- * numbers: evaluates their opacity and colour at a point of the plane of the two numbers, or as a mean over a
- * part of it.
+ * numbers: evaluates their opacity and colour at a point of the plane of the two numbers, or their mean over
+ * a part of the plane.
  *
  * In: a transfer function. Out: extinction and colour, for the tables of grid/plane_table.c, for the
  * reference, and for the outline: a function of the value alone, which framing and exposure use. */
@@ -50,9 +50,9 @@ static double weight_along(const hl_function_box *box, int axis, double from, do
   return edge > 0 ? fmin(fmin(from - low, high - from) / edge, 1) : 1;
 }
 
-/* The weight of a point in the triangle of the apex and two vertices. It is the apex's barycentric
- * coordinate, which falls linearly from 1 at the apex to 0 on the border. It is negative if the point is
- * outside the triangle. */
+/* The weight of a point in the triangle of the apex and two vertices: the apex's barycentric coordinate,
+ * which falls linearly from 1 at the apex to 0 on the border. The weight is negative if the point is outside
+ * the triangle. */
 static double weight_in_triangle(const double apex[2], const double a[2], const double b[2],
                                  const double at[2]) {
   double ax = a[0] - apex[0], ay = a[1] - apex[1], bx = b[0] - apex[0], by = b[1] - apex[1];
@@ -143,7 +143,8 @@ void hl_curves_color(const hl_function_curves *curves, double second, const doub
   else hl_points_color(curves->color, curves->color_count, second, color);
 }
 
-/* Adds the mean extinction over the values of a part of the plane, in the mean colour over the part. */
+/* Adds the curves' mean extinction over the values of a part of the plane, in their mean colour over the
+ * part. */
 static void add_curves(const hl_transfer_function *function, const plane_box *part, int samples,
                        plane_sum *sum) {
   const hl_function_curves *curves = &function->plane.curves;
@@ -192,8 +193,8 @@ static void join(plane_box *bounds, const double low[2], const double high[2]) {
   }
 }
 
-/* Joins the values at which the curves may be visible, and the second numbers between which their colour
- * changes. */
+/* Extends the bounds to the values at which the curves may be visible, and to the second numbers between
+ * which the curves' colour changes. */
 static void join_curves(const hl_function_curves *curves, plane_box *bounds) {
   const hl_opacity_point *points = curves->opacity;
   size_t first = 0, end = curves->opacity_count, colors = curves->color_count;
@@ -294,7 +295,7 @@ static column column_between(const hl_function_plane *plane, double from, double
 }
 
 /* Replaces a function of two numbers by its outline. If shapes go on beyond the values `low` or `high`, the
- * outline keeps its opacity there; otherwise its opacity falls to 0. */
+ * outline keeps its opacity beyond these values; otherwise the outline's opacity falls to 0. */
 hl_status hl_plane_outline(hl_context *context, double low, double high, hl_transfer_function *function,
                            hl_error *error) {
   plane_box bounds;

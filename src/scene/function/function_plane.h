@@ -36,8 +36,8 @@ static inline bool hl_curves_keep_own(const hl_function_curves *curves, double s
   return second > curves->own_between[0] && second < curves->own_between[1];
 }
 
-/* Finds the colour of the curves at a second number. own: linear RGB; the volume's own colour, which it may
- * keep there. */
+/* Finds the colour of the curves at a second number. own: linear RGB; the volume's own colour, which the
+ * volume may keep at this second number. */
 void hl_curves_color(const hl_function_curves *curves, double second, const double own[3], double color[3]);
 
 /* The keys under which a scene file has the ranges of the two axes: "value" and "second". */
@@ -57,14 +57,14 @@ typedef struct plane_sum {
   double color[3];   /* linear RGB, multiplied by extinction */
 } plane_sum;
 
-/* The mean of a function of two numbers over a part of the plane. If low and high are the same, it is the
- * function at this point. */
+/* The mean of a function of two numbers over a part of the plane. If low and high are equal, the result is
+ * the function's value at this point. */
 plane_sum hl_plane_mean(const hl_transfer_function *function, const plane_box *part);
 
 /* Replaces the function's opacity and colour by the outline of the plane: a function of the value alone, over
- * the values between low and high. Its opacity at a value is at least the greatest opacity over all second
- * numbers, and is 0 only if nothing shows with any second number. The new points are owned by *function; the
- * old points are not freed. */
+ * the values between low and high. The outline's opacity at a value is at least the greatest opacity over all
+ * second numbers, and is 0 only if the function shows nothing at any second number. The new points are owned
+ * by *function; the old points are not freed. */
 hl_status hl_plane_outline(hl_context *context, double low, double high, hl_transfer_function *function,
                            hl_error *error);
 

@@ -97,7 +97,7 @@ static hl_checker inside(const char *place, const char *key, size_t index, hl_er
   return check;
 }
 
-/* Checks the points of one curve. point: the first point, which begins with its place along the axis. size:
+/* Checks the points of one curve. points: [count]; each point begins with its place along the axis. size: the
  * bytes of a point. */
 static hl_status check_order(const hl_checker *check, const char *key, const void *points, size_t count,
                              size_t size) {
@@ -116,7 +116,7 @@ static hl_status check_order(const hl_checker *check, const char *key, const voi
   return status;
 }
 
-/* Checks the colours that the volume keeps. */
+/* Checks the volume's own colours, which the volume keeps at some second numbers. */
 static hl_status check_own(const hl_checker *check, const hl_function_curves *curves) {
   hl_status status = check_order(check, "own_color", curves->own_color, curves->own_color_count,
                                  sizeof *curves->own_color);

@@ -1,7 +1,8 @@
 /* scene/function/points.h - evaluates lists of points: functions that are linear between points, and constant
  * beyond the first and the last point.
  *
- * Two points at one value make a step. At this value itself, the function has the number of the second point.
+ * Two points at the same value make a step. At the value of a step, the function has the number of the second
+ * point.
  */
 #ifndef HL_SCENE_FUNCTION_POINTS_H
 #define HL_SCENE_FUNCTION_POINTS_H

@@ -1,9 +1,9 @@
 /* scene/function/spread.c - moves a transfer function's points to another range of values, evenly or by
  * logarithms.
  *
- * Let t go from 0 to 1 over the old range. Evenly, a point moves to low + t (high - low); by logarithms, it
- * moves to low (high / low)^t. Logarithms make curves of the straight lines between points. So for logarithms
- * each line is divided at the multiples of 1/PIECES of t. */
+ * Let t go from 0 to 1 over the old range. Evenly, a point at t moves to low + t (high - low); by logarithms,
+ * the point moves to low (high / low)^t. Logarithms make curves of the straight lines between points. So for
+ * logarithms each line is divided at the multiples of 1/PIECES of t. */
 #include <math.h>
 #include <string.h>
 
@@ -14,7 +14,7 @@
 
 /* The number of pieces into which the range is divided. With d = ln(high / low) / PIECES, a straight piece
  * differs from the logarithm by at most d^2 / 8 (derived: a chord's distance from a logarithm). As a fraction
- * of ln(high / low), this is 4e-4 for six decades. */
+ * of ln(high / low), the difference is 4e-4 for six decades. */
 enum { PIECES = 64 };
 
 hl_status hl_transfer_function_visible_range(const hl_volume *volume, const hl_transfer_function *function,
@@ -31,7 +31,7 @@ hl_status hl_transfer_function_visible_range(const hl_volume *volume, const hl_t
   size_t count = function->opacity_count, first = 0, last = count;
   while (first < count && points[first].opacity <= 0) first++;
   while (last > first && points[last - 1].opacity <= 0) last--;
-  if (first == last) return HL_OK; /* in an empty range nothing is visible */
+  if (first == last) return HL_OK; /* without a visible point, the result is the whole range of values */
   double low = first > 0 ? points[first - 1].value : range[0];
   double high = last < count ? points[last].value : range[1];
   if (low > range[0] && low < range[1]) range[0] = low;
@@ -39,9 +39,10 @@ hl_status hl_transfer_function_visible_range(const hl_volume *volume, const hl_t
   return HL_OK;
 }
 
-/* The range of values that a transfer function grades. In pictures with light, it is the visible range. In a
- * maximum projection, where opacity only says whether a value counts, it goes from the value of the first
- * colour to the value of the last one; if these are the same, it is the visible range. */
+/* The range of values that a transfer function grades. In pictures with light, the graded range is the
+ * visible range. In a maximum projection, where opacity only decides whether a value counts, the graded range
+ * goes from the value of the first colour to the value of the last colour. If these two values are equal, the
+ * graded range is the visible range. */
 static hl_status graded_range(const hl_volume *volume, const hl_transfer_function *function, bool projected,
                               double range[2], hl_error *error) {
   const size_t count = function->color_count;
@@ -98,8 +99,8 @@ static void divide_rows(rows *r, const double old[2]) {
   if (end < 0) add_row(r, last, last, 0, 0);
 }
 
-/* Moves points to the new range of values. *to: receives the new rows (hl_release); *made: receives their
- * number. */
+/* Moves points to the new range of values. r->to: receives the new rows (hl_release). r->made: receives the
+ * number of new rows. */
 static hl_status spread_rows(hl_context *context, rows *r, const double old[2], const double range[2],
                              hl_range_scale scale, hl_error *error) {
   if (r->count == 0) return HL_OK;
@@ -137,7 +138,7 @@ hl_range_scale hl_transfer_function_scale(const hl_transfer_function *function) 
 }
 
 /* Moves all points to a new range. old: the values of colours that become the range's ends; held: the values
- * of opacities that do. */
+ * of opacities that become the range's ends. */
 static hl_status spread_all(hl_context *context, const hl_transfer_function *from, const double old[2],
                             const double held[2], const double range[2], hl_range_scale scale,
                             hl_transfer_function *to, hl_error *error) {
@@ -190,9 +191,10 @@ hl_status hl_transfer_function_spread(hl_context *context, const hl_transfer_fun
   return spread_checked(context, from, old, old, range, scale, to, error);
 }
 
-/* Moves the ends of a function's visible range that stay clear: these ends become the values that keep their
- * place. all: the range of the volume's values. mapped: a colormap is given, so that ends at clear values are
- * chosen for its colours. */
+/* Widens a function's visible range where clear values are to keep their place: the range's end moves to the
+ * end of the new range, but not beyond the volume's values. all: the range of the volume's values. mapped:
+ * whether a colormap is given; the new range is then chosen for the colormap's colours, and may end at clear
+ * values. */
 static void hold_clear_ends(const double all[2], const double range[2], bool mapped, double visible[2]) {
   const bool low = mapped || range[0] <= all[0], high = mapped || range[1] >= all[1];
   if (low && range[0] < visible[0]) visible[0] = fmax(range[0], all[0]);

@@ -1,5 +1,5 @@
 /* scene/function/transfer_function.c - evaluates a transfer function at a value and over a range of values,
- * as points.h evaluates its points. */
+ * by the rules of points.h. */
 #include "scene/function/transfer_function.h"
 #include <math.h>
 #include <string.h>
@@ -14,9 +14,9 @@ double hl_transfer_function_opacity(const hl_transfer_function *function, double
   return hl_points_opacity(function->opacity, function->opacity_count, value);
 }
 
-/* Derived: the difference of two opacities is linear in both values, as long as both stay between the same
- * points. So it is greatest where both values are points, or where one is a point and the other lies `reach`
- * beside it. */
+/* Derived: the difference of two opacities is linear in both values, as long as each value stays between the
+ * same two points. So the difference is greatest where both values are points, or where one value is a point
+ * and the other value lies `reach` beside this point. */
 double hl_transfer_function_opacity_change(const hl_transfer_function *function, double reach) {
   const hl_opacity_point *points = function->opacity;
   double most = 0;

@@ -9,11 +9,12 @@
 #include "image/colormaps.h"
 #include "image/srgb.h"
 
-/* Two functions that give the opacity (per unit_distance) or the linear colour of a data value. Both are
- * piecewise linear between points, and constant beyond the ends. */
+/* hl_transfer_function_opacity() gives the opacity of a data value, per unit_distance, and
+ * hl_transfer_function_color() gives its linear colour. Opacity and colour are piecewise linear between
+ * points, and constant beyond the ends. */
 double hl_transfer_function_opacity(const hl_transfer_function *function, double value);
 /* The factor by which gradient opacity multiplies the extinction of matter whose gradient has a given length.
- * It is 1 if the function has no gradient opacity. */
+ * The factor is 1 if the function has no gradient opacity. */
 double hl_transfer_function_gradient_opacity(const hl_transfer_function *function, double gradient);
 void hl_transfer_function_color(const hl_transfer_function *function, double value, double color[3]);
 
@@ -24,8 +25,8 @@ double hl_transfer_function_opacity_change(const hl_transfer_function *function,
 /* Returns whether some value from `low` to `high` has an opacity above zero. */
 int hl_transfer_function_visible(const hl_transfer_function *function, double low, double high);
 
-/* Finds the transparent value between `low` and `high` that is nearest to `target`, which lies between them.
- * Returns false if there is no transparent value. */
+/* Finds the transparent value between `low` and `high` that is nearest to `target`, which also lies between
+ * `low` and `high`. Returns false if no value between `low` and `high` is transparent. */
 bool hl_transfer_function_transparent(const hl_transfer_function *function, double low, double high,
                                       double target, double *nearest);
 

@@ -40,8 +40,8 @@ static void set_plane(vec3 normal, vec3 point, double plane[4]) {
 }
 
 /* Derived: in perspective a point at x to the side and z in front of the eye is seen if |x| <= t z, where t
- * is the tangent of half the picture's angle: t z - x >= 0 and t z + x >= 0. In parallel projection it is
- * seen if |x| <= h, where h is half the picture's side. */
+ * is the tangent of half the picture's angle: t z - x >= 0 and t z + x >= 0. In parallel projection a point
+ * is seen if |x| <= h, where h is half the picture's side. */
 hl_status hl_scene_seen_part(const hl_scene_description *description, double planes[4][4]) {
   HL_DOOR;
   if (description == NULL || planes == NULL || description->width <= 0 || description->height <= 0)
@@ -174,9 +174,9 @@ hl_status hl_camera_turn(const hl_view *view, hl_camera *camera) {
   return HL_OK;
 }
 
-/* Finds the direction that is up for a camera. Usually it is the camera's up vector. If this vector is
- * perpendicular to the line of sight and the picture is level for an axis of the world, it is this axis
- * instead: the first such axis of z, y, x and their opposites. */
+/* Finds the direction that is up for a camera. Usually this direction is the camera's up vector. If the up
+ * vector is perpendicular to the line of sight and the picture is level for an axis of the world, this axis
+ * takes the vector's place: the first such axis of z, y, x and their opposites. */
 static vec3 upright_of(const hl_camera *camera) {
   static const vec3 axes[] = {{0, 0, 1}, {0, 1, 0}, {1, 0, 0}, {0, 0, -1}, {0, -1, 0}, {-1, 0, 0}};
   vec3 right, up, forward, given = vec3_normalise(vec3_of(camera->up));
@@ -222,8 +222,8 @@ static bool are_equal(borders a, borders b) { return a.low == b.low && a.high ==
 
 /* Finds the two borders of a picture along one axis. Derived: let f be the depth of the eye, and t the
  * tangent of half the angle of view. At a depth z the picture reaches t (z - f) to both sides of the eye. At
- * the depth 0 this is half = -t f, which may be negative. In parallel projection half is the same at all
- * depths. */
+ * the depth 0, this reach is half = -t f, which may be negative. In parallel projection, half is the same at
+ * all depths. */
 static borders borders_of(double eye, double half) { return (borders){eye - half, eye + half}; }
 
 static bool look_alike(const hl_camera *a, const hl_camera *b) {

@@ -8,8 +8,8 @@
 #include "core/vector.h"
 
 /* Finds the camera's unit axes: forward points from position to target; up is perpendicular to forward, and
- * as close to the camera's up as possible. Returns false if the camera's up lies along the line of sight.
- * Then z takes the place of the camera's up, or y if the line of sight is along z. */
+ * as close to the camera's up as possible. Returns false if the camera's up lies along the line of sight. In
+ * this case, z takes the place of the camera's up, or y if the line of sight is along z. */
 bool hl_camera_basis(const hl_camera *camera, vec3 *right, vec3 *up, vec3 *forward);
 
 #define HL_VIEW_AZIMUTH   30 /* azimuth of the three-quarter view, degrees */
@@ -31,8 +31,8 @@ void hl_view_about(const hl_scene_description *description, vec3 up, hl_view *vi
 
 /* The anatomical space of the first volume that tells its space and is not rotated in the scene. */
 hl_space hl_scene_space(const hl_scene_description *description);
-/* Returns whether the space of hl_scene_space() surely tells the anatomy, as in files of DICOM and NIfTI.
- * Bodies then stand upright along z. */
+/* Returns whether the space of hl_scene_space() surely tells the anatomy, as in files of DICOM and NIfTI. In
+ * such a space, bodies stand upright along z. */
 bool hl_scene_is_anatomical(const hl_scene_description *description);
 
 #endif

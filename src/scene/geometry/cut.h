@@ -9,9 +9,9 @@
 #include "core/key.h"
 #include "core/vector.h"
 
-/* The shape of a cut, given by the map to a space of the shape's own, in which the shape is simple. There,
- * the inside of a plane has x above 0, the inside of a box has x, y and z from -1 to 1, and the inside of a
- * sphere is nearer than 1 to the origin. For a plane, the map makes y and z 0. */
+/* The shape of a cut, given by the map to a space of the shape's own, in which the shape is simple. In this
+ * space, the inside of a plane has x above 0, the inside of a box has x, y and z from -1 to 1, and the inside
+ * of a sphere is nearer than 1 to the origin. For a plane, the map makes y and z 0. */
 typedef struct cut_shape {
   hl_cut_type type;
   bool keep_inside;
@@ -35,7 +35,7 @@ hl_status hl_cut_shapes(hl_context *context, const hl_scene_volume *volume, cut_
                         hl_error *error);
 
 /* Adds the scene's cuts to the cuts of a copy of one of the scene's volumes. cuts: room for the cuts of the
- * volume and of the scene; the volume borrows it. */
+ * volume and of the scene; the volume borrows this array. */
 void hl_add_scene_cuts(const hl_scene_description *scene, hl_scene_volume *volume, hl_cut *cuts);
 
 /* Copies of a scene's volumes to whose cuts the scene's own cuts were added; all members are null if the
@@ -61,11 +61,11 @@ bool hl_cut_same(const cut_shape *a, const cut_shape *b);
 bool hl_cuts_leave(const cut_shape *cuts, size_t count, vec3 point);
 
 /* Returns whether a box along the axes of the space on which the shapes' maps act is surely removed, because
- * one single cut removes all of it. */
+ * a single cut removes the whole box. */
 bool hl_cuts_remove_box(const cut_shape *cuts, size_t count, const double low[3], const double high[3]);
 
 /* Returns whether a box along the axes of the space on which the shapes' maps act is surely left, because no
- * cut removes any part of it. */
+ * cut removes any part of the box. */
 bool hl_cuts_leave_box(const cut_shape *cuts, size_t count, const double low[3], const double high[3]);
 
 #endif

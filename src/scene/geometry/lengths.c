@@ -5,7 +5,7 @@
 
 #include "text/units.h"
 
-/* The length in metres of the unit that a volume's file tells; 0 if it tells none that is known. */
+/* The length in metres of the unit that a volume's file tells; 0 if the file tells no known unit. */
 static double metres_of_file(const hl_volume *volume) {
   const hl_unit *unit = volume->unit != NULL ? hl_unit_find(volume->unit) : NULL;
   return unit != NULL ? unit->metres : 0;

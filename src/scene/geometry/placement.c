@@ -91,8 +91,9 @@ void hl_scene_volume_box(const hl_scene_volume *volume, double low[3], double hi
   }
 }
 
-/* Finds a value that stands for a bin of the histogram, and that voxels can have. For integers it is a whole
- * number. In the outermost bins it is the least or the greatest value. */
+/* Finds a value that stands for a bin of the histogram, and that voxels can have. In volumes of integers, the
+ * stored number of this value is whole. In the outermost bins, the value is the volume's least or greatest
+ * value. */
 static double typical_value(const hl_volume *volume, int bin) {
   double width = (volume->maximum - volume->minimum) / HL_HISTOGRAM_BINS;
   if (bin == 0) return volume->minimum;
@@ -182,7 +183,7 @@ hl_frame_space hl_scene_frame_space(const hl_scene_description *scene) {
 
 /* ---- lights that move with the camera, converted to the world.
  *
- * Their axes are right, up and towards the viewer, with the origin at the camera's target. */
+ * The axes of such lights are right, up and towards the viewer, with the origin at the camera's target. */
 
 typedef struct camera_axes {
   vec3 right, up, towards, origin;

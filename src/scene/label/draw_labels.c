@@ -31,14 +31,14 @@ hl_status hl_labels_function(hl_context *context, const hl_scene_volume *volume,
     hl_transfer_function_release(context, function);
     return hl_fail_memory(error, OPACITY_A_LABEL * labels * sizeof *opacity, "a transfer function");
   }
-  /* The value at which the points of the label before end, and the opacity at this value. */
+  /* The value at which the points of the previous label end, and the opacity at this value. */
   double end = -INFINITY, last = 0;
   if (labels > 0) opacity[opacity_count++] = (hl_opacity_point){(double)volume->labels[0].value - 1, 0};
   for (size_t n = 0; n < labels; n++) {
     const hl_label *label = &volume->labels[n];
     const double value = (double)label->value;
-    /* a label is a float in the voxels, which rounds large labels. A voxel's float differs from its label by
-     * less than this */
+    /* voxels hold labels as floats, which round large labels. A voxel's float differs from its label by less
+     * than `around` */
     const double around = fmax(0.5, fabs(value) * 0x1p-24);
     double begin = fmax(value - around, end), shown = label->visible ? label->opacity : 0;
     if (begin > end && last > 0) opacity[opacity_count++] = (hl_opacity_point){end, last};
@@ -64,12 +64,12 @@ hl_status hl_labels_function(hl_context *context, const hl_scene_volume *volume,
 
 enum { POINTS = 4 };
 
-/* The matter of a solid label begins at the first of these occupancies, and is whole at the second, a sixth
- * of a voxel deeper. If a ray just touches a ball of a few voxels at the occupancy 1/2, its pixel is half
+/* The matter of a solid label begins at the occupancy SOLID_FROM, and is whole at SOLID_TO, a sixth of a
+ * voxel deeper. If a ray just touches a ball of a few voxels at the occupancy 1/2, the ray's pixel is half
  * covered. So the outlines in the picture are the outlines of the label. */
 static const double SOLID_FROM = 0.48, SOLID_TO = 0.51, SOLID_OPACITY = 0.9999;
-/* A translucent label is a skin between these occupancies, inside the label's surface. A label that is only
- * one voxel thick has a skin on both sides. */
+/* A translucent label is a skin between the occupancies SKIN_FROM and SKIN_TO, inside the label's surface. A
+ * label that is only one voxel thick has a skin on both sides. */
 static const double SKIN_FROM = 0.5, SKIN_TO = 0.7;
 
 /* The points of the transfer function of one drawn volume. */
@@ -80,7 +80,7 @@ typedef struct drawn_points {
 
 /* Gives a volume of occupancy its transfer function. A skin absorbs the fraction `opacity` of the light that
  * crosses it at a right angle. Derived: a homogeneous layer whose opacity is o per unit distance u has the
- * opacity o if it is u thick. */
+ * opacity o if the layer is u thick. */
 static void set_function(const hl_label *label, hl_scene_volume *drawn, drawn_points *points) {
   mat3 placed = hl_scene_volume_index_to_world(drawn).linear;
   hl_transfer_function *function = &drawn->transfer_function;
@@ -118,7 +118,8 @@ static size_t count_drawn(const hl_scene_volume *volume) {
   return skins + (solids > 0);
 }
 
-/* Adds the volume that draws a label, or all solid labels. This volume owns the occupancy from now on. */
+/* Adds the volume that draws a label, or all solid labels. The added volume owns the occupancy from now on.
+ */
 static void add_drawn(hl_scene_description *placed, const hl_scene_volume *map, const hl_label *label,
                       hl_volume *occupancy, drawn_points **points) {
   if (occupancy == NULL) return;
@@ -130,8 +131,8 @@ static void add_drawn(hl_scene_description *placed, const hl_scene_volume *map, 
   set_function(label, drawn, (*points)++);
 }
 
-/* Draws all solid labels as one volume. If the labels' colours differ, they are the colours of the volume's
- * own voxels, and the transfer function's colour is white. */
+/* Draws all solid labels as one volume. If the labels' colours differ, the volume's voxels have these
+ * colours, and the transfer function's colour is white. */
 static hl_status draw_solids(hl_context *context, hl_scene_description *placed, const hl_scene_volume *map,
                              drawn_points **points, hl_error *error) {
   size_t count = 0;
@@ -193,7 +194,8 @@ static bool has_wall(const hl_scene_description *placed, const hl_scene_volume *
          (volume->mask.volume == NULL || is_projected(placed));
 }
 
-/* Adds a volume whose mask is replaced by its lattice, or a mesh of cells whose walls become a lattice. */
+/* Adds a volume whose mask is replaced by the mask's lattice, or a mesh of cells whose walls become a
+ * lattice. */
 static hl_status draw_masked(hl_context *context, hl_scene_description *placed, const hl_scene_volume *volume,
                              hl_error *error) {
   const bool walled = has_wall(placed, volume);

@@ -1,5 +1,5 @@
-/* scene/label/label_list.c - lists the labels that the voxels of a label map have. Their names and colours
- * come from a table or from the map's file. */
+/* scene/label/label_list.c - lists the labels that the voxels of a label map have. The labels' names and
+ * colours come from a table or from the map's file. */
 #include <math.h>
 #include <string.h>
 
@@ -40,7 +40,7 @@ double hl_mask_factor(const hl_mask *mask, vec3 place) {
   return label->visible ? label->opacity : 0;
 }
 
-/* Adds a label to a list if the list does not have it yet. Returns false if there are too many labels. */
+/* Adds a label to a list if the list does not have the label yet. Returns false if the list is full. */
 static bool add_value(found_labels *found, int64_t value) {
   size_t low = 0, high = found->count;
   while (low < high) {
@@ -95,8 +95,8 @@ static const hl_label *row_of(const hl_label_list *table, int64_t value) {
   return NULL;
 }
 
-/* Gives one label a name and a colour. They come from the table if it has the label, else from the map's
- * file. */
+/* Gives one label a name and a colour. Name and colour come from the table if the table has the label, else
+ * from the map's file. */
 static void describe(const hl_volume *map, const hl_label_list *table, int64_t value, hl_label *label) {
   *label = (hl_label){.value = value, .opacity = 1, .visible = 1};
   hl_label_distinct_color(value, label->color);

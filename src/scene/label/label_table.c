@@ -37,9 +37,9 @@ static word make_word(char *text, bool quoted) {
   return made;
 }
 
-/* The characters that separate a line's words. They are blanks, tabs, commas and semicolons, unless one of
- * these characters follows the number: a comma, a semicolon, or a tab if tabs separate all words. Then this
- * character alone separates words, and names may have blanks. */
+/* The characters that separate a line's words. Usually blanks, tabs, commas and semicolons separate words.
+ * But if the label's number is followed by a comma, by a semicolon, or by a tab in a line whose words are all
+ * separated by tabs, this character alone separates words, and names may have blanks. */
 static const char *separators_of(const char *line) {
   const char *at = line + strspn(line, " \t");
   at += strspn(at, "-0123456789");
@@ -124,7 +124,7 @@ static bool read_header(const char *line, columns *found) {
   return found->separator != 0;
 }
 
-/* Reads a colour that begins at a word: three numbers. */
+/* Reads a colour from three words, which must be numbers. */
 static bool read_color(const word *words, double color[3]) {
   bool fractions = true, point = false;
   for (int c = 0; c < 3; c++) {
@@ -163,8 +163,8 @@ static bool read_label(const word *words, int count, hl_label *label) {
   return false;
 }
 
-/* Reads the colour that a line of a table with columns gives. *given: false if it gives none, as "n/a" or an
- * empty field. Returns false if the field is no colour. */
+/* Reads the colour that a line of a table with columns gives. *given: false if the line gives no colour, but
+ * "n/a" or an empty field. Returns false if the field holds anything else that is no colour. */
 static bool read_cells(const word *words, int count, const columns *table, bool *given, double color[3]) {
   const int at = table->at[COLUMN_COLOR];
   const int rgb[3] = {table->at[COLUMN_RED], table->at[COLUMN_GREEN], table->at[COLUMN_BLUE]};
@@ -229,7 +229,7 @@ static hl_status add_line(const char *name, size_t number, char *line, columns *
   return HL_OK;
 }
 
-/* Sorts the labels of a list by value. Of several lines for one label the last one counts. */
+/* Sorts the labels of a list by value. Of several lines for the same label, the last line counts. */
 static void sort(hl_label_list *list) {
   size_t kept = 0;
   qsort(list->labels, list->count, sizeof *list->labels, by_value);
@@ -240,11 +240,11 @@ static void sort(hl_label_list *list) {
   list->count = kept;
 }
 
-/* Skips the mark of UTF-8 text, if there is one. */
+/* Skips the mark at the beginning of UTF-8 text, if the text has this mark. */
 static char *skip_mark(char *text) { return strncmp(text, "\xef\xbb\xbf", 3) == 0 ? text + 3 : text; }
 
-/* Ends a line at its line feed, its carriage return or both. Returns the next line, or null if there is
- * none. */
+/* Ends a line at its line feed, its carriage return or both. Returns the next line, or null after the last
+ * line. */
 static char *end_line(char *line) {
   char *end = line + strcspn(line, "\r\n");
   if (*end == 0) return NULL;
@@ -297,7 +297,7 @@ void hl_label_list_release(hl_context *context, hl_label_list *list) {
 
 /* The fractional part of the golden ratio, times 2^64. If hues follow each other at this distance, each hue
  * is as far as possible from all earlier hues. The product with a label, modulo 2^64, is the hue as a
- * fraction of a full turn; it is exact for numbers of any size. */
+ * fraction of a full turn; this product is exact for labels of any size. */
 static const uint64_t GOLDEN = 0x9e3779b97f4a7c15u;
 
 void hl_label_distinct_color(int64_t value, double linear[3]) {
@@ -305,8 +305,8 @@ void hl_label_distinct_color(int64_t value, double linear[3]) {
   double hue = 6 * (double)((uint64_t)value * GOLDEN >> 11) * 0x1p-53;
   double strength = strengths[(value < 0 ? 0 - (uint64_t)value : (uint64_t)value) % 3];
   for (int c = 0; c < 3; c++) {
-    /* the distance of the label's hue from the opposite of this channel's hue; at this channel's own hue it
-     * is 3 */
+    /* the distance of the label's hue from the opposite of this channel's hue; at this channel's own hue, the
+     * distance is 3 */
     double away = fabs(fmod(hue + 6 - 2 * c, 6) - 3);
     double pure = fmin(fmax(away - 1, 0), 1);
     linear[c] = hl_srgb_decode(0.92 * (1 - strength * (1 - pure)));

@@ -22,15 +22,15 @@ typedef struct hl_label_list {
 const hl_label *hl_label_of_value(const hl_label *labels, size_t count, double value);
 
 /* Finds the factor by which a mask multiplies extinction at a place, by the map's voxel that is nearest to
- * the place. The renderer's factor differs from this one beside the borders of labels, where it is smooth and
- * 1/2. mask: its volume is not null, and its voxels are at hand. place: in the index space of the mask's
- * volume. */
+ * the place. The renderer's factor differs from this factor beside the borders of labels, where the
+ * renderer's factor is smooth and passes 1/2. mask: must have a volume, whose voxels must be at hand. place:
+ * in the index space of the mask's volume. */
 double hl_mask_factor(const hl_mask *mask, vec3 place);
 
 /* Reads a table of labels from a file. Lines are "number name R G B [A]", "number R G B A visible mesh
- * \"name\"", or one of these with commas. Colours are sRGB, with numbers from 0 to 255. If no number of a
- * colour is above 1 and one has a decimal point, the numbers go from 0 to 1. Lines that begin with #, and a
- * first line without a number, are skipped. */
+ * \"name\"", or one of these forms with commas. Colours are sRGB, with numbers from 0 to 255. If no number of
+ * a colour is above 1 and at least one number has a decimal point, the numbers go from 0 to 1. Lines that
+ * begin with #, and a first line without a number, are skipped. */
 hl_status hl_label_table_load(hl_context *context, const char *path, hl_label_list *list, hl_error *error);
 /* Reads a table of labels from memory. name: the text's name in errors. */
 hl_status hl_label_table_parse(hl_context *context, const char *text, size_t length, const char *name,

@@ -1,5 +1,5 @@
-/* scene/light/directional.c - implements a light that is infinitely far away. Its points are directions: a
- * disk around the direction in which the light travels. */
+/* scene/light/directional.c - implements a light that is infinitely far away. The light's points are
+ * directions: a disk around the direction in which the light travels. */
 #include "elementary/elementary.h"
 #include "scene/light/light_kind.h"
 

@@ -1,9 +1,9 @@
 /* scene/light/light_kind.h - declares the interface of a type of light.
  *
  * Each type of light is a table, in a file of its own: the rules for its settings, and its shape as geometry.
- * light_kinds.h lists the types. Checks, the reading and writing of scene files, and renderers use this
- * table, and name no type. Only the reference names types, because it shares no code with the renderers whose
- * pictures are compared with its own.
+ * light_kinds.h lists the types. Checks, the reading and writing of scene files, and renderers use the
+ * tables, and name no type. Only the reference renderer names types, because the reference shares no code
+ * with the renderers whose pictures are compared with the reference's pictures.
  *
  * Arguments named `facing` are unit vectors: the direction from the light to the scene's content, or the
  * direction of parallel light. Offsets are relative to the light's centre. For parallel light, points are
@@ -29,8 +29,8 @@ struct light_kind {
 
   /* ---- checks; settings are in their ranges already ---- */
   hl_status (*check)(const hl_checker *check,
-                     const hl_light *light); /* checks a light's settings beyond their ranges; null if there
-                                              * is nothing more to check */
+                     const hl_light *light); /* checks a light's settings beyond their ranges; null if the
+                                              * type has no further rules */
   /* Checks that floats hold the light's places and lengths beside the scene's voxels. */
   hl_status (*check_reach)(const hl_checker *check, const hl_light *light, const hl_frame_space *space);
 
@@ -62,8 +62,9 @@ light_shape hl_light_shape(const hl_light *light);
 hl_status hl_check_round_reach(const hl_checker *check, const hl_light *light, const hl_frame_space *space);
 light_shape hl_round_shape(const hl_light *light);
 void hl_apparent_diameter(const light_shape *shape, vec3 along, double length[2]);
-/* Three functions of light_kind for round lights: the spread, a point and the image's plane of a disk with
- * the shape's radius and the normal `facing`. A sphere counts as the disk that faces the viewer. */
+/* hl_round_spread(), hl_round_point() and hl_round_plane() give the spread, a point and the image's plane of
+ * a disk with the shape's radius and the normal `facing`. A sphere counts as the disk that faces the viewer.
+ */
 mat3 hl_round_spread(const light_shape *shape, vec3 facing);
 vec3 hl_round_point(const light_shape *shape, vec3 facing, double a, double b);
 emission_plane hl_round_plane(const light_shape *shape, vec3 facing);

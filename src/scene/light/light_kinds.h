@@ -1,6 +1,6 @@
 /* scene/light/light_kinds.h - gives the list of the types of light: the enumerator, the name in scene files,
- * and the settings that only lights of this type have. The file of a type "rect" is light/rect.c, its table
- * hl_light_kind_rect (light_kind.h). The build reads the names here. */
+ * and the settings that only lights of this type have. For example, the type "rect" has the file light/rect.c
+ * and the table hl_light_kind_rect (light_kind.h). The build reads the names of types from this list. */
 #ifndef HL_SCENE_LIGHT_LIGHT_KINDS_H
 #define HL_SCENE_LIGHT_LIGHT_KINDS_H
 
@@ -15,8 +15,7 @@ enum light_settings {
   LIGHT_CONE = 64
 };
 
-/* Calls a macro for each type of light. KIND: a macro of four arguments; `with` is passed to it as the
- * first. */
+/* Calls a macro for each type of light. KIND: a macro of four arguments, of which `with` is the first. */
 /* clang-format off */
 #define HL_LIGHT_KINDS(KIND, with)                                                           \
   KIND(with, HL_LIGHT_DIRECTIONAL, directional, LIGHT_DIRECTION | LIGHT_ANGULAR_DIAMETER)    \

@@ -28,8 +28,8 @@ static double greatest_side(const double (*vertices)[3], size_t count) {
 /* Finds the moments of a polygon. The polygon is treated as a fan of triangles around the first vertex, with
  * signed areas, so that parts outside the polygon cancel. Derived: let a, b, c be the corners of a triangle,
  * and s = a + b + c. Over the triangle the mean of x is s / 3, and the mean of x x' is (a a' + b b' + c c' +
- * s s') / 12. The reason is that the mean of the square of a barycentric coordinate is 1/6, and the mean of
- * the product of two of them is 1/12. */
+ * s s') / 12. These means follow because the mean of the square of a barycentric coordinate is 1/6, and the
+ * mean of the product of two barycentric coordinates is 1/12. */
 polygon_shape hl_polygon_shape(const double (*vertices)[3], size_t count) {
   polygon_shape shape = {.diameter = greatest_side(vertices, count)};
   vec3 first = vec3_of(vertices[0]), twice_area = {0, 0, 0}, sum = {0, 0, 0};
@@ -66,8 +66,8 @@ double hl_polygon_unevenness(const polygon_shape *shape, const double (*vertices
   return greatest;
 }
 
-/* Twice the area of the triangle a, b, c, as seen along the normal. It is negative where the corners run the
- * other way round. */
+/* Twice the area of the triangle a, b, c, as seen along the normal. The area is negative if the corners run
+ * clockwise about the normal. */
 static double side_of(vec3 normal, vec3 a, vec3 b, vec3 c) {
   return vec3_dot(normal, vec3_cross(vec3_subtract(b, a), vec3_subtract(c, a)));
 }

@@ -19,8 +19,8 @@ typedef struct light_shape {
   vec3 edge1, edge2; /* for a parallelogram: its two edges, in full length */
   double radius;     /* for a sphere or a disk: its radius; for parallel light: the radius of the disk of
                       * directions, at distance 1 */
-  double cone_half_angle, cone_edge; /* for a cone, in radians: half of its angle, beyond which there is no
-                                      * light, and the width of the smooth edge inside it */
+  double cone_half_angle, cone_edge; /* for a cone, in radians: half of its angle, beyond which no light
+                                      * shines, and the width of the smooth edge inside this angle */
   /* for a polygon: [vertex_count]; its vertices, borrowed from the settings */
   const double (*vertices)[3];
   size_t vertex_count;
@@ -47,8 +47,8 @@ double hl_polygon_unevenness(const polygon_shape *shape, const double (*vertices
 /* Whether two edges of a polygon cross each other. Edges that only touch do not cross. */
 bool hl_polygon_crosses_itself(const polygon_shape *shape, const double (*vertices)[3], size_t count);
 
-/* The plane of a light's emission image. Positions in it are offsets from the light's centre; for parallel
- * light, offsets at distance 1 from the direction to the light. */
+/* The plane of a light's emission image. Positions in this plane are offsets from the light's centre; for
+ * parallel light, offsets at distance 1 from the direction to the light. */
 typedef struct emission_plane {
   vec3 middle;    /* the middle of the image */
   vec3 right, up; /* vectors from `middle` to the middles of the image's right and top edges */

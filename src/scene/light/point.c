@@ -1,5 +1,5 @@
-/* scene/light/point.c - implements the type of light that is a sphere or a point, and shines to all sides. It
- * looks like the disk of its radius that faces the observer. */
+/* scene/light/point.c - implements the type of light that is a sphere or a point, and shines to all sides.
+ * The light looks like the disk of its radius that faces the observer. */
 #include "scene/light/light_kind.h"
 
 const light_kind hl_light_kind_point = {.sphere = true,

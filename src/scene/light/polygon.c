@@ -71,9 +71,9 @@ static flat_polygon flatten(const light_shape *shape) {
   return polygon;
 }
 
-/* The area of the part of the polygon left of x. Derived by Green's theorem: it is the integral of y dx along
- * the part of the outline left of x. The cut at x runs along y and adds nothing. The sign is reversed,
- * because the outline runs counter-clockwise about the normal. */
+/* The area of the part of the polygon left of x. Derived by Green's theorem: the area is the integral of y dx
+ * along the part of the outline left of x. The cut at x runs along y and adds nothing. The sign of the
+ * integral is reversed, because the outline runs counter-clockwise about the normal. */
 static double area_left_of(const flat_polygon *polygon, double x) {
   double area = 0;
   for (size_t i = 0; i < polygon->shape->vertex_count; i++) {

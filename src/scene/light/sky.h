@@ -16,8 +16,8 @@ typedef struct sky_axes {
 
 sky_axes hl_sky_axes(const hl_sky *sky);
 
-/* The radiance of the sky, times its strength, in a direction (unit, world, towards the sky). It is 0 below
- * the horizon of a hemisphere, and if there is no sky. */
+/* The radiance of the sky, times its strength, in a direction (unit, world, towards the sky). The radiance is
+ * 0 below the horizon of a hemisphere, and in a scene without a sky. */
 void hl_sky_radiance(const hl_sky *sky, const sky_axes *axes, vec3 direction, double radiance[3]);
 
 /* Adds everything on which a sky's radiance depends to a key. mark: the number that identifies the image's

@@ -1,5 +1,5 @@
-/* scene/light/spot.c - implements a light that is a sphere or a point, and shines within a cone. It looks
- * like the disk of its radius that faces the observer. */
+/* scene/light/spot.c - implements a light that is a sphere or a point, and shines within a cone. The light
+ * looks like the disk of its radius that faces the observer. */
 #include "scene/light/light_kind.h"
 
 static hl_status check_cone(const hl_checker *check, const hl_light *light) {

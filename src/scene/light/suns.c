@@ -1,14 +1,14 @@
 /* scene/light/suns.c - finds the suns of a sky's image, and makes lights of them.
  *
- * The search begins at the brightest pixel. The spot around this pixel is a cap of directions. Its radius is
- * chosen from a series of radii: it is the one that holds the most light for its size. In each channel, light
- * that exceeds the brightest pixel of the ring around the cap goes from the cap's pixels to the sun. The rest
- * stays in the image, so that the image has no step at the cap's rim. Spots that are too wide, or too weak
- * for a light of their own, stay in the image.
+ * The search begins at the brightest pixel. The spot around this pixel is a cap of directions. The cap's
+ * radius is chosen from a series of radii, so that the cap holds the most light for its size. In each
+ * channel, light that exceeds the brightest pixel of the ring around the cap goes from the cap's pixels to
+ * the sun. The rest of the light stays in the image, so that the image has no step at the cap's rim. Spots
+ * that are too wide, or too weak for a light of their own, stay in the image.
  *
- * The image is interpolated bilinearly between the middles of its pixels (scene/light/sky.c). So it is a sum
- * of tent functions, one for each pixel. The integral over a tent's directions is the integral over its row's
- * angle times the integral over its column's angle. */
+ * The image is interpolated bilinearly between the middles of its pixels (scene/light/sky.c). So the image is
+ * a sum of tent functions, with a tent for each pixel. The integral over a tent's directions is the integral
+ * over the tent's row angle times the integral over the tent's column angle. */
 #include "scene/light/suns.h"
 
 #include <string.h>
@@ -21,7 +21,7 @@
  * may still belong to the sun. */
 static const double WIDEST = 12 * HL_PI / 180, FARTHEST = 20 * HL_PI / 180;
 /* The factor between the radii of caps that are tried. The first radius is FARTHEST, each further radius is
- * the radius before times this factor, and the last one is less than a pixel. */
+ * the radius before times this factor, and the last radius is less than a pixel. */
 static const double LADDER = 0.70710678118654752;
 /* The radius of the ring around a cap is RING times the cap's radius, plus RING_ROWS rows of the image. */
 static const double RING = 1.2, RING_ROWS = 1.5;
@@ -33,19 +33,19 @@ static const double LEAST_SHARE = 0.05;
  * pixel. */
 static const double MOST_AROUND = 0.5;
 
-enum { TRIES = 64 /* spots that are looked at */, STEPS = 16 /* steps towards the middle of a spot */ };
+enum { TRIES = 64 /* most spots tried that are no suns */, STEPS = 16 /* most steps to a spot's middle */ };
 
 /* ---- integrals over a pixel's tent ---- */
 
 /* Integrals of a pixel's tent over the angle a to the sky's up, along the pixel's column: of the tent times
- * sin a, times sin^2 a and times sin a cos a. They give the tent's solid angle, and the components of its
- * directions across and along up. */
+ * sin a, times sin^2 a and times sin a cos a. These integrals give the tent's solid angle, and the components
+ * of the tent's directions across and along up. */
 typedef struct row_integrals {
   double area, across, along;
 } row_integrals;
 
-/* The nodes and weights of Gauss and Legendre's rule of integration with five points. The pieces that it
- * integrates are at most half a turn long, and rarely more than a degree. */
+/* The nodes and weights of Gauss and Legendre's rule of integration with five points. The pieces that this
+ * rule integrates are at most half a turn long, and rarely more than a degree. */
 static const double NODES[5] = {-0.906179845938664, -0.538469310105683, 0, 0.538469310105683,
                                 0.906179845938664},
                     WEIGHTS[5] = {0.236926885056189, 0.478628670499366, 0.568888888888889, 0.478628670499366,
@@ -158,7 +158,7 @@ typedef void visit_pixel(const search *all, int row, int column, void *data);
 
 /* The number of columns of a row that a cap may touch on each side of its middle. Derived: let the cap's
  * middle be at the angle b to up, and a direction at the angle a to up, turned about up by t from the middle.
- * The cosine between the two is sin a sin b cos t + cos a cos b. */
+ * The cosine of the angle between middle and direction is sin a sin b cos t + cos a cos b. */
 static int columns_of_cap(const search *all, const cap *of, int row) {
   double a = (row + 0.5) * HL_PI / all->sky->height, b = hl_acos(fmin(fmax(of->middle.z, -1), 1));
   double least = (hl_cos(of->radius) - hl_cos(a) * hl_cos(b)) / fmax(hl_sin(a) * hl_sin(b), 1e-12);
@@ -200,8 +200,8 @@ static void add_to_center(const search *all, int row, int column, void *data) {
                        vec3_scale(direction_of(all, row, column), all->rows[row].area * (double)brightness));
 }
 
-/* Finds the middle of the spot around a pixel. Around this middle lies a cap. The middle is the mean
- * direction of the cap's pixels that are at least half as bright as the given pixel. */
+/* Finds the middle of the spot around a pixel. The middle is the mean direction of pixels in a cap around
+ * this middle: the pixels that are at least half as bright as the given pixel. */
 static vec3 find_middle(const search *all, int row, int column, double radius) {
   cap around = {direction_of(all, row, column), radius};
   for (int i = 0; i < STEPS; i++) {
@@ -218,7 +218,7 @@ static vec3 find_middle(const search *all, int row, int column, double radius) {
 typedef struct spot {
   cap cap;
   float around[3];      /* R, G, B: the greatest values in the ring around the cap */
-  double irradiance[3]; /* irradiance of the light in the cap that exceeds these values */
+  double irradiance[3]; /* irradiance of the light in the cap that exceeds `around` */
   double brightness;    /* the sum of the irradiance's channels */
   vec3 moment;          /* the integral, over the cap, of brightness times the unit vector of the direction */
 } spot;
@@ -241,7 +241,7 @@ static void add_beyond(const search *all, int row, int column, void *data) {
   of->moment = vec3_add(of->moment, vec3_scale(moment_of(all, row, column), sum));
 }
 
-/* A spot that is taken out of the image. */
+/* A spot whose light is taken out of the image. */
 typedef struct taking {
   const spot *spot;
   float *rest; /* the image out of which the spot's light is taken */
@@ -268,10 +268,11 @@ static spot spot_of_radius(const search *all, int row, int column, double radius
 }
 
 /* Finds the spot around a pixel. The spot's radius maximises the light in the cap divided by the power 3/4 of
- * the radius. For a uniform disk, this is the least radius that holds the whole disk. For a Gaussian spot, it
- * is a radius that holds nine tenths of the spot's light. With this power, a small sun counts more than a
- * glow around it that sends as much light, and two suns side by side stay two. If the next wider radius holds
- * more light, it is taken instead, because a disk may cover a part of the pixels at the rim. */
+ * the radius. For a uniform disk, the chosen radius is the least radius that holds the whole disk. For a
+ * Gaussian spot, the chosen radius holds nine tenths of the spot's light. With the power 3/4, a small sun
+ * counts more than a glow around the sun that sends as much light, and two suns side by side stay two suns.
+ * If the next wider radius holds more light, the function takes the wider radius, because a disk may cover
+ * only a part of the pixels at the rim. */
 static spot find_spot(const search *all, int row, int column) {
   spot best = {.cap = {direction_of(all, row, column), FARTHEST}}, wider = best;
   double score = 0, least = 0.5 * HL_PI / all->sky->height;

@@ -29,7 +29,7 @@ typedef struct sky_suns {
   /* the suns in the order in which they were found; the spot of the first sun has the brightest pixel */
   sky_sun suns[HL_MOST_SUNS];
   int count;
-  float *rest; /* owned; [height][width][3]: the image without the suns; null if there are no suns */
+  float *rest; /* owned; [height][width][3]: the image without the suns; null if the image has no suns */
 } sky_suns;
 
 /* Finds the suns of a sky that is an image. Skies of other kinds have no suns. */
