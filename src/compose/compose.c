@@ -1,8 +1,8 @@
 /* compose/compose.c - implements hl_scene_compose(), which applies options to a scene in a fixed order.
  *
  * A scene cannot be changed. So the scene's description is copied, the copy is changed, and another scene is
- * made of the changed copy. Of the description's arrays, only the ones that change (lights, volumes, transfer
- * functions) are copied. */
+ * made of the changed copy. Of the description's arrays, only the arrays that change (lights, volumes,
+ * transfer functions) are copied. */
 #include <halflight/compose.h>
 #include <limits.h>
 #include <math.h>

@@ -75,8 +75,9 @@ bool hl_is_left_out(const hl_composer *composer, const hl_scene_description *des
 
 /* ---- face_window.c ---- */
 
-/* Finds whether "range" is the window of a volume's cut faces. This is so if options cut a bare scanned body
- * that has the look of a surface, and no option gives the volume another function or other colours. */
+/* Finds whether "range" is the window of a volume's cut faces. "range" is this window if options cut a bare
+ * scanned body that has the look of a surface, and no option gives the volume another function or other
+ * colours. */
 hl_status hl_windows_faces(const hl_composer *composer, const hl_scene_description *description, size_t index,
                            bool *windows);
 

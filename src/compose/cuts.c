@@ -217,8 +217,7 @@ static bool takes(const hl_composer *composer, const cut_target *target, const c
   return target->volume != NULL && hl_text_is_for(composer, text, target->volume, target->index, &rest);
 }
 
-/* Adds those of the options' cuts that are for the target. Fractions in the options become coordinates in the
- * box. */
+/* Adds the options' cuts that are for the target. Fractions in the options become coordinates in the box. */
 static hl_status add_cuts(const hl_composer *composer, const cut_target *target, const hl_world_box *box,
                           hl_cut *cuts, size_t *count) {
   const char *what = target->volume != NULL ? "volume" : "scene";

@@ -42,8 +42,8 @@ typedef struct sought_map {
   const hl_scene_description *scene;
   const hl_screen *own; /* the map with its cuts */
   const hl_screen *screens;
-  uint64_t *hides; /* owned; [screen_count]; the number of hidden places for which each screen is the one that
-                    * hides most */
+  uint64_t *hides; /* owned; [screen_count]; for each screen, the number of hidden places that this screen
+                    * hides more than any other screen does */
   size_t screen_count;
   affine3 to_world;
   uint64_t places;     /* the number of voxels of a label that are tried */

@@ -27,8 +27,8 @@ hl_status hl_compose_volume_look(const struct hl_composer *composer, hl_scene_vo
 void hl_fit_projection(const struct hl_composer *composer, hl_transfer_function *function);
 
 /* Returns whether volume number `index` is shown as on a printed film, because white matter would not be seen
- * before a white background. This is so if the look is xray, the background is bright, and no option gives
- * the volume other colours. */
+ * before a white background. A volume is shown as on a film if the look is xray, the background is bright,
+ * and no option gives the volume other colours. */
 bool hl_is_film(const struct hl_composer *composer, const hl_scene_description *description, size_t index);
 
 /* Makes the look's white matter black, so that it only absorbs the light of the background. The density of

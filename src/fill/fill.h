@@ -28,9 +28,9 @@ typedef struct filled_blocks {
   uint32_t filled, showing;
 } filled_blocks;
 
-/* The type of the functions that fill a tile of a sheet. They fill the array density[16][16] (block, lane)
- * for the blocks whose bits are set in `need`. They also fill the blocks of `others` whose points lie in
- * cells that may show something (grid/relevant.h). The densities of other blocks do not change. */
+/* The type of the functions that fill a tile of a sheet. These functions fill the array density[16][16]
+ * (block, lane) for the blocks whose bits are set in `need`, and for the blocks of `others` whose points lie
+ * in cells that may show something (grid/relevant.h). The densities of other blocks do not change. */
 typedef filled_blocks fill_tile_function(const fill_source *source, int tile_x, int tile_y, uint32_t need,
                                          uint32_t others, float *density);
 
@@ -63,9 +63,9 @@ typedef struct relevant_blocks {
   uint16_t uncut; /* one bit for each slab of the run */
 } relevant_blocks;
 
-/* The type of the function that finds the relevant blocks of a tile. It sets the members of `found` for the
- * slabs whose bits are set in `slabs`; the members for other slabs do not change. need: the blocks that the
- * caller needs. */
+/* The type of the function that finds the relevant blocks of a tile. The function sets the members of `found`
+ * for the slabs whose bits are set in `slabs`; the members for other slabs do not change. need: the blocks
+ * that the caller needs. */
 typedef void relevant_blocks_function(const slab_run *run, int tile_x, int tile_y, uint32_t slabs,
                                       uint32_t need, relevant_blocks *found);
 

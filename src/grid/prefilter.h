@@ -37,9 +37,9 @@ void hl_prefilter_slice(float *slice, size_t width, size_t height);
 
 /* hl_prefilter_forward() and hl_prefilter_back() filter `width` neighbouring lines along an axis of `count`
  * voxels, 2 or more. First call hl_prefilter_forward() for each voxel of the lines, from the first to the
- * last. Then call hl_prefilter_back() for each voxel except the last, in the opposite order. here: [width];
- * the lines' values at voxel `at`. before, after: [width]; the values at the voxel before or after voxel
- * `at`, which must have been filtered already; `before` is null for the first voxel. */
+ * last. After these calls, call hl_prefilter_back() for each voxel except the last, in the opposite order.
+ * here: [width]; the lines' values at voxel `at`. before, after: [width]; the values at the voxel before or
+ * after voxel `at`, which must have been filtered already; `before` is null for the first voxel. */
 void hl_prefilter_forward(float *here, const float *before, size_t width, size_t at, size_t count);
 void hl_prefilter_back(float *here, const float *after, size_t width, size_t at, size_t count);
 

@@ -204,9 +204,9 @@ static bool is_flow(const hl_volume *volume, const hl_sample *sample, const spre
   return roughness < NOISY && one_peak && falls(&d, 0.02, fmax(s->high - mode, 0.03), PEAK);
 }
 
-/* Returns true if so many of the objects' voxels have the greatest value that these voxels are the inside of
- * a solid shape. In smooth data with more levels than bytes have, a tenth of the objects' voxels is enough;
- * in other data three tenths are needed, because bytes may clip the maxima of a field. */
+/* Returns true if enough of the objects' voxels have the greatest value to be the inside of a solid shape. In
+ * smooth data with more levels than bytes have, a tenth of the objects' voxels is enough; in other data three
+ * tenths are needed, because bytes may clip the maxima of a field. */
 static bool is_filled_up(const hl_sample *sample, const distances *d, const hl_data_analysis *a,
                          double roughness) {
   const double least = roughness < SMOOTH && is_continuous(sample) ? 0.1 : 0.3;

@@ -303,7 +303,7 @@ static size_t shorter_beginning(const char *list, size_t below) {
 
 /* Makes the scene of the channel that a list begins with. The name of a channel may hold commas. The longest
  * beginning of the list that is a channel's name counts. If no beginning is a channel's name, the error is
- * the one for the shortest beginning. *length: the length of the name. */
+ * about the shortest beginning. *length: the length of the name. */
 static hl_status add_first(channel_scenes *made, const char *list, size_t *length, hl_error *error) {
   hl_status status;
   char name[HL_CHANNEL_NAME_BYTES];

@@ -21,8 +21,8 @@
 #include "volume/colors.h"
 
 #define TARGET 0.871 /* linear light of the code 240 of 255, IEC 61966-2-1 */
-/* The exposure brings the brightness of one pixel to TARGET. This fraction of the pixels that show matter are
- * darker than that pixel. */
+/* The exposure brings the brightness of one pixel to TARGET. BRIGHTEST is the fraction of the pixels with
+ * matter that are darker than the pixel at TARGET. */
 #define BRIGHTEST 0.99
 /* The least factors of an exposure. A cloud that glows inside may be four times as bright as a white surface.
  */

@@ -92,8 +92,8 @@ static void choose_lights(const hl_look *look, hl_light lights[2], size_t *count
   lights[1].intensity = look->light.fill;
 }
 
-/* Returns true if the memory limit leaves room for a number of bytes beside the voxels and the copy of them
- * that a renderer makes. Memory that the process holds at present does not count, so that all processes that
+/* Returns true if the memory limit leaves room for a number of bytes beside the voxels and the renderer's
+ * copy of the voxels. Memory that the process holds at present does not count, so that all processes that
  * share a volume make the same choice. */
 static bool has_room(const hl_volume *volume, uint64_t bytes) {
   uint64_t limit = volume->context->options.memory_limit, taken = 0;
@@ -179,8 +179,8 @@ static double choose_spacing(const hl_volume *volume, hl_shading shading, double
   double spacing = fmin(fmax(even, LEAST_SPACING), fmax(SPACING_PER_THICKNESS * thickness, LEAST_SPACING));
   double in_small = fmax(even, SMALL_GRIDS_SPACING_PER_THICKNESS * thickness);
   spacing = fmin(spacing, fmax(in_small, SMALL_GRIDS_SPACING));
-  /* The sheets cover the matter, which reaches half a voxel beyond the faces. A sweep adds three sheets; the
-   * other seven of the ten sheets allow for rounding. */
+  /* The sheets cover the matter, which reaches half a voxel beyond the faces. Of the ten sheets that are left
+   * free, a sweep adds three sheets, and seven sheets allow for rounding. */
   double allowed = fmin(ceil(1000 * diagonal_of(volume, 1) / (GREATEST_SHEETS - 10)) / 1000, GRID_MARGIN);
   return fmax(round(1000 * fmin(spacing, 1)) / 1000, allowed);
 }

@@ -15,8 +15,8 @@
 #include "volume/store/gathered.h"
 #include "volume/unsmoothed.h"
 
-/* The standard deviation, in voxels, of the Gaussian for all three kinds of volumes that are smoothed. This
- * is the least deviation that leaves no stairs on the gyri of real brains. */
+/* The standard deviation, in voxels, of the Gaussian for all three kinds of volumes that are smoothed. A
+ * smaller deviation leaves stairs on the gyri of real brains. */
 #define SIGMA 0.8
 /* The greatest accepted standard deviation. */
 #define GREATEST_SIGMA 16

@@ -11,7 +11,8 @@
 /* The light's view through its screen; the view's pixels are the pixels of the projected image. Derived: let
  * the screen have the middle c and the half edges R and U. A sample x lies on the ray through the screen's
  * point c + s R + t U. For a light at P, x - P = w (c - P + s R + t U); for parallel light along d, x = c + s
- * R + t U + k d. These are three linear equations, whose third unknown is w or k. */
+ * R + t U + k d. The three components of each equation are linear equations for s, t and a third unknown, w
+ * or k. */
 static view view_of_screen(const light_source *source, int width, int height) {
   vec3 corner = vec3_add(vec3_subtract(source->screen.center, source->screen.right), source->screen.up);
   view view = {.perspective = !source->parallel,

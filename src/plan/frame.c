@@ -124,8 +124,8 @@ int hl_frame_visible_points(const frame *frame, vec3 *points) {
 
 /* ---- the eye ---- */
 
-/* The edge of the eye's pixel, projected to the nearest depth of the content. This depth counts as at least a
- * third of the depth of the content's middle, because closer voxels are larger than pixels anyway. */
+/* The edge of the eye's pixel, projected to the nearest depth of the content. The nearest depth counts as at
+ * least a third of the depth of the content's middle, because closer voxels are larger than pixels anyway. */
 static double pixel_at_content(const frame *frame, double middle_depth) {
   const view *eye = &frame->eye;
   double edge = fmax(vec3_length(eye->du), vec3_length(eye->dv));

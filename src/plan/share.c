@@ -221,9 +221,9 @@ static int compare_cells(const void *a, const void *b) {
 }
 
 /* Divides the ordered cells into bands of equal weight: a cell belongs to the band in which the middle of the
- * cell's weight lies. Then gives the bands to the parts: first in forward order, then in backward order, and
- * so on by turns. By this order, the last part gets two neighbouring bands. With three bands for each part,
- * the first part gets two neighbouring bands, too. */
+ * cell's weight lies. The function then gives the bands to the parts: first in forward order, then in
+ * backward order, and so on by turns. By this order, the last part gets two neighbouring bands. With three
+ * bands for each part, the first part gets two neighbouring bands, too. */
 static void cut_bands(const picture_share *share, const share_cell *cells, int bands, int32_t *part_of) {
   double sum = 0, before = 0;
   const int parts = share->parts;

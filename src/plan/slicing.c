@@ -32,8 +32,8 @@ static double flattest_eye_ray(const view *eye, vec3 h) {
 
 /* The slicing axis h for the eye's direction e and a light's direction l: normalise(e + l) if e.l >= 0, else
  * normalise(l - e) (fig. 3 of the paper). For several lights, l is the sum of their directions. In a wide
- * picture, rays through the corners may run along these sheets. Then h leans towards the eye until all rays
- * cross the sheets. */
+ * picture, rays through the corners may run along these sheets. In such a picture, h leans towards the eye
+ * until all rays cross the sheets. */
 static vec3 slicing_axis(const frame *frame, const hl_render_settings *settings, vec3 light,
                          bool *back_to_front) {
   *back_to_front = vec3_dot(frame->eye_direction, light) < 0;
@@ -101,9 +101,9 @@ static bool eye_crosses(const frame *frame, vec3 h, bool back_to_front) {
 }
 
 /* The slicing axis of one light. Some rays of a near light, or of a wide parallel light, may not cross the
- * sheets of the half-way vector. Then the axis leans towards the middle of the light's rays, but no farther
- * than needed. So the axis moves without a jump as the light moves. For a parallel light, the axis leans no
- * farther than the eye allows. Returns false if no sheets suit both a near light and the eye. */
+ * sheets of the half-way vector. For such a light, the axis leans towards the middle of the light's rays, but
+ * no farther than needed. So the axis moves without a jump as the light moves. For a parallel light, the axis
+ * leans no farther than the eye allows. Returns false if no sheets suit both a near light and the eye. */
 static bool axis_of_light(const frame *frame, const hl_render_settings *settings, const light_source *source,
                           vec3 *h, bool *back_to_front) {
   const bool wide = source->parallel;

@@ -452,7 +452,7 @@ hl_status hl_reference_render_layers(hl_context *context, const hl_scene *scene,
   status = hl_scene_draw(scene, &drawn, error);
   if (status == HL_OK) status = hl_pool_create(context, chosen.threads, &pool, error);
   if (status != HL_OK) return status;
-  /* The reference renders the whole sky image. It makes no lights of the image's suns. */
+  /* The reference renders the whole sky image. The reference makes no lights of the image's suns. */
   hl_scene_description whole = drawn->description;
   whole.sky = scene->description.sky;
   whole.light_count = scene->description.light_count;

@@ -275,7 +275,7 @@ void hl_light_images_release(hl_context *context, hl_light *light) {
 
 /* The image of a light's texture or emission, or of a sky. */
 typedef struct light_picture {
-  const float *pixels; /* [height][width][3]; linear RGB; null if there is no image */
+  const float *pixels; /* [height][width][3]; linear RGB; null if the object has no image */
   int width, height;
   const char *file; /* name of the image's file; null if the image has no file */
 } light_picture;

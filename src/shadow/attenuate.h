@@ -115,7 +115,7 @@ typedef struct attenuated_blocks {
                      * matter ended surfaces */
 } attenuated_blocks;
 
-/* The type of the function that attenuates a tile. It multiplies the tile's transmittance by the
+/* The type of the function that attenuates a tile. The function multiplies the tile's transmittance by the
  * transmittance of the slab, exp(-sum of extinction * path), wherever volumes have density. */
 typedef attenuated_blocks attenuate_tile_function(const attenuate_job *job, int tile_x, int tile_y);
 

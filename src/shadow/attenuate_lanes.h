@@ -69,7 +69,7 @@ LANES_INLINE lanes3 position_in_slab(const attenuate_job *job, lanes u, lanes v,
   return add_scaled3(end, step, fraction - 1.0f);
 }
 
-/* The factor by which the volume's extinction in a block is multiplied. It is the product of gradient
+/* The factor by which the volume's extinction in a block is multiplied. The factor is the product of gradient
  * opacity, the mask's factor and the function of two numbers, at the centre of gravity of the slab's matter.
  * corner: the block's first pixel. */
 LANES_INLINE lanes factor_in_block(const attenuate_job *job, const attenuate_volume *volume,

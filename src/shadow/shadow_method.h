@@ -16,10 +16,10 @@
  *     end                 once, after a failure too
  *
  * A method without `advance`, or with `advances`, can be run in stretches of several slabs. First,
- * before_shading and before_slab are called for all slabs of a stretch. Then each tile is composited through
- * all slabs of the stretch, one tile after the other. Then `advance` is called. The picture's slabs may be
- * shaded later, from the planes that the buffer keeps. In a stretch, `advance` changes the buffer at the last
- * slab at most.
+ * before_shading and before_slab are called for all slabs of a stretch. After these calls, each tile is
+ * composited through all slabs of the stretch, one tile after the other. At the end of the stretch, `advance`
+ * is called. The picture's slabs may be shaded later, from the planes that the buffer keeps. In a stretch,
+ * `advance` changes the buffer at the last slab at most.
  *
  * A function that a method does not need is null. */
 #ifndef HL_SHADOW_SHADOW_METHOD_H

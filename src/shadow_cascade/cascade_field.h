@@ -33,8 +33,8 @@ typedef struct field_job {
   tile_rows rows;
 } field_job;
 
-/* The type of an operation on one tile of fields. It returns whether any pixel of the tile's computed rows is
- * above zero. */
+/* The type of an operation on one tile of fields. The operation returns whether any pixel of the tile's
+ * computed rows is above zero. */
 typedef int field_tile_function(const field_job *job, int tile_x, int tile_y);
 
 /* A sum with a blur: to = a + (1 - thin) * (from, blurred along rows and columns), in one pass over memory. a
@@ -48,7 +48,8 @@ typedef struct field_blur_job {
   blur_box u, v;
   tile_rows rows;
 } field_blur_job;
-/* The type of a blurred sum of one tile. It returns whether any pixel of the tile is more than zero. */
+/* The type of the function that makes a blurred sum of one tile. The function returns whether any pixel of
+ * the tile is above zero. */
 typedef int field_blur_tile_function(const field_blur_job *job, int tile_x, int tile_y);
 
 /* The work of refilling the buffer at a chunk's end. A pixel becomes the transmittance of the slabs of the
@@ -80,7 +81,8 @@ typedef struct field_emission_job {
   const ptrdiff_t *offset; /* [count]; offsets from a pixel to each of its taps, in pixels */
   const float *weight;     /* [count]; the weight of each tap */
 } field_emission_job;
-/* The type of a weighted sum of one tile. It returns whether any pixel of the tile is more than zero. */
+/* The type of the function that makes a weighted sum of one tile. The function returns whether any pixel of
+ * the tile is above zero. */
 typedef int field_emission_tile_function(const field_emission_job *job, int tile_x, int tile_y);
 
 enum { GREATEST_EDGE = 16 };
@@ -109,8 +111,8 @@ typedef struct absorbed_job {
   int edge; /* the width in pixels of a strip along the edges of opaque surfaces; in this strip, surfaces do
              * not hide the matter before them. At most GREATEST_EDGE */
 } absorbed_job;
-/* The type of a function that adds matter in one tile. It returns which of the four fields of the two groups
- * have pixels above zero, one bit each in the order of the fields. */
+/* The type of a function that adds matter in one tile. The function returns which of the four fields of the
+ * two groups have pixels above zero, one bit each in the order of the fields. */
 typedef uint32_t absorbed_tile_function(const absorbed_job *job, int tile_x, int tile_y);
 
 /* Splits the matter of one group between two groups. The first output may be the input. */
@@ -120,8 +122,8 @@ typedef struct split_job {
   size_t stride;
   float late; /* the fraction of the matter that becomes the second group */
 } split_job;
-/* The type of a function that splits one tile. It returns which of the four outputs have a pixel above zero,
- * one bit each: absorbed and thin of the first group, then of the second group. */
+/* The type of a function that splits one tile. The function returns which of the four outputs have a pixel
+ * above zero, one bit each: absorbed and thin of the first group, then of the second group. */
 typedef uint32_t split_tile_function(const split_job *job, int tile_x, int tile_y);
 
 typedef struct cascade_functions {

@@ -22,8 +22,8 @@ typedef struct half_pixel_job {
  * Row `row` of copy `copy` has the bit TILE * copy + row. */
 typedef uint64_t slab_rows;
 
-/* The type of the function that fills one tile of the shifted copies. It fills the rows in which some pixel
- * is below 1. All other rows hold ones already. */
+/* The type of the function that fills one tile of the shifted copies. The function fills the rows in which
+ * some pixel is below 1. All other rows hold ones already. */
 typedef slab_rows half_pixel_tile_function(const half_pixel_job *job, int tile_x, int tile_y);
 
 /* The place of a slab in a sub-light's view. scale, shift: map a position in the sub-light's buffer, in
@@ -58,8 +58,8 @@ typedef struct sublight_job {
   int channels;
 } sublight_job;
 
-/* The type of the function that multiplies one tile of a sub-light's buffer by the slab's transmittance. It
- * returns whether the slab absorbed any light. */
+/* The type of the function that multiplies one tile of a sub-light's buffer by the slab's transmittance. The
+ * function returns whether the slab absorbed any light. */
 typedef int sublight_tile_function(const sublight_job *job, int tile_x, int tile_y);
 
 /* The type of the function that multiplies a row of a sub-light's tiles by the transmittance of the slab's

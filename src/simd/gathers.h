@@ -14,8 +14,8 @@ LANES_INLINE int32_t lanes_word(const unsigned char *p) {
   return word;
 }
 
-/* The offsets of sixteen loads. They are kept in memory, because taking them out of a vector register one by
- * one would cost more than the loads. */
+/* The offsets of sixteen loads. The offsets are kept in memory, because taking them out of a vector register
+ * one by one would cost more than the loads. */
 typedef struct lanes_offsets {
   _Alignas(64) int32_t at[LANES];
 } lanes_offsets;

@@ -48,7 +48,8 @@ typedef struct plane_box {
   double low[2], high[2];
 } plane_box;
 
-/* Finds the box around all shapes of a function of two numbers. Returns false if there are no shapes. */
+/* Finds the box around all shapes of a function of two numbers. Returns false if the function has no shapes.
+ */
 bool hl_plane_bounds(const hl_function_plane *plane, plane_box *bounds);
 
 /* Sums over all shapes of a function of two numbers. Each shape adds its mean over a part of the plane. */

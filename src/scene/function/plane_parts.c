@@ -202,7 +202,7 @@ void hl_plane_release(hl_context *context, hl_function_plane *plane) {
   *plane = (hl_function_plane){0};
 }
 
-/* Copies `count` items of an array. Returns null if there are no items, or if memory is short. */
+/* Copies `count` items of an array. Returns null if `count` is 0, or if memory is short. */
 static void *copy_of(hl_context *context, const void *items, size_t count, size_t size) {
   if (count == 0 || items == NULL) return NULL;
   void *copy = hl_allocate(context, count, size);

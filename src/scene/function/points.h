@@ -13,10 +13,10 @@
  * apart. */
 size_t hl_points_not_above(const void *points, size_t count, size_t stride, double value);
 
-/* The opacity at a value. There must be at least one point. */
+/* The opacity at a value. The list must have at least one point. */
 double hl_points_opacity(const hl_opacity_point *points, size_t count, double value);
 
-/* The colour at a value; white if there are no points. */
+/* The colour at a value; white if the list has no points. */
 void hl_points_color(const hl_color_point *points, size_t count, double value, double color[3]);
 
 #endif

@@ -88,8 +88,8 @@ void hl_light_direction(const hl_camera *camera, double azimuth_deg, double elev
   memcpy(direction, &way, sizeof way);
 }
 
-/* The first volume that tells its anatomical space and is not rotated in the scene; null if there is no such
- * volume. */
+/* The first volume that tells its anatomical space and is not rotated in the scene; null if the scene has no
+ * such volume. */
 static const hl_volume *first_in_space(const hl_scene_description *description) {
   for (size_t v = 0; v < description->volume_count; v++)
     if (description->volumes[v].volume->space != HL_SPACE_UNKNOWN &&

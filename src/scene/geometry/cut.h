@@ -54,7 +54,7 @@ void hl_placed_cuts_release(hl_context *context, placed_cuts *made);
 /* Adds the shapes of cuts to a key. */
 void hl_cuts_key_add(hl_key *key, const cut_shape *cuts, size_t count);
 
-/* Returns whether two shapes are the same. */
+/* Returns whether two shapes are equal. */
 bool hl_cut_same(const cut_shape *a, const cut_shape *b);
 
 /* Returns whether no cut removes a point of the space on which the shapes' maps act. */
