@@ -87,7 +87,8 @@ static bool is_named(const hl_label *label, const hl_shown_label *shown, bool ex
          (hl_text_whole(shown->name, &number) && number == label->value);
 }
 
-/* Shows a label as an item of the list says, if the item names the label. exactly: as in has_name(). */
+/* Shows a label as an item of the list says, if the item names the label. exactly: whether upper and lower
+ * case must agree. */
 static void show_label(hl_shown_label *shown, double opacity, bool exactly, hl_label *label) {
   if (!is_named(label, shown, exactly)) return;
   const bool whole = is_whole(label, shown);

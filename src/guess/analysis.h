@@ -61,7 +61,8 @@ typedef struct hl_data_analysis {
   size_t label_count;
   bool is_mask; /* one value lies in blocks beside the background: the volume is also a map of one label */
   double valleys[HL_MOST_MATERIALS - 1]; /* distances that divide materials, rising; [material_count - 1] */
-  int material_count; /* number of materials of scanned objects; 0 if they were not looked for */
+  int material_count; /* number of materials of scanned objects; 0 if the analysis did not look for
+                       * materials */
 } hl_data_analysis;
 
 /* Analyses a volume's voxels. The first call analyses them, and the volume keeps the result for later calls.

@@ -10,7 +10,7 @@
 /* The elevation from which the three faces at a corner of a cube look alike. */
 static const double ISOMETRIC = 35.26438968275465;
 
-/* Faces whose normals rise by more than this in all look up. */
+/* If the sum of the faces' normals rises by more than SOME_RISE, the faces as a whole look up. */
 static const double SOME_RISE = 0.5;
 
 /* The normals of faces, away from the matter that remains. */

@@ -4,7 +4,7 @@
  * scan was made to show the tubes, and not the object around them. In Hounsfield units the brightest voxels
  * are bone, not vessels. A voxel lies in a tube if straight lines through it stay among bright voxels for
  * long in only one or two directions. In a sheet, lines in four or more directions stay among bright voxels
- * for long; in a ball and in noise, lines in no direction do. */
+ * for long; in a ball and in noise, no line stays among bright voxels for long. */
 #include <math.h>
 
 #include "guess/analysis.h"

@@ -216,9 +216,10 @@ static int mirror_axis(const shape *s) {
   return -1;
 }
 
-/* The way up of objects without a bottom. If left and right lie along z, -y is up, because rows of pictures
- * run downwards; otherwise z is up. A head's vault is smooth, and its jaw is rough. So if objects with a left
- * and a right have clearly more relief on the upper side than on the lower side, the objects are upside down.
+/* The up direction of objects without a bottom. If left and right lie along z, -y is up, because rows of
+ * pictures run downwards; otherwise z is up. A head's vault is smooth, and its jaw is rough. So if objects
+ * with a left and a right have clearly more relief on the upper side than on the lower side, the objects are
+ * upside down.
  */
 static int up_without_bottom(const shape *s) {
   const int mirror = mirror_axis(s), up = mirror == 2 ? -2 : 3, axis = abs(up) - 1;

@@ -45,7 +45,7 @@ static float *plane_of(const label_levels *levels, int plane) {
 /* A row of voxels, and the rows around it. At the field's ends the row itself takes the place of a missing
  * row. Each member holds indices of the first voxels of rows. */
 typedef struct border_row {
-  size_t at, beside[4]; /* the row; the rows before and after it along y, before and after it along z */
+  size_t at, beside[4]; /* at: the row; beside: the rows before and after `at` along y, then along z */
   size_t across[2][2];  /* [before, after along z][before, after along y] */
 } border_row;
 

@@ -33,9 +33,9 @@ enum {
  * roots of linear red, green and blue, and the fraction of this colour that the matter takes, each as 0 to
  * 255. The colours are null if no label tints. The colours may be read two bytes beyond the last voxel. Its
  * slopes, [k][j][i][4], are the factor's central differences along i, j and k, times HL_MASK_SLOPE_STEPS, and
- * a 0. Its bricks (mask_bricks) are made, too. The fraction of the matter that belongs to a label rises from
- * 0 to 1 over about two voxels, and is 1/2 where the label meets another label or the rest. threads: 0 for
- * one per processor. */
+ * a 0. The lattice's bricks (mask_bricks) are made, too. The fraction of the matter that belongs to a label
+ * rises from 0 to 1 over about two voxels, and is 1/2 where the label meets another label or the rest.
+ * threads: 0 for one per processor. */
 hl_status hl_label_mask(hl_context *context, int threads, const hl_mask *mask, hl_volume **made,
                         hl_error *error);
 

@@ -30,7 +30,7 @@ typedef struct frame_volume {
   const classifier *classifier;     /* borrowed; the transfer function's tables */
   double empty;                     /* the data value of the space beyond the volume */
   uint64_t version, tables_version; /* versions of the grid's voxels, and of all tables that follow from the
-                                     * transfer function. A version rises with each change */
+                                     * transfer function. Each change raises a version */
   int object;                       /* the volume's number in the layer of objects */
   bool visible, casts_shadow, receives_shadow, is_cut;
   volume_look look;
@@ -57,8 +57,8 @@ typedef struct frame_light {
                                          * space */
 } frame_light;
 
-/* A mesh of the frame, or an isosurface of a volume. Its primitives are the primitives of the mesh with the
- * same index in the frame's surfaces. */
+/* A mesh of the frame, or an isosurface of a volume. The frame's surfaces hold the primitives of this mesh
+ * under the same index. */
 typedef struct frame_mesh {
   const char *name; /* the mesh's name; borrowed; null if the mesh has no name */
   int object;       /* the mesh's number in the layer of objects; an isosurface has the number of its

@@ -26,7 +26,7 @@ LANES_INLINE int any_short_above(__m256i x, int limit) {
 
 /* Sixteen numbers of 16 bits in memory, in the order in which they are packed. narrow_pair() points at the
  * number of lane k in a half of the lanes. The number of lane k + 4 of this half lies NARROW_SECOND numbers
- * after it. */
+ * after the number of lane k. */
 typedef struct narrow_offsets {
   _Alignas(32) uint16_t at[LANES];
 } narrow_offsets;

@@ -25,8 +25,8 @@
 /* The greatest intensity of a light. The limit is large because light may fall off with the square of a
  * distance that is given in nanometres. */
 #define HL_LIMIT_INTENSITY 1e35
-/* The greatest brightness of a light at a distance of one voxel edge. Sums and products of such numbers still
- * fit floats. */
+/* The greatest brightness of a light at a distance of one voxel edge. Floats can hold sums of such
+ * brightnesses, and their products with factors up to 1e18. */
 #define HL_LIMIT_BRIGHTNESS    1e20
 #define HL_LIMIT_REACH         1e12 /* greatest distance or length, in edges of the smallest voxel */
 #define HL_LIMIT_TEXTURE_VALUE 1e6
