@@ -1,9 +1,10 @@
-// Boxes of volumes: the boxes of their voxels' cells in the world of their files, clipped or not, and the
-// boxes' corners in the scene's world.
+// Boxes of volumes: the box of a volume's voxels in its file's coordinates, clipped or not, and the
+// corners of a box in the scene's world.
 
 import { add, rotate, normalize, scale, subtract } from "./vector.js";
 
-// { min, max } of a volume of start.json, half a voxel around its voxels' centres.
+// Returns the box { min, max } of a volume of start.json. The box reaches half a voxel beyond the
+// centres of the outermost voxels.
 export function worldBox({ origin, axes, dimensions }) {
   const box = { min: [...origin], max: [...origin] };
   for (let row = 0; row < 3; row++)
@@ -15,22 +16,22 @@ export function worldBox({ origin, axes, dimensions }) {
   return box;
 }
 
-// A point of a volume's file in the scene: scaled, turned, moved.
+// Maps a point from a volume's file to the scene: the point is scaled, turned and moved.
 export function placed(point, transform = {}) {
   const factor = transform.scale ?? 1, { axis = [0, 0, 1], angle_deg: angle = 0 } = transform.rotate ?? {};
   const scaled = point.map((x, k) => x * (Array.isArray(factor) ? factor[k] : factor));
   return add(rotate(scaled, normalize(axis), (angle * Math.PI) / 180), transform.translate ?? [0, 0, 0]);
 }
 
-// The opposite: a point of the scene in the volume's file.
+// Maps a point from the scene to the volume's file: the inverse of placed().
 export function unplaced(point, transform = {}) {
   const factor = transform.scale ?? 1, { axis = [0, 0, 1], angle_deg: angle = 0 } = transform.rotate ?? {};
   const turned = rotate(subtract(point, transform.translate ?? [0, 0, 0]), normalize(axis), (-angle * Math.PI) / 180);
   return turned.map((x, k) => x / (Array.isArray(factor) ? factor[k] : factor));
 }
 
-// The eight corners. Bit k of a corner's number says whether it has the least or the greatest coordinate of
-// axis k.
+// Returns the eight corners of a box. Bit k of a corner's index is 1 if the corner has the greatest
+// coordinate along axis k.
 export const corners = ({ min, max }) =>
   Array.from({ length: 8 }, (_, n) => [0, 1, 2].map((k) => ((n >> k) & 1 ? max[k] : min[k])));
 

@@ -1,12 +1,13 @@
-// The camera of a scene: how it turns, pans, zooms and rolls, and where it puts points of the world on the
-// screen. Every function takes the camera of the scene's JSON. A function that moves it returns a new camera.
+// The camera of a scene: functions that turn, pan, zoom and roll the camera, and that project points of the
+// world onto the screen. Every function takes the camera of the scene's JSON. A function that moves the
+// camera returns a new camera.
 
 import { add, cross, dot, length, normalize, rotate, scale, subtract } from "./vector.js";
 
 const LARGEST_STEP = 1.5; // greatest change of the distance by one zoom, as a factor
-const FARTHEST = 5e4; // greatest distance of the eye, in units of the nearest one: some thousand times the matter's size
+const FARTHEST = 5e4; // greatest distance of the eye from its target, in units of its least distance: some thousand times the size of the scene's matter
 
-// Unit axes: right, up, and towards the viewer.
+// Returns the camera's unit axes: right, up, and towards the viewer.
 export function axes(camera) {
   const towards = normalize(subtract(camera.position, camera.target));
   let right = cross(camera.up, towards);
@@ -17,14 +18,14 @@ export function axes(camera) {
 
 export const distance = (camera) => length(subtract(camera.position, camera.target));
 
-// The world's height of the picture at the target.
+// Returns the height of the picture at the target, in units of the world.
 export function worldHeight(camera) {
   if (camera.type === "orthographic") return camera.height;
   return 2 * distance(camera) * Math.tan((camera.fovy_deg * Math.PI) / 360);
 }
 
-// VTK's trackball: the eye goes about the target by two angles, right and up; the camera's up is carried
-// along.
+// Turns the camera as VTK's trackball does: the eye moves about the target by two angles, to the right
+// and up, and the camera's up vector turns with the eye.
 export function turn(camera, azimuth, elevation) {
   const { right, up } = axes(camera);
   const arm = subtract(camera.position, camera.target);
@@ -44,9 +45,10 @@ export function pan(camera, right, up) {
   return { ...camera, position: add(camera.position, move), target: add(camera.target, move) };
 }
 
-// Zooms; with factor > 1 the eye comes nearer. The point of the target's plane under the cursor stays there:
-// `cursor` is [right, up] from the middle, in fractions of the picture's height. An eye that is as near to
-// the target as `nearest` goes on, and takes the target along. An eye that is as far as FARTHEST stays where it is.
+// Zooms; with factor > 1 the eye comes nearer. The point of the target's plane under the cursor keeps its place in
+// the picture. cursor: [right, up] from the picture's middle, in fractions of the picture's height. If the eye is
+// at the distance `nearest` from the target, zooming in moves the eye and the target forwards together. At the
+// distance FARTHEST, zooming out leaves the eye where it is.
 export function zoom(camera, factor, cursor = [0, 0], nearest = 0) {
   const step = Math.min(Math.max(factor, 1 / LARGEST_STEP), LARGEST_STEP);
   const part = 1 - 1 / step;
@@ -58,8 +60,8 @@ export function zoom(camera, factor, cursor = [0, 0], nearest = 0) {
   return { ...moved, position, ...(step > 1 && length(arm) / step < nearest ? { target: add(moved.target, ahead) } : {}) };
 }
 
-// Looks along an axis of the world, from its positive or negative end, at the same target and from the same
-// distance.
+// Makes the camera look along an axis of the world, from the axis's positive or negative end. The target
+// and the distance stay as they are.
 export function lookAlong(camera, axis, sign) {
   const towards = [0, 0, 0];
   towards[axis] = sign;
@@ -67,8 +69,8 @@ export function lookAlong(camera, axis, sign) {
   return { ...camera, position: add(camera.target, scale(towards, distance(camera))), up };
 }
 
-// The camera for a picture of another shape, { width, height }. Everything in the largest square in the
-// middle of the old picture is in the same square of the new one.
+// The camera for a picture of another shape, { width, height }. The contents of the largest square in
+// the middle of the old picture fill the largest square in the middle of the new picture.
 export function reshaped(camera, from, to) {
   const share = ({ width, height }) => Math.min(1, width / height);
   const factor = share(from) / share(to);
@@ -77,14 +79,16 @@ export function reshaped(camera, from, to) {
   return { ...camera, position: add(camera.target, scale(subtract(camera.position, camera.target), factor)) };
 }
 
-// A camera at `eye` that looks in a direction and shows this height.
+// Returns a camera at `eye` that looks in `direction`, with the fraction `part` of the picture's
+// height in view.
 export function along(camera, eye, direction, part) {
   const moved = { ...camera, position: eye, target: add(eye, scale(direction, distance(camera))) };
   if (camera.type === "orthographic") return { ...moved, height: camera.height * part };
   return { ...moved, fovy_deg: (360 / Math.PI) * Math.atan(Math.tan((camera.fovy_deg * Math.PI) / 360) * part) };
 }
 
-// The other kind of projection, with the same height at the target.
+// Returns the camera with the projection `type`. The height of the picture at the target stays the
+// same.
 export function withType(camera, type) {
   const { position, target, up } = camera, height = worldHeight(camera);
   if (type === camera.type) return camera;
@@ -94,7 +98,8 @@ export function withType(camera, type) {
   return { type, position: add(target, scale(towards, arm)), target, up, fovy_deg: fovy };
 }
 
-// A function from points of the world to [x, y] in a picture of this size; null for points behind the eye.
+// Returns a function that maps points of the world to [x, y] in a picture of this size. The function
+// returns null for points behind the eye.
 export function projector(camera, width, height) {
   const frame = axes(camera), tall = worldHeight(camera), far = distance(camera);
   return (point) => {

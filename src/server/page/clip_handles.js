@@ -1,5 +1,5 @@
-// Handles of the clip box. One lies in the middle of each of its six faces, and is dragged along the face's
-// axis.
+// Handles of the clip box. Each of the box's six faces has a handle in its middle, which is dragged along
+// the face's axis.
 
 import { middle, placed, worldBox } from "./boxes.js";
 import { faceHandles } from "./cut_handles.js";

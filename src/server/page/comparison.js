@@ -1,10 +1,10 @@
-// Two pictures in one: left of a line, which is dragged, the same view with other shadows, with all that was kept before, or with
-// what the last step has changed.
+// The comparison of two pictures: a line that can be dragged divides the picture. To the left of the line is the same view
+// with other shadows, with the scene that the user kept earlier, or with the scene before the last step of the history.
 
 import { make, row, button, select } from "./controls.js";
 import { followDrag } from "./drag.js";
 
-const KEY_STEP = 0.05; // of the picture's width
+const KEY_STEP = 0.05; // how far an arrow key moves the line, as a fraction of the picture's width
 const CHOICES = ["off", "hard", "soft", "before", "kept"];
 const NAMES = { off: "without shadows", hard: "hard shadows", soft: "soft shadows", kept: "kept before", before: "before" };
 
@@ -25,7 +25,7 @@ export function comparison({ store, channel, failed, find, report }) {
   find("overlay").after(line);
 
   function place() {
-    left.toggleAttribute("data-making", canvas.hidden); // the present picture is on both sides
+    left.toggleAttribute("data-making", canvas.hidden); // while the canvas is hidden, both sides of the line show the present picture
     canvas.style.clipPath = `inset(0 ${100 * (1 - part)}% 0 0)`;
     line.style.left = `${100 * part}%`;
     line.style.setProperty("--part", part);
@@ -53,7 +53,7 @@ export function comparison({ store, channel, failed, find, report }) {
     event.stopPropagation();
   }
 
-  // The scene on the left of the line.
+  // Returns the scene that is shown to the left of the line.
   function other(scene) {
     const past = { kept, before }[what];
     if (past === undefined) return withShadows(scene, what);
@@ -111,7 +111,8 @@ export function comparison({ store, channel, failed, find, report }) {
       update();
     }, title: "Left of the line in the picture",
   });
-  // A button for panels whose choices are worth to be seen beside the one before.
+  // Makes a button for other panels: it compares the picture with the picture before the last
+  // change.
   const buttons = [];
   function compareButton() {
     const made = button("compare with before", () => compare("before"), { title: "Beside the picture as it was before the last change; drag the line between them" });

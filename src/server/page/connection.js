@@ -1,18 +1,18 @@
-// The banner that says that the viewer does not answer. It stays until the viewer answers: the viewer is
-// asked again and again, and at once by Retry. A viewer at another port is another site, to which the browser shows nothing of this
-// tab's session: the banner also saves the session as a file.
+// The banner that says that the viewer does not answer. The banner stays until the viewer answers. The page asks the viewer at
+// regular intervals, and at once when Retry is pressed. A browser treats a viewer at another port as another site, which cannot
+// read this tab's session. The banner therefore also offers to save the session as a file.
 
 import { button, make } from "./controls.js";
 
-// The viewer does not answer, or it no longer knows this page. The requests of a channel fail with this
-// error.
+// The error with which the requests of a channel fail if the viewer does not answer or no longer
+// knows this page.
 export class Lost extends Error {}
 
 const ASK_EVERY = 2000; // milliseconds
 const KEPT = "Nothing is lost: what you did is kept in this tab.";
 
-// place: the element for the banner. onBack() is called when the viewer answers again; save() saves the session. Returns failed(error),
-// which takes any error of a request, and end().
+// place: the element for the banner. onBack() is called when the viewer answers again. save() saves the session. Returns two functions:
+// failed(error), which handles the error of any request, and end().
 export function watchConnection(place, channel, report, { onBack, save }) {
   const text = make("span"), retry = button("Retry", () => ask(), { class: "primary" });
   const banner = make("div", { class: "banner", role: "alert", hidden: true }, text, make("span", { class: "buttons" }, retry, button("save session", save)));

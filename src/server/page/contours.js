@@ -1,8 +1,9 @@
 // Isolines of a plane of values: marching squares (Lorensen and Cline 1987, in two dimensions), where each
-// piece ends on the sides of a cell, at the places that have the value by linear interpolation. A cell in
-// which a corner has no value has no piece.
+// piece of line ends on two sides of a cell, at the points where linear interpolation along the side gives
+// the isoline's value. A cell with a corner that has no value gets no piece of line.
 
-// values: [height][width]. Returns pieces [x0, y0, x1, y1, ...] in columns and rows.
+// values: [height][width]. Returns the end points of all pieces of line, [x0, y0, x1, y1, ...], in
+// columns and rows.
 export function contourPieces(values, width, height, level) {
   const pieces = [], at = (x, y) => values[y * width + x];
   for (let y = 0; y + 1 < height; y++)
@@ -21,7 +22,7 @@ export function contourPieces(values, width, height, level) {
       side(c, d, x + 1, y + 1, -1, 0);
       side(d, a, x, y + 1, 0, -1);
       if (ends.length === 4) pieces.push(...ends);
-      // At a saddle, the mean value in the middle says which corners belong together.
+      // At a saddle, the mean of the four corners decides which corners the pieces of line join.
       else if ((a + b + c + d) / 4 >= level === a >= level) pieces.push(ends[0], ends[1], ends[2], ends[3], ends[4], ends[5], ends[6], ends[7]);
       else pieces.push(ends[6], ends[7], ends[0], ends[1], ends[2], ends[3], ends[4], ends[5]);
     }

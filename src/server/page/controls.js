@@ -1,6 +1,8 @@
-// The small pieces that panels are made of: rows of a label and a control, which follow the scene.
+// The controls that panels consist of. Most are rows of a label and a control that shows the
+// scene's present value.
 
-// An element with attributes. Attributes that begin with "on" are listeners. Children are elements or texts.
+// Makes an element with attributes. Attributes that begin with "on" are listeners. The children are
+// elements or texts.
 export function make(tag, attributes = {}, ...children) {
   const element = tag.startsWith("svg:") ? document.createElementNS("http://www.w3.org/2000/svg", tag.slice(4))
                                          : document.createElement(tag);
@@ -13,16 +15,17 @@ export function make(tag, attributes = {}, ...children) {
   return element;
 }
 
-// Whether the element has the keyboard's focus, also in a notebook's shadow tree.
+// Returns whether the element has the keyboard's focus, in the document or in a notebook's
+// shadow tree.
 export const isActive = (element) => element.getRootNode().activeElement === element;
 
 let identifiers = 0;
 const newId = () => `control-${++identifiers}`;
 
-// label: an element, or "" for a row without a name.
+// Makes a row of a label and its controls. label: an element, or "" for a row without a label.
 export const row = (label, ...controls) => make("div", { class: "row" }, label || make("span"), ...controls);
 
-// Numbers for people: with three or four significant digits.
+// Returns a number as a text of three or four significant digits.
 export function shortNumber(value) {
   if (value === 0) return "0";
   const size = Math.abs(value);
@@ -30,16 +33,16 @@ export function shortNumber(value) {
   return String(+value.toPrecision(size >= 1000 ? 5 : 3));
 }
 
-// A button that adds a key for numbers of the scene to the film. It is seen while the panel of films is open
-// (film_panel.js listens). write(): sets the numbers in the scene to what they are by default, where the scene does not have them yet.
+// A button that adds a key for numbers of the scene to the film. The button is visible while the panel of films is open; film_panel.js
+// handles its event. write(): writes the default values of the numbers into the scene, where the scene does not have the numbers yet.
 export const keyButton = (label, path, write) => make("button", {
   type: "button", class: "key-here", title: "Key of the film: this number at the chosen frame", "aria-label": `Add a key of ${label}`,
   onclick: (event) => event.currentTarget.dispatchEvent(new CustomEvent("halflight-key", { bubbles: true, detail: { paths: [path()].flat(), write } })),
 }, "◆");
 
-// A slider with its number beside it. get() returns the value, and set(value) changes it. exponential: the
-// slider moves in equal factors. path(): for keys of films, the path of the number in the scene, or a list of
-// paths. Returns { element, update }.
+// A slider with its number beside it. get() returns the value, and set(value) changes it. exponential: equal
+// movements of the slider change the number by equal factors. path(): returns the path of the number in the
+// scene, or a list of paths, for keys of films. Returns { element, update }.
 export function slider({ label, low, high, step = "any", unit = "", exponential = false, get, set, title, path }) {
   const toSlider = exponential ? Math.log : (x) => x, fromSlider = exponential ? Math.exp : (x) => x;
   const id = newId();
@@ -53,7 +56,7 @@ export function slider({ label, low, high, step = "any", unit = "", exponential 
     step: "any",
     onchange: () => {
       if (number.value !== "" && Number.isFinite(+number.value)) set(Math.min(Math.max(+number.value, low), high));
-      number.value = shortNumber(get()); // also while the field has the focus: the number may be another one than was typed
+      number.value = shortNumber(get()); // this is done while the field has the focus, too, because set() may have changed the typed number
       update();
     },
   });
@@ -69,7 +72,8 @@ export function slider({ label, low, high, step = "any", unit = "", exponential 
   return { element: row(name, range, make("span", { class: "measure" }, number, make("span", { class: "unit" }, unit), ...(path ? [keyButton(label, path, () => set(get()))] : []))), update };
 }
 
-// A choice of one among several, as buttons side by side: [[value, text], ...].
+// Makes a choice of one value among several, as buttons side by side. choices: [[value, text],
+// ...].
 export function segments({ label, choices, get, set }) {
   const name = newId();
   const inputs = choices.map(([value, text]) => {
@@ -81,7 +85,8 @@ export function segments({ label, choices, get, set }) {
   return { element: row(make("span", { class: "name" }, label), group), update };
 }
 
-// A drop-down list: [[value, text], ...]. An entry { group, choices } is a named group of choices.
+// Makes a drop-down list. choices: [[value, text], ...]; an entry { group, choices } is a named
+// group of choices.
 export function select({ label, choices, get, set, title }) {
   const id = newId(), option = ([value, text]) => make("option", { value }, text);
   const input = make("select", { id, title, onchange: () => set(input.value) },
@@ -90,7 +95,7 @@ export function select({ label, choices, get, set, title }) {
   return { element: row(make("label", { for: id }, label), input), update };
 }
 
-// A switch.
+// Makes a switch.
 export function toggle({ label, get, set }) {
   const id = newId();
   const input = make("input", { type: "checkbox", id, role: "switch", onchange: () => set(input.checked) });
@@ -107,8 +112,8 @@ export function button(text, action, attributes = {}) {
   return make("button", { type: "button", onclick: action, ...attributes }, text);
 }
 
-// A row of numbered things, one of which is chosen, with buttons that add and remove one. count(): their
-// number; chosen(): the index of the chosen one.
+// Makes a row of numbered tabs, one of which is chosen, with buttons that add and remove a tab.
+// count(): returns the number of tabs. chosen(): returns the index of the chosen tab.
 export function tabs({ label, noun, count, chosen, choose, add, remove }) {
   const list = make("span", { role: "tablist", "aria-label": label });
   const more = button("+", add, { title: `Add: ${noun}`, "aria-label": `Add: ${noun}` });
@@ -125,11 +130,12 @@ export function tabs({ label, noun, count, chosen, choose, add, remove }) {
   return { element: make("div", { class: "tabs" }, list, more, less), update };
 }
 
-// A part of the side bar that can be folded. Returns { element, body }.
+// Makes a section of the side bar that can be folded. Returns { element, body }.
 export function section(title, open = true) {
   const body = make("div", { class: "section-body" });
   const element = make("details", { class: "section", open }, make("summary", { onclick: () => element.addEventListener("toggle", show, { once: true }) }, title), body);
-  // A person who opens the last section sees what is in it.
+  // An opened section is scrolled into view, so that its content is seen even if it is the last
+  // section of the side bar.
   const show = () => { if (element.open) element.scrollIntoView({ block: "nearest" }); };
   return { element, body };
 }

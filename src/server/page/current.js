@@ -1,5 +1,5 @@
-// What is chosen for the panels: a volume, a light, an isosurface, a cut, and a cut of the scene, each as a number. The choices are kept in
-// store.page, so that they are undone and come back with a session.
+// The things that the panels edit at present: a volume, a light, an isosurface, a cut of a volume, and a cut of the scene, each given by
+// its index. The indices are kept in store.page, so that undo and sessions restore them.
 
 export const KINDS = ["volume", "light", "surface", "cut", "sceneCut"];
 
@@ -10,7 +10,7 @@ export class Current {
     this.#store = store;
   }
 
-  // The chosen one of `count` things of a kind; the last one where there are fewer.
+  // Returns the index of the chosen thing of a kind, at most count - 1.
   of(kind, count) {
     const index = this.#store.page[kind];
     return Number.isInteger(index) && index >= 0 ? Math.min(index, Math.max(count - 1, 0)) : 0;

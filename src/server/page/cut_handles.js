@@ -1,5 +1,5 @@
-// Handles and outline of the chosen cut. A plane is dragged along its direction, a box by its faces, a sphere
-// by its middle and its rim.
+// The handles and the outline of the chosen cut. A handle moves a plane along the plane's direction. A box
+// has handles at its faces. A sphere has handles at its middle and at its rim.
 
 import { corners, edges, middle, placed } from "./boxes.js";
 import { make } from "./controls.js";
@@ -10,8 +10,9 @@ const AXES = [0, 1, 2];
 const unit = (axis) => AXES.map((k) => (k === axis ? 1 : 0));
 const sizeOf = ({ min, max }) => Math.max(...AXES.map((k) => max[k] - min[k]));
 
-// The handles of a box's six faces. whole: the box to which lengths refer. bounds: where faces may be; null:
-// anywhere. place: puts a point into the scene. take(box, axis) changes the box.
+// Makes the handles of a box's six faces. whole: the box from whose size the least distance of two faces
+// follows. bounds: the box within which faces may lie; null: faces may lie anywhere. place(point): maps a
+// point to the scene. take(box, axis): takes the changed box.
 export function faceHandles({ box, whole, bounds, place, take, label }) {
   return AXES.flatMap((axis) => ["min", "max"].map((end) => {
     const gap = (whole.max[axis] - whole.min[axis]) / 200, [low, high] = bounds ? [bounds.min[axis], bounds.max[axis]] : [-Infinity, Infinity];
@@ -34,8 +35,8 @@ function planeHandle({ cut, box, place, take, noun }) {
   return [{ label: `Plane of the ${noun}, in the picture`, kind: "plane", at: place(at), ways: [way], move }];
 }
 
-// The handle of the rim lies on the axis that is longest in the picture. The middle moves along the two axes
-// that are longest there.
+// The handle of a sphere's rim lies on the axis that is longest in the picture. The handle of the middle
+// moves along the two axes that are longest in the picture.
 function sphereHandles({ cut, box, place, take, noun, project }) {
   const { center, radius } = cut, here = project(place(center)), size = sizeOf(box);
   const seen = (axis) => {
@@ -64,7 +65,8 @@ const HANDLES = {
   }),
 };
 
-// The polygon in which a plane crosses a box: its corners, in their order around its middle.
+// Returns the polygon in which a plane crosses a box, as corners in their order around the
+// polygon's middle.
 export function section({ point, normal }, box) {
   const all = corners(box), heights = all.map((corner) => dot(subtract(corner, point), normal));
   const found = edges.filter(([a, b]) => heights[a] < 0 !== heights[b] < 0)
@@ -80,15 +82,15 @@ const circle = (center, radius, axis) => Array.from({ length: 48 }, (_, n) => {
   return add(center, add(scale(a, radius * Math.cos(angle)), scale(b, radius * Math.sin(angle))));
 });
 
-// The lines between points.
+// Returns the outline of a cut, as lists of points that lines connect.
 function outline(cut, box) {
   if (cut.type === "plane") return [section(cut, box)];
   if (cut.type === "sphere") return AXES.map((axis) => circle(cut.center, cut.radius, axis));
   return edges.map((edge) => edge.map((n) => corners(cut)[n]));
 }
 
-// source: the cut that is shown, from cut_panel.js: { cut(): null for none, take(cut), box(), transform(),
-// noun }.
+// source: the owner of the cut that is shown, from cut_panel.js: { cut(), take(cut), box(), transform(),
+// noun }. cut() returns null if no cut is shown.
 export class CutHandles extends PictureHandles {
   #source;
   path = make("svg:path", { class: "clip-box", "aria-hidden": "true" });

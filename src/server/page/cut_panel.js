@@ -1,6 +1,6 @@
 // The panels of the cuts of a volume, and of the cuts of the scene, which cut all volumes. Cuts are planes,
-// boxes and spheres; each has its numbers and a switch. A cut that is switched off is not in the scene, but
-// in the page's state.
+// boxes and spheres; each cut has fields for its numbers and a switch. A cut that is switched off is kept
+// in the page's state and is not part of the scene.
 
 import { corners, middle, placed, unplaced, worldBox } from "./boxes.js";
 import { button, isActive, make, row, section, segments, select, shortNumber, tabs, toggle } from "./controls.js";
@@ -8,23 +8,25 @@ import { add, scale, subtract, withoutErrors } from "./vector.js";
 
 const PARTS = { plane: [["point", "Point"], ["normal", "Direction"]], box: [["min", "Least"], ["max", "Greatest"]], sphere: [["center", "Centre"], ["radius", "Radius"]] };
 
-// Whether an object, as of a session's file, has a cut's numbers.
+// Returns whether an object, for example from a session's file, has all numbers of a cut.
 const isComplete = (cut) => Object.hasOwn(PARTS, cut?.type) && PARTS[cut.type].every(([key]) => {
   const values = [cut[key]].flat();
   return values.length === (key === "radius" ? 1 : 3) && values.every(Number.isFinite);
 });
 
-// A new cut. A box takes away the part of the whole that is nearest to the eye, an eighth, and a sphere what one looks at.
+// Makes a new cut. A new box removes the eighth of the whole box that is nearest to the eye. A new sphere removes the
+// matter in the middle of the side that faces the eye.
 function newCut(type, whole, eye) {
   const sides = whole.max.map((end, k) => end - whole.min[k]), longest = Math.max(...sides);
   const at = withoutErrors(middle(whole), longest), towards = subtract(eye, at);
   if (type === "plane") return { type, point: at, normal: [1, 0, 0] };
   if (type === "box") return { type, min: at.map((x, k) => (towards[k] < 0 ? whole.min[k] - sides[k] / 10 : x)), max: at.map((x, k) => (towards[k] < 0 ? x : whole.max[k] + sides[k] / 10)) };
-  const out = Math.min(...towards.map((x, k) => sides[k] / 2 / Math.max(Math.abs(x), 1e-9))); // the part of the way to the eye at which the whole is left
+  const out = Math.min(...towards.map((x, k) => sides[k] / 2 / Math.max(Math.abs(x), 1e-9))); // the fraction of the way from the middle to the eye at which the line leaves the whole box
   return { type, center: add(at, scale(towards, Math.min(out, 1))), radius: longest / 3 };
 }
 
-// The cut, moved so that its middle, or a point of its plane, is at a point.
+// Returns the cut, moved to a point. The point becomes the middle of a box or a sphere, or a
+// point of a plane.
 function movedTo(cut, point) {
   if (cut.type === "plane") return { ...cut, point };
   if (cut.type === "sphere") return { ...cut, center: point };
@@ -32,7 +34,7 @@ function movedTo(cut, point) {
   return { ...cut, min: add(cut.min, way), max: add(cut.max, way) };
 }
 
-// A row of one or three numbers.
+// Makes a row of one number field or of three.
 function numbers({ label, noun, count, get, set }) {
   const fields = Array.from({ length: count }, (_, k) => {
     const name = count > 1 ? `${label} ${"xyz"[k]}` : label;
@@ -52,17 +54,19 @@ function numbers({ label, noun, count, get, set }) {
   return { element: row(make("span", { class: "name" }, label), make("span", { class: "numbers" }, ...fields)), update };
 }
 
-// A panel of the cuts of one owner. kind: of Current, the choice among the cuts; owner() tells which volume it is (-1: none, the panel is
-// hidden), cuts() are its cuts in the scene, take(name, change) changes them, box() is where they cut, transform() where that lies in the
-// scene, others() are rows that follow. While it is open, the chosen cut has handles in the picture.
+// Makes a panel of the cuts of one owner, a volume or the scene. kind: the kind of current.js that chooses among the cuts. owner():
+// returns the owner's index; -1: there is no owner, and the panel is hidden. cuts(): returns the owner's cuts in the scene. take(name,
+// change): changes the cuts. box(): returns the box that is cut. transform(): returns the transform from the box to the scene. others():
+// returns further rows. While the panel is open, the chosen cut has handles in the picture.
 function panelOf({ title, noun, kind, viewer: { store, current, overlay, report, slices }, owner, cuts, take: takeCuts, box, transform, others }) {
   const { element, body } = section(title, false), rows = make("div");
-  let parts = [], told = ""; // what the rows are of
+  let parts = [], told = ""; // tells for which cut the rows were made
 
-  // Cuts that are switched off are put aside, [{ cut, at }], with their places in the list of all cuts.
+  // Cuts that are switched off are kept as [{ cut, at }], where `at` is the cut's index in the list
+  // of all cuts.
   const key = () => `${kind} ${owner()}`;
   const off = () => [store.aside(key()) ?? []].flat().filter((one) => isComplete(one?.cut) && Number.isInteger(one.at));
-  // All cuts, [{ cut, on }].
+  // Returns all cuts, switched on or off, as [{ cut, on }].
   const list = () => off().reduce((all, { cut, at }) => all.toSpliced(at, 0, { cut, on: false }), cuts().map((cut) => ({ cut, on: true })));
   const chosen = () => current.of(kind, list().length), entry = () => list()[chosen()];
 
@@ -116,7 +120,7 @@ function panelOf({ title, noun, kind, viewer: { store, current, overlay, report,
     ];
   }
 
-  // The rows follow the scene where another shape of cut is chosen, by hand or by undo.
+  // The rows are made anew when the chosen cut has another shape, after a choice or after undo.
   function update() {
     element.hidden = owner() < 0;
     if (element.hidden) return;
@@ -138,7 +142,7 @@ function panelOf({ title, noun, kind, viewer: { store, current, overlay, report,
 }
 
 // The switch for everything that is cut away or hidden: the cuts, clip boxes and scraps of all volumes, and the
-// scene's cuts. It also says, below the picture, what the program has left out by itself; one click brings this back.
+// scene's cuts. A note below the picture says what the program has hidden by itself; a click on the note shows it.
 export function cutSwitch(viewer) {
   const { store, start, find } = viewer;
   const cutsOf = ({ volumes, cuts }) => ({ volumes: volumes.map(({ cuts: own, clip, scraps }) => ({ cuts: own, clip, scraps })), cuts });

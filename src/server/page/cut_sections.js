@@ -1,4 +1,5 @@
-// Where cuts and clip boxes cut a slice: the sections of their shapes with its plane, the removed part dimmed and a line at its border.
+// Draws where cuts and clip boxes cut a slice. The part of the slice that is removed is dimmed, and a line follows the border of that
+// part.
 //
 // A plane's samples lie in the space of a cut by an affine map, so that the section of a half space, a box or a sphere with the plane is a
 // convex polygon in columns and rows.
@@ -7,11 +8,12 @@ import { unplaced } from "./boxes.js";
 import { samplePoint } from "./sections.js";
 import { add, dot, scale, subtract } from "./vector.js";
 
-const CORNERS = 128; // of the polygon for a sphere
+const CORNERS = 128; // number of corners of the polygon that stands for the section of a sphere
 const DIM = "#000000b0", LINE = "#ff7a66";
 const WIDTH = 2; // pixels of the line, which lies on the side that is left
 
-// The cuts of a volume of a scene: [{ cut, transform }]. transform: the volume's, for a cut in the lengths of its file.
+// Returns the cuts of volume v of a scene, [{ cut, transform }]. transform: the volume's transform if the cut is given
+// in the coordinates of the volume's file.
 export function cutsOf(scene, v) {
   const { clip, cuts = [], transform } = scene.volumes[v];
   return [
@@ -21,7 +23,7 @@ export function cutsOf(scene, v) {
   ];
 }
 
-// The part of a convex polygon in which from + across column + down row is at most 0.
+// Returns the part of a convex polygon in which from + across * column + down * row is at most 0.
 function clipped(polygon, [from, across, down]) {
   const height = ([column, row]) => from + across * column + down * row;
   return polygon.flatMap((corner, n) => {
@@ -31,9 +33,9 @@ function clipped(polygon, [from, across, down]) {
   });
 }
 
-// The ellipse in which a sphere meets the plane, in columns and rows. Derived: with p = from + across x + down y, the
-// nearest point to the centre solves the normal equations of the metric G = [across, down]^T [across, down], and around it
-// (x, y) G (x, y)^T = radius^2 - height^2, with Cholesky's factor of G.
+// Returns the ellipse in which a sphere meets the plane, in columns and rows. Derived: with p = from + across x + down y,
+// the nearest point to the centre solves the normal equations of the metric G = [across, down]^T [across, down], and
+// around it (x, y) G (x, y)^T = radius^2 - height^2, with Cholesky's factor of G.
 function ellipse({ center, radius }, { from, across, down }) {
   const [a, b, c] = [dot(across, across), dot(across, down), dot(down, down)], away = subtract(from, center), whole = a * c - b * b;
   const [p, q] = [-dot(across, away), -dot(down, away)], x = (c * p - b * q) / whole, y = (a * q - b * p) / whole;
@@ -46,7 +48,8 @@ function ellipse({ center, radius }, { from, across, down }) {
   });
 }
 
-// The inside of a cut within a rectangle of the plane. map: { from, across, down }, of samples in the cut's own space.
+// Returns the part of a rectangle of the plane that lies inside a cut. The second argument { from, across, down } maps
+// columns and rows to the cut's space.
 function insideOf(cut, { from, across, down }, rectangle) {
   const half = (normal, level) => [dot(from, normal) - level, dot(across, normal), dot(down, normal)];
   if (cut.type === "sphere") return ellipse(cut, { from, across, down });
@@ -58,8 +61,8 @@ function insideOf(cut, { from, across, down }, rectangle) {
   }, rectangle);
 }
 
-// The sections of cuts with a plane: [{ inside, keepsInside }]; inside: a polygon in columns and rows, which may reach beyond the plane's
-// samples. cuts: as of cutsOf(). source: { grid, transform } of the plane's samples.
+// Returns the sections of cuts with a plane, [{ inside, keepsInside }]. inside: a polygon in columns and rows, which may reach beyond the
+// plane's samples. cuts: the result of cutsOf(). source: { grid, transform } of the volume that the plane's samples are taken from.
 export function sectionsOf(cuts, plane, source) {
   const { width, height } = plane, rectangle = [[-width, -height], [2 * width, -height], [2 * width, 2 * height], [-width, 2 * height]];
   return cuts.map(({ cut, transform }) => {
@@ -68,8 +71,8 @@ export function sectionsOf(cuts, plane, source) {
   });
 }
 
-// Draws over a plane. context: of the plane's canvas. fit: { x, y, left, top } of slice_view.js, and frame: [left, top, width, height] of the
-// plane's samples, in pixels of this canvas.
+// Draws the sections over the picture of a plane. context: the drawing context of the plane's canvas. fit: { x, y, left, top } as in
+// slice_view.js. frame: [left, top, width, height] of the plane's samples. fit and frame are in pixels of the canvas.
 export function drawSections(context, sections, fit, frame, density) {
   if (sections.length === 0) return;
   const { width, height } = context.canvas, [removed, lines] = [0, 1].map(() => Object.assign(document.createElement("canvas"), { width, height }).getContext("2d"));
@@ -88,7 +91,7 @@ export function drawSections(context, sections, fit, frame, density) {
     trace(lines, inside);
     lines.stroke();
   }
-  // Of a line, what lies in a removed part goes.
+  // The parts of the lines that lie inside a removed part are erased.
   lines.globalCompositeOperation = "destination-out";
   lines.drawImage(removed.canvas, 0, 0);
   removed.globalCompositeOperation = "source-in";

@@ -1,10 +1,11 @@
-// Drags by a mouse, a pen or a finger. A drag follows one pointer from where it goes down to where it is lifted: a second
-// finger does not move what the first one holds.
+// Drags by a mouse, a pen or a finger. A drag follows one pointer from its press to its release, so that a second finger
+// does not move what the first finger holds.
 
-const FINGER = 2; // a finger reaches this many times as far as the point of a mouse
+const FINGER = 2; // a finger takes hold of things within this many times the distance of a mouse
 
-// Calls move(event) for each movement of the pointer of `event`, which has just gone down. target: the element that gets the
-// pointer's events until then, or the window, which gets them where the element under the pointer is drawn anew meanwhile.
+// Calls move(event) for each movement of the pointer of `event`, which has just gone down. target: the element that receives
+// the pointer's events during the drag. The target is the window if the element under the pointer is replaced during the
+// drag.
 export function followDrag(event, target, move) {
   const lifted = new AbortController(), { signal } = lifted, isSame = (later) => later.pointerId === event.pointerId;
   target.setPointerCapture?.(event.pointerId);
@@ -13,5 +14,6 @@ export function followDrag(event, target, move) {
     target.addEventListener(over, (last) => { if (isSame(last)) lifted.abort(); }, { signal });
 }
 
-// The pixels from a small thing within which a pointer takes hold of it. pixels: for a mouse.
+// Returns the distance, in pixels, within which a pointer takes hold of a small thing. pixels: this
+// distance for a mouse.
 export const reachOf = (event, pixels) => (event.pointerType === "touch" ? FINGER * pixels : pixels);

@@ -1,28 +1,32 @@
-// Ways out of the viewer: the picture, the scene, and the command that renders it.
+// The panel that exports from the viewer: the picture, the scene, and the command that renders the
+// picture.
 
 import { reshaped } from "./camera.js";
 import { button, isActive, make, row, section, select } from "./controls.js";
 import { figureOverlay } from "./figure_overlay.js";
 
-// A title without the endings of a file name: the ending of a packing and the ending of a format.
+// Returns a title without the extensions of a file name: the extension of a compression and the
+// extension of a format.
 export const stem = (title) => title.replace(/(?<=.)\.(gz|bz2|xz|zst)$/i, "").replace(/(?<=.)\.[a-z][a-z0-9]*$/i, "") || "picture";
 
-// Words for a shell, in single quotes where they need quotes.
+// Returns a word as a shell reads it, in single quotes if the word needs quotes.
 export const quoted = (word) => (/^[\w./+:=-]+$/.test(word) ? word : `'${word.replaceAll("'", "'\\''")}'`);
 
-// A file named after the title; no program takes the name for an option.
+// Returns the name of a file after the title, quoted for a shell. A name that begins with "-" gets
+// "./" in front, so that no program takes the name for an option.
 export const fileWord = (title, ending) => quoted(`${stem(title)}${ending}`.replace(/^-/, "./-"));
 
-// The text of the scene file, which `halflight render` takes.
+// Returns the text of the scene file that `halflight render` reads.
 export const sceneText = (scene) => JSON.stringify(scene, null, 2) + "\n";
 
-// A command that needs nothing beside it but the scene's volumes: the scene is its standard input.
-// over: { scaleBar, legend, axes, marks, unit }: what is drawn over the picture (figure_overlay.js), and the unit of lengths where the files tell
-// none. In a perspective picture the bar holds at the camera's target.
+// Returns a command that renders the scene. The command needs no file but the scene's volumes, because the scene is the command's standard input.
+// over: { scaleBar, legend, axes, marks, unit }: the parts of a figure that are drawn over the picture (figure_overlay.js), and the unit of
+// lengths, used if the files tell no unit. In a perspective picture, the length of the scale bar is right at the depth of the camera's target.
 export const commandLine = (scene, title, { scaleBar = false, legend = false, axes = "none", marks = false, unit = "" } = {}) =>
   `halflight render - -o ${fileWord(title, ".png")}${unit ? ` --unit ${quoted(unit)}` : ""}${scaleBar ? ` --scale-bar auto${scene.camera.type === "orthographic" ? "" : "@target"}` : ""}${legend ? " --legend auto" : ""}${axes === "none" ? "" : ` --axes ${axes}`}${marks ? " --marks" : ""} <<'END'\n${sceneText(scene)}END\n`;
 
-// The same as a Python program.
+// Returns the call of annotate() for a Python program that draws the same parts of a figure; "" if
+// there are none.
 const annotated = ({ scaleBar = false, legend = false, axes = "none", marks = false, unit = "" }) => {
   const words = [...(scaleBar ? ["scale_bar=True", 'depth="target"'] : []), ...(unit ? [`unit=${JSON.stringify(unit)}`] : []), ...(legend ? ["legend=True"] : []), ...(axes === "none" ? [] : [`axes=${JSON.stringify(axes)}`]), ...(marks ? ["marks=True"] : [])];
   return words.length > 0 ? `.annotate(${words.join(", ")})` : "";
@@ -38,7 +42,8 @@ export function download(blob, name) {
   setTimeout(() => URL.revokeObjectURL(link.href), 10000);
 }
 
-// Returns a function that puts a text into the clipboard or, where this is not allowed, into a file.
+// Returns a function that copies a text to the clipboard. If the browser does not allow this, the
+// function saves the text as a file.
 export function copier(report, store) {
   return async (text, what) => {
     try {
@@ -63,7 +68,8 @@ export function exportPanel(viewer) {
     label: "Format", choices: [["png", "PNG"], ["png16", "PNG, 16 bits"], ["exr", "EXR, linear float"]],
     get: () => format, set: (value) => { format = value; update(); },
   });
-  // The picture's sides by its purpose: multiples of the shown size, or a width in print.
+  // The list that chooses the picture's width and height by the picture's purpose: a multiple of
+  // the shown size, or a width in print.
   const sizes = select({
     label: "For", choices: [["", "these pixels"], ["1", "as seen"], ["2", "twice as seen"], ["4", "four times as seen"], ["8.5cm", "8.5 cm at 300 dpi"], ["17cm", "17 cm at 300 dpi"]],
     get: () => purpose, set: (choice) => {
@@ -75,7 +81,7 @@ export function exportPanel(viewer) {
     const { image } = store.scene, factor = purpose.endsWith("cm") ? (parseFloat(purpose) / 2.54) * 300 / image.width : +purpose;
     if (factor > 0) [width.value, height.value] = [Math.round(image.width * factor), Math.round(image.height * factor)];
   }
-  // A number that is typed is for these pixels.
+  // A typed width or height sets the purpose to "these pixels".
   [width, height].forEach((input) => input.addEventListener("input", () => { purpose = ""; sizes.update(); }));
   const transparent = make("input", { type: "checkbox", id: "transparent" });
   const bare = make("input", { type: "checkbox", id: "bare", title: "A PNG without the scene, and without the names of its files" });
@@ -88,7 +94,8 @@ export function exportPanel(viewer) {
     const scene = structuredClone(store.file), image = scene.image, seen = { width: image.width, height: image.height };
     image.width = Math.round(+width.value) || image.width;
     image.height = Math.round(+height.value) || image.height;
-    // The seen part is in the picture, whatever the picture's shape is.
+    // The camera is changed so that the saved picture contains the part of the scene that the
+    // viewer shows, whatever the picture's shape.
     scene.camera = reshaped(scene.camera, seen, image);
     if (transparent.checked) [image.background_transparent, image.background_sky] = [true, false];
     save.disabled = true;

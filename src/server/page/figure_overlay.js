@@ -1,20 +1,22 @@
-// What a figure has over its picture: a scale bar, a legend, axes and marks. The viewer draws them as `halflight render` does. The first
-// three lie over the picture at rest, where the page has marks of its own (mark_overlay.js), and all are saved with it. What is wanted
-// stands in store.page.over.
+// The parts of a figure that are drawn over the picture: a scale bar, a legend, axes and marks. The viewer draws these parts as
+// `halflight render` does. The scale bar, the legend and the axes lie over the picture at rest; the page draws the marks by itself
+// (mark_overlay.js). A saved picture has all four parts. store.page.over says which parts the user wants.
 
 import { isActive, make, row, select } from "./controls.js";
 import { isAnatomical } from "./sections.js";
 import { givenUnit, isUnitless } from "./units.js";
 
-const LONG = 15000; // milliseconds of a line over the picture that says what the program has left out
+const LONG = 15000; // milliseconds for which a message says which part the program has left out
 
-// Returns { elements, update, over, saved }. elements: rows of a panel. over(): what is wanted over the picture and can be drawn,
-// { scaleBar, legend, axes, unit }. saved(): the same for a saved picture, with { marks }.
+// Returns { elements, update, over, saved }. elements: rows of a panel. over(): returns { scaleBar, legend, axes, unit }, the
+// parts that are wanted over the picture and can be drawn. saved(): returns the parts for a saved picture, which also have {
+// marks }.
 export function figureOverlay({ store, start, channel, failed, report, find, atRest, frames }) {
   const wanted = () => ({ scaleBar: false, legend: false, axes: "none", marks: true, ...(channel.overlay ? store.page.over : {}) });
   const want = (part) => store.setPage({ over: { ...wanted(), ...part } });
   const isVisible = (volume) => volume.visible !== false;
-  // Why no legend can be drawn; "": one can. A strip of colours shows a function of one number.
+  // Returns the reason why no legend can be drawn; "": a legend can be drawn. A legend is a strip
+  // of colours, which can only show a transfer function of one number.
   const noLegend = () => (!store.scene.volumes.some(isVisible) ? "A legend shows a visible volume."
     : store.scene.volumes.some((volume) => isVisible(volume) && volume.transfer_function?.second !== undefined) ? "A legend cannot show a transfer function of two numbers."
     : "");
@@ -34,23 +36,24 @@ export function figureOverlay({ store, start, channel, failed, report, find, atR
 
   const canvas = make("canvas", { class: "figure", "aria-hidden": "true", hidden: true });
   find("overlay").before(canvas);
-  let shown = ""; // what the canvas shows, as told() tells it; "": nothing
+  let shown = ""; // the result of told() for the drawing that the canvas shows; "": the canvas shows nothing
 
-  // All on which the drawing depends; "": nothing is wanted.
+  // Returns a text of everything on which the drawing depends; "": no part is wanted.
   function told() {
     const asked = over(), { scene } = store;
     if (!asked.scaleBar && !asked.legend && asked.axes === "none") return "";
     return JSON.stringify([asked, scene.image, scene.volumes, scene.meshes ?? null, scene.camera]);
   }
 
-  // The page's own axes and bar make room for those of the figure.
+  // The page hides its own axes and scale bar where the figure has axes and a scale bar.
   function show(what) {
     shown = what;
     canvas.hidden = what === "";
     find("view").classList.toggle("with-figure", what !== "");
   }
 
-  // What the program says of the drawing, as that a legend finds no room: in the panel, and once over the picture.
+  // Shows a note of the program about the drawing, for example that there is no room for a legend. The note stays
+  // in the panel and appears once over the picture.
   function say(note) {
     if (note !== "" && note !== said.textContent) report(note, LONG);
     said.textContent = note;

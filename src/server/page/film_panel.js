@@ -1,6 +1,6 @@
-// The panel of films. A film has a turn, and keys for the camera and for numbers and vectors of the scene, which the
-// timeline shows. `halflight animate` makes the same film. "Pictures" are numbered PNGs in a zip archive,
-// which need no ffmpeg.
+// The panel of films. A film consists of a turn of the camera and of keys, which the timeline shows. Keys set the
+// camera, or numbers and vectors of the scene. `halflight animate` makes the same film. "Pictures" are numbered PNGs
+// in a zip archive, which need no ffmpeg.
 
 import { reshaped } from "./camera.js";
 import { button, isActive, make, row, section, select, toggle } from "./controls.js";
@@ -19,7 +19,8 @@ export function numberPaths(value, path = "") {
   return Object.entries(value).flatMap(([key, part]) => numberPaths(part, path ? `${path}.${key}` : key));
 }
 
-// Whether a scene has a place for what a track changes. What an object leaves out has its defaults, but not the elements of a list.
+// Returns whether the scene has, or may have, the value at a track's path. A missing member of an object may be added, because
+// members have defaults; a missing element of a list may not.
 function hasPlace(scene, path) {
   const names = path.split("."), present = names.findIndex((_, n) => valueAt(scene, names.slice(0, n + 1).join(".")) === undefined);
   return present < 0 || !names.slice(present).some((name) => /^\d+$/.test(name));
@@ -36,19 +37,19 @@ function timeLeft(seconds) {
 const NEW = { tracks: [], frames: 120, fps: 30, turns: false, frame: 0, format: "mp4", open: false };
 
 // The film that a person makes: its tracks and length, the frame that the page shows, and the scene without
-// the changes of this frame. It stands in store.page.film, and so is kept with the session.
+// the changes of this frame. The film is kept in store.page.film, so that the session contains the film.
 class Film {
   playing = false;
   scene;
   changed = () => {};
-  taken = () => {}; // the film is another one: that of a session
-  #kept; // the film in store.page when this one was last kept or taken
+  taken = () => {}; // called when a session has replaced the film
+  #kept; // the value of store.page.film when this film was last stored there or read from there
   #viewer;
-  #edits = 0; // number of changes by a person; a new window size is none
+  #edits = 0; // number of changes by a person; a new size of the window does not count
   #asking = false;
   #again = false;
   #seen; // the store's scene at its last change
-  #own = new Set(); // of what the film changes: what a person has changed since the frame's scene was asked for, as paths
+  #own = new Set(); // paths of values that the film changes and that a person has changed since the frame's scene was requested
 
   constructor(viewer) {
     this.#viewer = viewer;
@@ -57,7 +58,8 @@ class Film {
     viewer.store.listen((...change) => this.#follow(...change));
   }
 
-  // Takes the film of the page's state. A film that turns starts from another camera than the one of the frame that is shown.
+  // Reads the film from the page's state. The turn of a film starts from the stored camera `from`, because the shown frame's
+  // camera has been turned already.
   #take() {
     const { scene, page } = this.#viewer.store, { from, ...film } = readFilm(page.film);
     this.#kept = page.film;
@@ -65,7 +67,8 @@ class Film {
     this.scene = this.turns && from !== undefined ? { ...scene, camera: reshaped(from.camera, from.image, scene.image) } : scene;
   }
 
-  // edits: whether the change is a step that can be undone; to go to a frame is none.
+  // Stores the film in the page's state. edits: whether the change is a step that can be undone;
+  // going to a frame is not such a step.
   #keep(edits) {
     const { tracks, frames, fps, turns, frame, format, open, scene } = this, { camera, image: { width, height } } = scene;
     this.#kept = { tracks, frames, fps, turns, frame, format, open, ...(turns ? { from: { camera, image: { width, height } } } : {}) };
@@ -73,15 +76,16 @@ class Film {
     else this.#viewer.store.setPage({ film: this.#kept });
   }
 
-  // A track of a number for which the scene has no place, as of a light that was removed.
+  // A track whose path the scene does not have any more, for example because a light was removed;
+  // undefined if there is no such track.
   get #gone() { return this.tracks.find(({ path }) => path !== CAMERA && !hasPlace(this.scene, path)); }
 
-  // The paths of all that the film changes.
+  // The paths of all values of the scene that the film changes.
   get #changes() { return [...this.tracks.map(({ path }) => path), ...(this.turns ? [CAMERA] : [])]; }
 
   get #isEmpty() { return this.tracks.length === 0 && !this.turns; }
 
-  // A turn starts from the camera that a person has chosen, not from the place where the turn has taken it.
+  // A turn starts from the camera that a person has chosen, not from the turned camera of the shown frame.
   #follow(scene, name, frame) {
     const before = this.#seen;
     this.#seen = scene;
@@ -105,8 +109,8 @@ class Film {
     this.changed();
   }
 
-  // Follows a step of the history, whose scene is that of a frame of the film. The history has no cameras: a turn starts where it did before
-  // the step.
+  // Follows a step of the history, whose scene is that of a frame of the film. The history does not contain cameras, so that a turn starts
+  // from the same camera as before the step.
   #followHistory(scene, frame) {
     const { turns, scene: { camera } } = this, isOther = this.#viewer.store.page.film !== this.#kept;
     this.#edits++;
@@ -133,11 +137,11 @@ class Film {
       this.frame = Math.round((this.frame * (this.frames - 1)) / (before - 1));
     }
     const edits = ["tracks", "frames", "fps", "turns", "format"].some((key) => key in part);
-    if (edits || !this.playing) this.#keep(edits); // the frames that playing passes are no work of a person's
+    if (edits || !this.playing) this.#keep(edits); // frames that are shown while the film plays are not stored
     this.changed();
   }
 
-  // Changes what the film shows at its frame.
+  // Changes the film, and shows the changed scene of its present frame.
   edit(part) {
     const wasEmpty = this.#isEmpty;
     this.set(part);
@@ -150,7 +154,8 @@ class Film {
     if (!this.#isEmpty) await this.#showScene();
   }
 
-  // Shows the scene of the film's frame. Of frames that are asked for meanwhile, only the last one is shown.
+  // Shows the scene of the film's frame. If several frames are requested before the scene arrives, only the
+  // last frame is shown.
   async #showScene() {
     const { channel, store, waits } = this.#viewer;
     if (!channel.sceneAt) return;
@@ -161,8 +166,8 @@ class Film {
     await waits(this.#takeScenes());
   }
 
-  // Takes the scene of the frame, and asks for it again as long as another frame is wanted or the scene is changed meanwhile. No picture is
-  // final until then.
+  // Requests the scene of the frame. The request is repeated if another frame is wanted, or the scene was changed, before the answer came.
+  // No picture counts as final until the scene has been taken.
   async #takeScenes() {
     const { channel, store, report } = this.#viewer;
     while (this.#again) {
@@ -182,8 +187,8 @@ class Film {
     this.changed();
   }
 
-  // The frame's scene in the picture's size, with what a person has changed since it was asked for. This is seen until the next frame, as
-  // all changes between keys are.
+  // Returns the frame's scene with the picture's present size and with the changes that a person has made since the scene was requested.
+  // These changes stay visible until the next frame is shown, as do all changes between keys.
   #withOwn(at, now) {
     const { width, height } = now.image, sized = { ...at, image: { ...at.image, width, height } };
     return [...this.#own].filter((path) => valueAt(now, path) !== undefined).reduce((scene, path) => withValue(scene, path, valueAt(now, path)), sized);

@@ -1,8 +1,8 @@
-// Frames: chooses the next picture, and its quality. While something moves, quick pictures follow each other;
-// each is asked for when the last one has come. Their work fits into the time of a frame, by the clock and of the processors. Their
-// sheets are as far apart as their pixels are long. The channel takes volumes whose voxels are about as long, so that thin surfaces
-// stay whole. At rest a picture follows that is as fine as fits into half a second. Then the exact
-// picture follows, which is the one that `halflight render` makes of the same scene.
+// Frames: chooses the next picture, and its quality. While something moves, quick pictures follow each other; each quick picture is
+// requested when the one before has arrived. The work of a quick picture is chosen so that its time by the clock and its processor
+// time fit into budgets. The sheets of a quick picture are as far apart as its pixels are long. The channel renders coarser volumes
+// whose voxels are about as long as the distance of the sheets, so that thin surfaces have no holes. At rest a picture follows that
+// is as fine as fits into half a second. The exact picture comes last; `halflight render` makes the same picture of the scene.
 
 import { worldHeight } from "./camera.js";
 import { fit, follow, leastWork, workAt } from "./quality.js";
@@ -11,14 +11,16 @@ import { length } from "./vector.js";
 const BUDGET = 1000 / 20; // milliseconds by the clock for a frame while something moves
 const PROCESSOR_BUDGET = 80; // milliseconds of processor time for such a frame, however many cores there are
 const REST_AFTER = 120; // milliseconds without a change, after which the scene is at rest
-// Milliseconds for the first picture of full size, so that it is there half a second after the last change.
+// The milliseconds that the first picture of full size may take. This picture is then finished half a
+// second after the last change.
 const SETTLED_WITHIN = 350;
 // The number of voxels that a channel prepares in a few tenths of a second, unless it tells another number.
 const SOON_PREPARED = 128 ** 3;
-const SHADOW_PIXELS = 0.5; // the longer side of a shadow buffer, as a part of a moving picture's longer side
-const ADAPTION = 0.6; // exponent: the part of an error in time that one frame corrects
+const SHADOW_PIXELS = 0.5; // the longer side of a shadow buffer, as a fraction of the longer side of a quick picture
+const ADAPTION = 0.6; // exponent of the correction of the work: the fraction of an error in time, as a logarithm, that one frame corrects
 
-// The distance of the first picture's sheets, such that the volumes of this picture are soon prepared.
+// Returns the distance of the sheets of the first quick picture. The distance makes the channel take
+// volumes so coarse that they are soon prepared.
 function firstSpacing(volumes, soonPrepared) {
   const voxels = volumes.reduce((sum, { dimensions: [i, j, k] }) => sum + i * j * k, 0);
   return Math.max(Math.cbrt(voxels / soonPrepared), 1.5);
@@ -37,18 +39,18 @@ export class Frames {
   #ended = false;
   #generation = 0;
   #timer = 0;
-  #work; // of a picture while something moves
-  #timely; // the work that takes as long as the budget by the clock
-  #voxel = 1; // the length of the voxels of the last picture while something moved
+  #work; // the work of a quick picture (quality.js)
+  #timely; // the work whose time by the clock equals BUDGET
+  #voxel = 1; // the length of the voxels of the last quick picture
   #voxels;
   #scene = null; // the scene that the newest picture shows, or will show
   #animation = null; // { change, began: null until its first picture is shown, milliseconds }
   statistics = { previews: 0, cancelled: 0, finals: 0, stage: "start" };
 
-  // report({ stage, state, width, height, spacing, milliseconds, bytes, scene, seen, error }) is told of every frame, and when a picture is begun of a
-  // scene at rest. state: a number that is another one after each change. stage: "moving" at a change and with each quick picture; "settling"
-  // and "refining" when the first and the final picture at rest are begun, "settled" and "final" when these are there; "failed". seen: with "final", of
-  // fetchFrame().
+  // report({ stage, state, width, height, spacing, milliseconds, bytes, scene, seen, error }) is called for every frame, and when a picture of a scene
+  // at rest is begun. state: a number that differs after each change of the scene. stage: "moving" at a change and with each quick picture; "settling"
+  // and "refining" when the first and the final picture at rest are begun, "settled" and "final" when these two pictures have arrived; "failed" after
+  // an error. seen: the member `seen` of fetchFrame()'s result, given with "final".
   constructor({ store, start, channel }, canvas, report) {
     this.#measure(start);
     this.#store = store;
@@ -56,7 +58,8 @@ export class Frames {
     this.#channel = channel;
     this.#canvas = canvas;
     this.#report = report;
-    // Marks and layouts change no picture.
+    // Changes of marks and of the layout leave the scene as it is, and so do not start a new
+    // picture.
     store.listen((scene) => { if (scene !== this.#scene) this.move(); });
   }
 
@@ -64,13 +67,13 @@ export class Frames {
     this.#voxels = volumes.map((volume) => Math.min(...volume.axes.map(length)));
   }
 
-  // Volumes were replaced by finer resolutions of themselves.
+  // Called when volumes were replaced by their finer resolutions.
   refine(start) {
     this.#measure(start);
     this.move();
   }
 
-  // Asks for no more frames.
+  // Ends the requests for frames.
   end() {
     this.#ended = true;
     this.#changed = false;
@@ -79,7 +82,7 @@ export class Frames {
     clearTimeout(this.#timer);
   }
 
-  // Tells that something has changed.
+  // Called when something has changed.
   move() {
     if (this.#ended) return;
     this.#scene = this.#store.scene;
@@ -93,15 +96,15 @@ export class Frames {
     if (!this.#busy) this.#preview();
   }
 
-  // Shows change(scene, part) instead of the scene. The part grows from 0 to 1 in this time, or until
-  // something changes.
+  // Shows change(scene, part) instead of the scene, as an animation. The number `part` grows from 0
+  // to 1 during these milliseconds. A change of the scene ends the animation early.
   animate(change, milliseconds) {
     this.move();
     this.#animation = { change, began: null, milliseconds };
   }
 
-  // A frame of the animation; the scene itself where there is no animation, or where it has ended. A frame shows the moment at which it is
-  // seen, which comes BUDGET after the moment at which it is asked for.
+  // Returns the animated scene, or the scene itself if no animation is running. The animated scene is computed for the moment at which the
+  // frame will be visible, BUDGET milliseconds after its request.
   #animated(scene) {
     if (this.#animation === null) return scene;
     const { change, began, milliseconds } = this.#animation, part = began === null ? 0 : (performance.now() + BUDGET - began) / milliseconds;
@@ -109,10 +112,11 @@ export class Frames {
     return part < 1 ? change(scene, part) : scene;
   }
 
-  // Whether the final picture of this scene is there.
+  // Returns whether the final picture of this scene is shown.
   hasFinal(scene) { return this.statistics.stage === "final" && scene === this.#scene; }
 
-  // The picture at full size. voxels: the length of a pixel at the target, in voxels.
+  // Returns { width, height, pixels, voxels } of the picture at full size. voxels: the length of a
+  // pixel at the target, in voxels.
   #full() {
     const { camera, volumes, image: { width, height } } = this.#store.scene;
     const scale = volumes.map(({ transform }) => [transform?.scale ?? 1].flat().map(Math.abs));
@@ -120,11 +124,13 @@ export class Frames {
     return { width, height, pixels: width * height, voxels: worldHeight(camera) / voxel / height };
   }
 
-  // The scene in a picture of about this many pixels, with sheets at least this far apart.
+  // Returns the scene for a picture of about this many pixels, with sheets at least `spacing`
+  // apart.
   #scaled({ pixels, spacing }) {
     const scene = this.#store.scene, full = this.#full();
     const factor = Math.min(1, Math.sqrt(pixels / full.pixels));
-    // The picture has the shape of the full one, as otherwise it would be stretched.
+    // The small picture has the aspect ratio of the full picture, as the page would otherwise
+    // stretch the small picture.
     const width = factor === 1 ? full.width : Math.ceil((full.width * factor) / BLOCK) * BLOCK;
     const height = factor === 1 ? full.height : Math.max(1, Math.round((width * full.height) / full.width));
     const sheets = Math.max(spacing, scene.render.sheet_spacing);
@@ -164,9 +170,9 @@ export class Frames {
     this.#timer = setTimeout(() => this.#refine(this.#generation), REST_AFTER);
   }
 
-  // Adapts the work that fits into the budgets to the times that the last picture took by the clock, for all and for its rendering alone, and of the
-  // processors; 0: not told. What a frame takes beside its rendering, as the way to a distant server, does not fall with the work: rendering has
-  // the rest of the budget, and half of it at least.
+  // Adapts the work of quick pictures to the times of the last picture. milliseconds: time by the clock from request to arrival. rendering: time by
+  // the clock of the rendering alone; processor: processor time; 0: not known. The rest of a frame's time, for example the way to a distant server,
+  // does not fall with the work. Rendering therefore gets what is left of the budget, but at least half of the budget.
   #learn(milliseconds, rendering, processor) {
     const full = this.#full().pixels, rendered = rendering > 0 ? Math.min(rendering, milliseconds) : milliseconds;
     const timely = (this.#work * Math.max(BUDGET - (milliseconds - rendered), BUDGET / 2)) / rendered;
@@ -175,7 +181,7 @@ export class Frames {
     this.#work = adapted(this.#work, Math.min(timely, (this.#work * PROCESSOR_BUDGET) / processor));
   }
 
-  // The scene in a picture of the work that fits into the budgets.
+  // Returns the scene for a quick picture whose work fits into the budgets.
   #affordable() {
     const quality = follow(this.#work, this.#full(), this.#voxel), scene = this.#scaled(quality);
     this.#voxel = quality.voxel;
@@ -184,7 +190,7 @@ export class Frames {
     return { ...scene, render: { ...scene.render, shadow_resolution: Math.ceil(SHADOW_PIXELS * Math.max(width, height)) } };
   }
 
-  // The picture at rest, in two steps, as long as nothing changes.
+  // Makes the picture at rest in two steps, unless something changes.
   async #refine(generation) {
     if (generation !== this.#generation) return;
     this.statistics.stage = "refining";
@@ -203,7 +209,7 @@ export class Frames {
     this.#report({ stage: "failed", error });
   }
 
-  // before: what is told when the picture is begun.
+  // Makes one picture at rest. before: the stage that is reported when the picture is begun.
   async #step(generation, scene, stage, before) {
     const began = performance.now();
     const options = stage === "final" ? { format: "png", seen: true } : { quality: 92, moving: true };
@@ -211,8 +217,8 @@ export class Frames {
     const frame = await this.#channel.fetchFrame(scene, options);
     if (generation !== this.#generation) return;
     if (frame === null) {
-      // The other end gave this frame up without a newer one, as a viewer that is ending does. Asking again shows whether it has
-      // ended.
+      // The channel's other end cancelled this frame although the page has requested no newer frame, as a server that is
+      // shutting down does. A new request shows whether the server has ended.
       if (stage === "final") this.#refineSoon();
       return;
     }

@@ -1,6 +1,6 @@
-// The drawing of a transfer function over the volume's histogram, which the pointer changes: points are
-// dragged, a click on the line or above the bars adds one, a double click or Delete removes it. Below are the
-// colours.
+// The editor that draws a transfer function over the volume's histogram. The pointer changes the function:
+// points are dragged, a click on the line or above the bars adds a point, and a double click or the key
+// Delete removes a point. A strip below the histogram shows the colours.
 
 import { hexOf } from "./color.js";
 import { make, shortNumber } from "./controls.js";
@@ -22,9 +22,9 @@ export class FunctionCanvas {
   #selected = { kind: "point", index: 0 };
   onSelect = () => {};
 
-  // get() returns the transfer function. It is undefined while labels or isosurfaces replace it, which a key
-  // may bring about in the middle of a drag. set(tf, name) takes a changed function. histogram: counts of
-  // equal bins over range.
+  // get() returns the transfer function. The transfer function is undefined while labels or isosurfaces
+  // replace it; a key can cause this during a drag. set(tf, name) takes a changed function. histogram: the
+  // counts of bins of equal width over `range`.
   constructor({ get, set, histogram, range }) {
     this.#get = get;
     this.#set = set;
@@ -43,7 +43,8 @@ export class FunctionCanvas {
     new ResizeObserver(() => this.draw()).observe(this.element);
   }
 
-  // The index of the chosen point or colour. Where a function with fewer points has come, it is the last one.
+  // The index of the chosen point or colour. If the present function has fewer points than the index, the
+  // last point is chosen.
   get selected() {
     const { kind, index } = this.#selected, tf = this.#get(), rows = (kind === "point" ? tf?.opacity : tf?.color) ?? [];
     return { kind, index: Math.max(0, Math.min(index, rows.length - 1)) };
@@ -118,7 +119,7 @@ export class FunctionCanvas {
 
   #moved({ kind, index }, value, opacity) {
     const tf = this.#get();
-    if (!(kind === "point" ? tf.opacity : tf.color)[index]) return tf; // a preset has come meanwhile
+    if (!(kind === "point" ? tf.opacity : tf.color)[index]) return tf; // a preset has replaced the function during the drag
     return kind === "point" ? movePoint(tf, index, value, opacity, this.#range) : moveStop(tf, index, value);
   }
 
@@ -135,7 +136,8 @@ export class FunctionCanvas {
     this.#canvas.title = `value ${shortNumber(this.#value(x))}, opacity ${shortNumber(Math.min(Math.max(this.#opacity(y), 0), 1))}`;
   }
 
-  // Zooms the shown values about the pointer. Where all values are shown already, the side bar scrolls on.
+  // Zooms the range of shown values about the pointer. If all values are shown already, zooming out is
+  // left to the side bar, which scrolls.
   #wheel(event) {
     if (event.deltaY >= 0 && this.#shown.every((value, n) => value === this.#range[n])) return;
     event.preventDefault();
@@ -243,7 +245,7 @@ export class FunctionCanvas {
     context.beginPath();
     context.roundRect(MARGIN, top, this.#width, STRIP, 3);
     context.fill();
-    if (tf.color.length > 24) return; // a colormap has too many rows to handle each of them
+    if (tf.color.length > 24) return; // a colormap has too many rows for a handle at each row
     tf.color.forEach(([value, ...color], index) => {
       const x = this.#x(value), chosen = this.selected.kind === "stop" && this.selected.index === index;
       if (x < 0 || x > this.#width + 2 * MARGIN) return;

@@ -8,7 +8,7 @@ import { smoothedLine } from "./histogram.js";
 import { byGradient, planePanel } from "./plane_panel.js";
 import { colormapOf, isPlane, isProjection, movePoint, moveStop, rangeOf, recolorStop, stretched, withColormap } from "./transfer_function.js";
 
-// The numbers of the point or colour that is chosen in the drawing.
+// Makes the fields for the numbers of the point or colour that is chosen in the drawing.
 function chosenPoint(canvas, get, set, range) {
   const number = (label, give, take) => make("input", {
     type: "number", step: "any", "aria-label": label,
@@ -46,10 +46,11 @@ function chosenPoint(canvas, get, set, range) {
   return { element: make("div", { class: "row chosen" }, make("label", { class: "inline" }, "value ", value), opacityLabel, shadeLabel), update };
 }
 
-// A function of one value has no range of its own: a colormap's colours go over the volume's range.
+// Returns the range over which a colormap is spread: the function's own range, or the volume's
+// range if all points of the function have one value.
 const spread = ([low, high], range) => (high > low ? [low, high] : range);
 
-// Two numbers between which colours and opacities lie.
+// Makes the row of the two values between which the function's colours and opacities lie.
 function rangeRow(get, set) {
   const inputs = [0, 1].map((end) => make("input", {
     type: "number", step: "any", "aria-label": end === 0 ? "Least value of the range" : "Greatest value of the range",
@@ -68,8 +69,8 @@ function rangeRow(get, set) {
   return { element: row(make("span", { class: "name" }, "Range"), make("span", { class: "pair" }, inputs[0], "to", inputs[1])), update };
 }
 
-// Presets for the kind of volume that the program has found come first. Values of a scan that reach below the
-// values of fat are Hounsfield units.
+// Presets that suit the volume's kind, which the program has found, come first in the list. If the least
+// value of a scan is below LEAST_OF_MR, the scan's values are Hounsfield units.
 const SUITED = { "scanned brain": /^mr-/, "smoke or cloud": /^smoke/, field: /^electron/ };
 const LEAST_OF_MR = -500;
 
@@ -86,12 +87,12 @@ export function functionPanel({ store, start, current, channel, failed, waits })
   const get = () => volume().transfer_function;
   const set = (tf, name = "") =>
     store.changeVolume(current.volume, `function ${name}`, (changed) => ({ ...changed, transfer_function: tf }));
-  const named = new Map(); // the preset that has a function, by the function's text
-  const key = () => `by value ${current.volume}`; // the function that *by gradient* has replaced is put aside by this name
+  const named = new Map(); // the name of the preset that gave a function, by the function's text
+  const key = () => `by value ${current.volume}`; // the name under which the function is kept that the switch "by gradient" has replaced
   let parts = [], ofTwo = false;
 
-  // The points of a preset are the program's own: the scene with the preset is sent, and comes back with its
-  // points.
+  // The program knows the points of a preset. The page therefore sends the scene with the preset's name, and
+  // the answer has the preset's points.
   async function applyPreset(name) {
     const volumes = store.scene.volumes.map((v, n) => {
       if (n !== current.volume) return v;
@@ -129,7 +130,7 @@ export function functionPanel({ store, start, current, channel, failed, waits })
     const canvas = new FunctionCanvas({ get, set, histogram: about.histogram, range });
     const chosen = chosenPoint(canvas, get, set, range), ends = rangeRow(get, set);
     canvas.onSelect = () => chosen.update();
-    const unit = start.scene.volumes[current.volume]?.transfer_function?.unit_distance ?? get().unit_distance; // of the program's own choice
+    const unit = start.scene.volumes[current.volume]?.transfer_function?.unit_distance ?? get().unit_distance; // the unit distance that the program has chosen
     const density = slider({
       label: "Opacity", path: () => `volumes.${current.volume}.transfer_function.unit_distance`, low: 0.02, high: 50, exponential: true, unit: "×", title: "How much a length of matter hides",
       get: () => unit / get().unit_distance, set: (factor) => set({ ...get(), unit_distance: unit / factor }, "density"),

@@ -1,5 +1,5 @@
-// Small pictures of the open scene with each of some choices, which follow what is seen. They are made while the picture rests; a click
-// takes one.
+// A gallery of choices, such as looks: for each choice, a small picture shows the open scene with that choice from the present view.
+// The small pictures are made while the main picture is at rest. A click takes a choice.
 
 import { reshaped } from "./camera.js";
 import { make } from "./controls.js";
@@ -11,34 +11,36 @@ const LEAST_WIDTH = 76; // pixels of a choice on the page, with the gap beside i
 
 const LANE = "-small";
 
-// The small pictures of all galleries are made in turn, by one lane of the channel. The viewer has one
-// renderer for them, which ends with the last picture. Returns a function of a scene, which asks for a
-// picture as a channel's fetchFrame() does, if isWanted() still holds when the picture's turn comes; it resolves to null otherwise.
-// A picture that is being made when something changes is given up.
+// The small pictures of all galleries are made one after the other, in one lane of the channel. The server keeps one renderer for
+// the lane, which is released after the last small picture. Returns a function of a scene, which asks for a picture as a channel's
+// fetchFrame() does, if isWanted() still holds when the picture's turn comes; it resolves to null otherwise. A small picture that
+// is being made when the scene changes is cancelled.
 export function smallPictures(channel, store) {
   let last = Promise.resolve(), shown = store.scene, underWay = 0;
   store.listen((scene) => {
-    if (scene !== shown && underWay > 0) channel.cancel?.(LANE).catch(() => {}); // a lost viewer has been told
+    if (scene !== shown && underWay > 0) channel.cancel?.(LANE).catch(() => {}); // the page already shows an error if the server is lost
     shown = scene;
   });
   return (scene, isWanted) => {
     underWay++;
     const picture = last.then(() => (isWanted() ? channel.fetchFrame(scene, { quality: 85, moving: true, lane: LANE }) : null)).finally(() => { underWay--; });
-    last = picture.catch(() => {}); // the caller that has asked for the picture is told
+    last = picture.catch(() => {}); // the caller that has requested the picture gets the error
     return picture;
   };
 }
 
-// The number of columns with which choices fill as few rows as the width allows, and these as evenly as can be.
+// Returns the number of columns such that the choices need as few rows as the width allows and fill these rows
+// as evenly as possible.
 export function evenColumns(count, width) {
   const most = Math.max(1, Math.floor(width / LEAST_WIDTH)), rows = Math.max(1, Math.ceil(count / most));
   return Math.max(1, Math.ceil(count / rows));
 }
 
-// names: the choices. made(name) resolves to the scene with one of them; take(name, scene) takes it; isTaken(scene of a choice): whether
-// the viewer shows it now; seen(scene of a choice): the part of it that makes its picture another one. Returns { element, update, atRest }: atRest() is called when the picture has come to rest.
+// names: the names of the choices. made(name) resolves to the scene with the choice. take(name, scene) makes the choice. isTaken(scene): whether the viewer
+// shows the choice's scene now. seen(scene): returns the part of a scene on whose change a small picture is made anew. Returns { element, update, atRest }:
+// atRest() is called when the picture has come to rest.
 export function gallery({ label, names, viewer: { store, smallPicture, failed, frames, waits }, made, take, isTaken, seen }) {
-  const canvases = new Map(), scenes = new Map(), pictured = new Map(); // by name; pictured: what the small picture shows
+  const canvases = new Map(), scenes = new Map(), pictured = new Map(); // three maps by name; pictured: the part of the scene, as seen() returns it, that the small picture shows
   const buttons = names.map((name) => {
     const canvas = make("canvas", { "aria-hidden": "true", ...SIDES });
     canvases.set(name, canvas);
@@ -46,7 +48,7 @@ export function gallery({ label, names, viewer: { store, smallPicture, failed, f
   });
   const element = make("div", { class: "gallery", role: "group", "aria-label": label }, ...buttons);
   new ResizeObserver(([{ contentRect: { width } }]) => { element.style.gridTemplateColumns = `repeat(${evenColumns(names.length, width)}, minmax(0, 1fr))`; }).observe(element);
-  let busy = false, shown = null, drawn = 0; // drawn: number of the pictures that are there of the scene `shown`
+  let busy = false, shown = null, drawn = 0; // drawn: number of small pictures of the scene `shown` that are finished
 
   async function choose(name) {
     try {
@@ -78,7 +80,7 @@ export function gallery({ label, names, viewer: { store, smallPicture, failed, f
   async function atRest() {
     if (busy) return;
     busy = true;
-    element.dataset.busy = ""; // tests wait for it
+    element.dataset.busy = ""; // tests wait until this attribute is gone
     const follow = () => {
       if (shown !== store.scene) [shown, drawn] = [store.scene, 0];
       return drawn < names.length;
@@ -86,7 +88,7 @@ export function gallery({ label, names, viewer: { store, smallPicture, failed, f
     try {
       while (isResting() && follow()) if (await draw(names[drawn])) drawn++;
     } catch {
-      drawn = names.length; // the names are enough without pictures
+      drawn = names.length; // after an error, the choices are shown by their names, without pictures
     }
     busy = false;
     delete element.dataset.busy;

@@ -1,5 +1,5 @@
-// Where a gesture begins and ends. It lasts from the first pointer or key that goes down to the last one that
-// comes up. Everything that changes in between is one step of the history.
+// Finds where gestures begin and end. A gesture lasts from the press of the first pointer or key to the
+// release of the last one. All changes during a gesture are one step of the history.
 
 // root: the viewer's element.
 export function followGestures(root, store, signal) {
@@ -15,8 +15,8 @@ export function followGestures(root, store, signal) {
     if (down.size === 0) store.beginGesture();
     down.add(key);
   };
-  // Changes by listeners of the event's target belong to the gesture: it ends after them, or when the next
-  // gesture begins.
+  // Changes by other listeners of the same event belong to the gesture. The gesture therefore ends after
+  // these listeners have run, or when the next gesture begins.
   const endSoon = (key) => {
     if (!down.has(key)) return;
     ending.add(key);
@@ -27,9 +27,10 @@ export function followGestures(root, store, signal) {
   listen(root, ["click"], () => { begin("click"); endSoon("click"); });
   listen(root, ["keydown"], (event) => begin(`key ${event.code || event.key}`));
   listen(window, ["keyup"], (event) => endSoon(`key ${event.code || event.key}`));
-  // A field is left, or a colour picker is closed.
+  // The event `change` comes when a field is left or a colour picker is closed.
   listen(root, ["change"], () => { begin("change"); endSoon("change"); });
-  // The window loses the focus. An element that loses it, as a key of the timeline that is drawn anew, ends nothing.
+  // All gestures end when the window loses the focus. The loss of an element's focus ends no gesture, because
+  // elements such as the timeline's keys are drawn anew during a gesture.
   listen(window, ["blur"], (event) => {
     if (event.target !== window) return;
     down.clear();

@@ -1,25 +1,26 @@
-// The scene of which the other end of a channel holds a copy: while something moves, a frame sends only what differs from it.
+// The scene of which the other end of a channel holds a copy. While something moves, a frame sends only the differences from
+// this scene.
 
 import { difference } from "./link.js";
 
 export class HeldScene {
-  #held = null; // { number, scene }: the newest scene that was sent whole, and its frame; null: the other end may hold none, or not yet
-  #newest = 0; // the frame of that scene, which may be under way
+  #held = null; // { number, scene }: the newest scene that was sent as a whole, and the number of its frame; null: the other end may not hold a scene
+  #newest = 0; // the number of the newest frame that was sent with a whole scene; the frame may not have arrived yet
   #next;
 
-  // next(): the number of a new frame.
+  // next(): returns the number of a new frame.
   constructor(next) {
     this.#next = next;
   }
 
-  // The other end may have ended since.
+  // Forgets the held scene, because the other end may have been replaced.
   forget() {
     this.#held = null;
   }
 
-  // Asks for a frame, of a difference where `moving` allows it. ask(number, body, base) asks once: body is the text of the scene, or,
-  // where base is given, of what differs from the scene of frame `base`. Its error has `noBase` where the other end holds no such scene:
-  // the scene is then sent whole.
+  // Requests a frame. With `moving`, the request may carry a difference in place of the scene. ask(number, body, base) sends one
+  // request. body: the text of the scene; if base is given, the text of the difference from the scene of frame `base`. If the other end
+  // does not hold that scene, ask() fails with an error that has `noBase`, and the whole scene is sent.
   async send(scene, moving, ask) {
     if (moving && this.#held !== null) {
       const part = difference(this.#held.scene, JSON.parse(JSON.stringify(scene))) ?? { in: {} };

@@ -1,10 +1,10 @@
-// A volume's histogram: bars whose heights are logarithms, so that rare values are seen beside common ones;
-// and the axis of values below them.
+// Draws a volume's histogram: bars with logarithmic heights, so that rare values are visible beside common
+// values, and an axis of values below the bars.
 
 import { make, shortNumber } from "./controls.js";
 
-// counts: of equal bins over range. x(value): the place of a value. left, right: of the plot. base: the bars'
-// lower end. height: of the tallest bar.
+// counts: the counts of bins of equal width over `range`. x(value): returns the pixel column of a value.
+// left, right: the plot's edges. base: the lower end of the bars. height: the height of the tallest bar.
 export function drawBars(context, { counts, range, x, left, right, base, height }) {
   const most = Math.log1p(Math.max(...counts)), step = (range[1] - range[0]) / counts.length;
   context.beginPath();
@@ -20,8 +20,8 @@ export function drawBars(context, { counts, range, x, left, right, base, height 
 const TICK_ROOM = 46; // least number of pixels from tick to tick
 const TICK_LINE = 3;
 
-// The axis of values under a plot: ticks at round numbers of its range, and the name of the values. y: of the
-// plot's lower end.
+// The axis of values under a plot: ticks at round numbers of its range, and the name of the values. y: the
+// pixel row of the plot's lower end.
 export function drawValueAxis(context, { range: [low, high], x, left, right, y, color }) {
   const least = ((high - low) * TICK_ROOM) / (right - left), power = 10 ** Math.floor(Math.log10(least));
   const step = [1, 2, 5, 10].map((n) => n * power).find((size) => size >= least * 0.9999999);
@@ -39,13 +39,15 @@ export function drawValueAxis(context, { range: [low, high], x, left, right, y, 
   }
 }
 
-// A line for panels of the values that a picture shows: where the volume is smoothed, these are not the file's. about: of start.json.
+// Makes a line for panels that tells the ranges of the smoothed values and of the file's values. The line is hidden if the volume is
+// not smoothed. about: the volume's entry in start.json.
 export function smoothedLine({ range, unsmoothed }) {
   const told = (ends) => ends.map(shortNumber).join(" to ");
   return make("p", { class: "facts smoothed", hidden: !unsmoothed }, unsmoothed ? `The picture has smoothed values, ${told(range)}. The file's are ${told(unsmoothed.range)}.` : "");
 }
 
-// A canvas, emptied and as large as it is shown; null: it is not shown.
+// Empties a canvas, gives the canvas the resolution of its size on the screen, and returns its
+// drawing context. Null: the canvas is not shown.
 export function blankContext(canvas, width, height) {
   const density = devicePixelRatio || 1;
   if (width === 0) return null;

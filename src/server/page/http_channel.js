@@ -1,21 +1,22 @@
-// A viewer's requests to the server that sent its page. All of them stay below the page's own address, which holds
-// the token. The widget of notebooks has a channel of its own with the same methods (widget.js).
+// The channel of a page: the requests to the server that sent the page. The addresses of all requests begin with the page's own address, which contains the
+// token. The widget of notebooks has another channel with the same methods (widget.js).
 //
-// What a channel may have besides start(), completeScene() and fetchFrame(), for a viewer with slices and measuring:
+// Methods that a channel may have besides start(), completeScene() and fetchFrame(), for a viewer with slices and measuring:
 //
-// - slice({ volume, of, width, height, depth, origin, across, down, through, blend, between }): the values of a plane of
-//   voxels. volume: the number of a volume of what is open; of: "voxels", the file's; "mask", the label map that masks it;
-//   "picture", what the picture shows of it, which is smoothed where the volume is. A grid of width x height samples, of `depth` layers; origin: [i, j, k], the first sample of the first row of the first layer, in
-//   voxels; across, down, through: [i, j, k], the steps to the next sample, row and layer. blend: what of the layers is
-//   told: "maximum", "minimum" or "mean"; between: "nearest" or "linear". Resolves to { values, width, height }: values is a
-//   Float32Array or Float64Array, whichever holds the voxels' values exactly, row after row; NaN: no voxel is there.
-// - depth(scene): how deep lies what the middle pixel of the scene's picture (at most 64 x 64 pixels) shows:
-//   { depth, opacity, object }. depth: the length along the ray from the eye, or orthographic from the plane through the
-//   camera's position, to where the opacity first reaches 0.01; null: nowhere. object: as in hl_layers. Null: cancelled.
-// - overlay(scene, over): what a figure has over the scene's picture (figure_overlay.js), { blob, note }: a transparent PNG, and what the program says
-//   of it, as that a part finds no room; "": nothing.
-// - progress(): how far the frame is that was asked for last, { part, stage, others }: part of the stage, from 0 to 1; stage: what is made,
-//   "voxels" (finer ones of what is seen are read), "labels" (they are smoothed) and "sky" (its light) before the picture, and "picture"; others: frames of other pages under way.
+// - slice({ volume, of, width, height, depth, origin, across, down, through, blend, between }): the values of a plane of samples of a volume. volume: the index
+//   of an open volume; of: "voxels", the file's voxels; "mask", the label map that masks the volume; "picture", the voxels that the picture shows, which are
+//   smoothed if the volume is smoothed. The samples are a grid of width x height samples in `depth` layers; origin: [i, j, k], the first sample of the first row
+// of the first layer, in voxels; across, down, through: [i, j, k], the steps to the next sample, row and layer. blend: how the layers are combined: "maximum",
+// "minimum" or "mean"; between: the interpolation between voxels, "nearest" or "linear". Resolves to { values, width, height }: values is a Float32Array or a
+// Float64Array, depending on which holds the voxels' values exactly, row after row; NaN: the sample lies outside the volume.
+// - depth(scene): the depth that the middle pixel of the scene's picture (at most 64 x 64 pixels) shows: { depth, opacity, object }. depth: the length along
+//   the ray, from the eye or, for an orthographic camera, from the plane through the camera's position, to the point where the opacity first reaches 0.01; null:
+//   the opacity stays below 0.01. object: as in hl_layers. The result is null if the request was cancelled.
+// - overlay(scene, over): the parts of a figure over the scene's picture (figure_overlay.js), { blob, note }: a transparent PNG, and the program's note about
+//   the PNG, for example that there is no room for a part; "": there is no note.
+// - progress(): the progress of the frame that was requested last, { part, stage, others }. part: the finished fraction of the stage, from 0 to 1. stage:
+//   "voxels" (finer voxels of the visible matter are read), "labels" (labels are smoothed) or "sky" (the sky's light is computed), all before the picture, or
+//   "picture". others: the number of frames of other pages that are being made.
 
 import { Lost } from "./connection.js";
 import { HeldScene } from "./held_scene.js";
@@ -28,9 +29,9 @@ export class Refused extends Error {
   }
 }
 
-const GONE = 410; // what the page had opened is open no longer
-const NO_BASE = 409; // the viewer does not hold the scene that a difference is from
-const REPLACED = 409; // the voxels of a plane were replaced by finer ones
+const GONE = 410; // the scene that the page had opened is not open any more
+const NO_BASE = 409; // the server does not hold the scene to which a difference refers
+const REPLACED = 409; // the voxels of a plane were replaced by finer voxels
 
 async function check(response) {
   if (response.ok) return response;
@@ -41,21 +42,22 @@ async function check(response) {
   throw new Refused((await response.text()).trim() || `the viewer answered ${response.status}`, response.status);
 }
 
-// "render;dur=12.5, encode;dur=3" as { render: 12.5, encode: 3 }, in milliseconds.
+// Parses "render;dur=12.5, encode;dur=3" to { render: 12.5, encode: 3 }, in milliseconds.
 function parseTimes(header) {
   return Object.fromEntries((header ?? "").split(", ").map((part) => part.split(";dur=")).map(([k, v]) => [k, +v]));
 }
 
-// The program's warnings about an answer; "": there are none.
+// Returns the program's warnings about an answer; "": there are no warnings.
 function noteOf(response) {
   try {
     return decodeURIComponent(response.headers.get("Halflight-Note") ?? "");
   } catch {
-    return ""; // it is cut in the middle of a letter
+    return ""; // the header was cut in the middle of a letter
   }
 }
 
-// What a picture shows of volumes of several resolutions; null: the volumes that are open.
+// Returns the resolutions that a picture shows of volumes of several resolutions; null: the picture
+// shows the open volumes.
 const seenOf = (response) => JSON.parse(decodeURIComponent(response.headers.get("Halflight-Seen") ?? "null"));
 
 const numbered = (keys) => Object.fromEntries(keys.map((key, n) => [`key${n}`, key]));
@@ -64,23 +66,24 @@ const overlayQuery = ({ scaleBar = false, legend = false, axes = "none", marks =
 
 export class HttpChannel {
   #number = 0;
-  #shown = 0; // the number of the newest frame that is in no lane
+  #shown = 0; // the number of the newest frame of the main picture, which has no lane
   #opened;
   #refined;
-  #held = new HeldScene(() => (this.#shown = ++this.#number)); // not of the frames in lanes
+  #held = new HeldScene(() => (this.#shown = ++this.#number)); // frames in lanes always send the whole scene
   #page = crypto.getRandomValues(new Uint32Array(2)).reduce((name, n) => name + n.toString(36), "p");
 
   #source;
 
-  // opened: the number of what is open (of start.json), whose volumes the scenes have; source: what open() opens it by, or null;
-  // refined: of start.json.
+  // opened: the number of the open scene (`opened` of start.json), whose volumes the channel's scenes have. source: the argument
+  // with which open() opens this scene, or null. refined: `refined` of start.json.
   constructor(opened = 0, source = null, refined = 0) {
     this.#opened = opened;
     this.#refined = refined;
     this.#source = source;
   }
 
-  // A request below the page's address. What is open no longer, as the viewer has begun anew or has made room, is opened again.
+  // A request below the page's address. If the scene is not open any more, because the server was restarted or has closed the
+  // scene to make room, the scene is opened again.
   async #ask(path, query = {}, options = { method: "POST" }, again = true) {
     const words = new URLSearchParams(query);
     if ("opened" in query) words.set("opened", this.#opened);
@@ -99,24 +102,26 @@ export class HttpChannel {
     return check(response);
   }
 
-  // Whether the viewer answers again.
+  // Resolves if the server answers again.
   async answers() {
     await this.#ask("state.json", {}, {});
   }
 
-  // What is open, and what there is to choose from: start.json.
+  // Returns start.json: the open scene, its volumes, and the lists of choices.
   async start() {
     const start = await (await this.#ask("start.json", { opened: 0 }, {})).json();
     this.#refined = start.refined;
     return start;
   }
 
-  // How far volumes of several resolutions are read, from coarse to fine: { refined, refining, problem }.
+  // Returns how far the volumes of several resolutions have been read, from coarse to fine: { refined,
+  // refining, problem }.
   async refinement() {
     return (await this.#ask("refined.json", { opened: 0 }, {})).json();
   }
 
-  // The values of a plane of voxels; none where a finer resolution has taken the place of the voxels meanwhile.
+  // Returns the values of a plane of samples. There are no values if a finer resolution has replaced the voxels
+  // since.
   async slice({ width, height, origin, across, down, through, depth = 1, volume = 0, of = "voxels", blend = "maximum", between = "nearest" }) {
     let bytes;
     try {
@@ -128,7 +133,7 @@ export class HttpChannel {
     return { values: bytes.byteLength === 4 * width * height ? new Float32Array(bytes) : new Float64Array(bytes), width, height };
   }
 
-  // How deep lies what the middle of the scene's picture shows.
+  // Returns the depth that the middle of the scene's picture shows.
   async depth(scene) {
     const query = { page: `${this.#page}-pick`, number: ++this.#number, opened: 0 };
     const response = await this.#ask("depth", query, { method: "POST", body: JSON.stringify(scene) });
@@ -137,21 +142,22 @@ export class HttpChannel {
 
   async progress() {
     const asked = this.#shown, { frame, ...told } = await (await this.#ask("progress.json", { page: this.#page }, {})).json();
-    return frame === asked && asked === this.#shown ? told : { ...told, part: 0, stage: "picture" }; // of an older frame, or not yet begun
+    return frame === asked && asked === this.#shown ? told : { ...told, part: 0, stage: "picture" }; // the answer is about an older frame, or the newest frame is not begun yet
   }
 
-  // The scene with its defaults written out: presets as points, a camera that frames everything. choices: { look, rig }, names
-  // of what it is to have.
+  // Returns the scene with all defaults written out, with presets as points and with a camera that shows everything. choices:
+  // { look, rig }, the names of a look and of a rig of lights that the scene shall have.
   async completeScene(scene, choices = {}) {
     return (await this.#ask("scene", { opened: 0, ...choices }, { method: "POST", body: JSON.stringify(scene) })).json();
   }
 
-  // A picture of the scene: { blob, times, note }, with the program's warnings in `note`, or null where a newer frame of this page has cancelled it. `lane` sets
-  // frames apart that do not cancel each other; `moving` makes a quick picture, of coarser volumes where the sheets are wide; `finest`
-  // waits until the finest resolutions that are to be read are there, and fails where they cannot be read. `seen`: volumes of several resolutions
-  // have, where the picture sees them, the voxels that it deserves; the answer then has `seen`, { problem, volumes: [{ level, absent_chunks }] },
-  // with the reason in `problem` where finer voxels were not read; null: the volumes are fine enough. A picture with `finest` does so, too.
-  // scaleBar, legend, axes, marks (those of the scene): drawn over a PNG of 8 bits; a bar is refused where neither the scene's files nor `unit` tell a unit of length.
+  // A picture of the scene: { blob, times, note }, with the program's warnings in `note`, or null if a newer frame of this page has cancelled the frame. lane:
+  // a name; only frames of the same lane cancel each other. moving: makes a quick picture, with coarser volumes if the sheets are far apart. finest: waits
+  // until the finest resolutions have been read, and fails if they cannot be read. seen: reads finer voxels of volumes of several resolutions, where the
+  // picture is detailed enough to show them. The answer then has `seen`, { problem, volumes: [{ level, absent_chunks }] }; problem: the reason if finer voxels
+  // were not read. `seen` of the answer is null if the open volumes are fine enough. A picture with `finest` reads finer voxels, too. scaleBar, legend, axes,
+  // marks (the scene's marks): the overlays that are drawn over a PNG of 8 bits. A scale bar is refused if neither the scene's files nor `unit` tell a unit of
+  // length.
   async fetchFrame(scene, { format = "jpeg", quality = 85, depth = 8, metadata = true, moving = false, lane = "", finest = false, seen = false, ...over } = {}) {
     const query = { page: this.#page + lane, opened: 0, format, quality, depth, metadata: +metadata, moving: +moving, coarse: +!finest, seen: +seen, ...overlayQuery(over) };
     const ask = (number, body, base) => this.#ask("frame", { ...query, number, ...(base === undefined ? {} : { base }) }, { method: "POST", body });
@@ -160,20 +166,23 @@ export class HttpChannel {
     return { blob: await response.blob(), times: parseTimes(response.headers.get("Server-Timing")), note: noteOf(response), seen: seenOf(response) };
   }
 
-  // What is drawn over the scene's picture: { blob, note }, a transparent PNG of its size; null: it was cancelled.
+  // Returns the overlays of the scene's picture, { blob, note }: a transparent PNG of the picture's size, and the
+  // program's note; null: the request was cancelled.
   async overlay(scene, over) {
     const query = { page: `${this.#page}-overlay`, number: ++this.#number, opened: 0, ...overlayQuery(over) };
     const response = await this.#ask("overlay", query, { method: "POST", body: JSON.stringify(scene) });
     return response.status === 204 ? null : { blob: await response.blob(), note: noteOf(response) };
   }
 
-  // What can be opened in a folder below the one that the viewer was started in: { at, entries }.
+  // Returns the files and folders that can be opened in the folder `at`, which lies below the
+  // folder in which the viewer was started: { at, entries }.
   async folder(at) {
     return (await this.#ask("folder.json", { at }, {})).json();
   }
 
-  // Opens a file of the folder, or one that the browser has: what is open then, for a channel of its own. source: a path, or { file, series },
-  // a path and one of the DICOM series in it; "" is what the viewer began with; of several in a list, the others are added to the first one.
+  // Opens files of the server's folder. Returns the start.json of the opened scene, which needs a channel of its own. source: a path; or {
+  // file, series }, a path and one of its DICOM series; or "", the scene with which the viewer began; or a list of these, whose further
+  // members are added to the first.
   async open(source) {
     const [first, ...others] = [source].flat();
     let start = first === "" ? await this.start() : await this.#opens(this.#ask("open", typeof first === "string" ? { file: first } : first));
@@ -185,13 +194,15 @@ export class HttpChannel {
     return start;
   }
 
-  // A session in the viewer's folder, as a file; null: the file there is none.
+  // Returns a session in the viewer's folder, as a file; null: the file at this path is not a
+  // session.
   async session(path) {
     const response = await this.#ask("session", { file: path });
     return response.status === 204 ? null : new File([await response.blob()], path.split("/").pop());
   }
 
-  // Adds what open() or upload() has opened to a scene of what this channel is of: what is open then.
+  // Adds a scene that open() or upload() has opened to a scene of this channel. Returns the
+  // start.json of the joined scene.
   async add(scene, added, title) {
     const query = { opened: 0, with: added.opened, title: `${title} + ${added.title}` };
     return (await this.#ask("join", query, { method: "POST", body: JSON.stringify(scene) })).json();
@@ -201,7 +212,7 @@ export class HttpChannel {
     return this.#opens(this.#ask("upload", { name: file.name }, { method: "POST", body: file }));
   }
 
-  // What an answer opens, with the program's warnings as its `note`.
+  // Returns the start.json in an answer, with the program's warnings as its `note`.
   async #opens(asked) {
     const response = await asked;
     return { ...(await response.json()), note: noteOf(response) };
@@ -209,35 +220,36 @@ export class HttpChannel {
 
   get opened() { return this.#opened; }
 
-  // The page is closed, or shows another file: the viewer gives back what it held for this one.
+  // Tells the server that the page was closed or shows another file, so that the server releases
+  // what it holds for this page.
   leave() {
     navigator.sendBeacon(`leave?${new URLSearchParams({ page: this.#page, opened: this.#opened })}`);
   }
 
-  // How far it is read: { part }, from 0 to 1.
+  // Returns the progress of reading the file that is being opened: { part }, from 0 to 1.
   async opening() {
     return (await this.#ask("opening.json", {}, {})).json();
   }
 
-  // The scene at a frame of its film: exactly the one that the film shows there.
+  // Returns the scene at a frame of the film: exactly the scene that the film shows at this frame.
   async sceneAt(scene, { turntable, keys, frames }, frame) {
     const query = { opened: 0, turntable, frames, frame, ...numbered(keys) };
     return (await this.#ask("scene", query, { method: "POST", body: JSON.stringify(scene) })).json();
   }
 
-  // A film of the scene, as a blob; null: it was stopped.
+  // Returns a film of the scene as a blob; null: the film was stopped.
   async film(scene, { turntable, keys, frames, fps, format }) {
     const query = { page: `${this.#page}-film`, number: ++this.#number, opened: 0, turntable, frames, fps, format, ...numbered(keys) };
     const response = await this.#ask("film", query, { method: "POST", body: JSON.stringify(scene) });
     return response.status === 204 ? null : response.blob();
   }
 
-  // { done, frames }.
+  // Returns the film's progress: { done, frames }, the number of finished frames and of all frames.
   async filmProgress() {
     return (await this.#ask("film.json", { page: `${this.#page}-film` }, {})).json();
   }
 
-  // Gives up what is being made in a lane.
+  // Cancels the frame or film that is being made in a lane.
   async cancel(lane) {
     await this.#ask("cancel", { page: this.#page + lane, number: ++this.#number });
   }

@@ -1,5 +1,6 @@
 // The panel of the labels of a label map, or of a volume's mask. Each label has an eye, a colour, a name and
-// an opacity. The volume is the chosen one, or else the first volume that has labels.
+// an opacity. The panel shows the chosen volume if the volume has labels, else the first volume that has
+// labels.
 
 import { hexOf, linearOf } from "./color.js";
 import { button, isActive, make, row, section, slider } from "./controls.js";
@@ -8,7 +9,8 @@ const MANY = 12; // number of labels above which they can be searched
 
 const nameOf = (label) => label.name ?? `label ${label.value}`;
 
-// One label's row. get() gives the label; change(name, part) changes it; alone() hides all others.
+// Makes the row of one label. get(): returns the label. change(name, part): changes the label.
+// alone(): hides all other labels.
 function labelRow({ get, change, alone }) {
   const name = nameOf(get());
   const eye = button("", () => change("eye", { visible: get().visible === false }), { class: "eye", "aria-label": `Show ${name}` });
@@ -24,7 +26,7 @@ function labelRow({ get, change, alone }) {
   let drawn = null;
   function update() {
     const label = get();
-    if (label === drawn) return; // of hundreds of rows only one changes
+    if (label === drawn) return; // a row is drawn anew only if its label has changed
     drawn = label;
     eye.setAttribute("aria-pressed", String(label.visible !== false));
     shade.value = hexOf(label.color);
@@ -51,7 +53,8 @@ export function labelPanel({ store, current, report }) {
     else store.changeVolume(index(), `labels ${name}`, (v) => ({ ...v, labels: v.labels.map(change) }));
   }
 
-  // A label of a mask has the volume's own colour until it is given one.
+  // A label of a mask shows the volume's colours until the user gives the label a colour, which
+  // sets `tint` to 1.
   function change(number, name, part) {
     const tinted = mask() && part.color ? { ...part, tint: 1 } : part;
     const changed = labels().map((label, n) => (n === number ? { ...label, ...tinted } : label));

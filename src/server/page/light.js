@@ -1,7 +1,9 @@
-// A light of the scene: where it stands as the camera sees it, how large it looks, and how both change.
+// A light of the scene: functions that return and change a light's direction as the camera sees it, and a
+// light's apparent size.
 //
-// A light's places and directions are in the world, or, with "frame": "camera", in the camera's axes about its
-// target. All kinds are moved by turning them about the target, and resized as seen from there, in degrees.
+// A light's positions and directions are in world coordinates or, with "frame": "camera", in the camera's axes
+// about the camera's target. A light of any type is moved by a turn about the target. A light's size is an
+// angle in degrees, as seen from the target.
 
 import { axes } from "./camera.js";
 import { add, dot, length, normalize, scale, subtract, turnBetween } from "./vector.js";
@@ -28,18 +30,20 @@ function toWorld(vector, camera) {
   return add(add(scale(right, vector[0]), scale(up, vector[1])), scale(towards, vector[2]));
 }
 
-// The vector from the target to the light in the light's own axes; it need not have unit length.
+// Returns the vector from the target to the light, in the axes that the light uses. The vector need
+// not have unit length.
 function arm(light, camera) {
   return light.type === "directional" ? scale(light.direction, -1) : subtract(center(light), pivot(light, camera));
 }
 
-// The unit direction from the target to the light: components to the right, up, and towards the viewer.
+// Returns the unit direction from the target to the light, as components to the right, up, and towards
+// the viewer.
 export function directionOf(light, camera) {
   const towards = normalize(arm(light, camera));
   return isInCamera(light) ? towards : toCamera(towards, camera);
 }
 
-// The light in another direction, given in the camera's axes.
+// Returns the light, moved to another direction, which is given in the camera's axes.
 export function withDirection(light, camera, direction) {
   const wanted = isInCamera(light) ? normalize(direction) : toWorld(normalize(direction), camera);
   const turn = turnBetween(normalize(arm(light, camera)), wanted), about = pivot(light, camera);
@@ -51,15 +55,16 @@ export function withDirection(light, camera, direction) {
   return moved;
 }
 
-// A direction as from directionOf(), turned to the right and up by a number of steps of some degrees.
+// Turns a direction, in directionOf()'s components, to the right by dx steps and up by dy steps.
+// degrees: the size of a step.
 export function steppedDirection([right, up, towards], dx, dy, degrees) {
   const azimuth = Math.atan2(right, towards) + dx * degrees * radians;
   const elevation = Math.min(Math.max(Math.asin(Math.min(Math.max(up, -1), 1)) + dy * degrees * radians, -1.55), 1.55);
   return [Math.cos(elevation) * Math.sin(azimuth), Math.sin(elevation), Math.cos(elevation) * Math.cos(azimuth)];
 }
 
-// The scene with its first light that casts shadows on its way to its place, from behind the left; part: from
-// 0 to 1.
+// Returns the scene with its first shadow-casting light on its way from the left behind to its place. part:
+// the fraction of the way, from 0 to 1.
 export function sweptLight(scene, part) {
   const index = scene.lights.findIndex((light) => light.shadows !== "off");
   if (index < 0) return scene;
@@ -68,14 +73,14 @@ export function sweptLight(scene, part) {
   return { ...scene, lights: scene.lights.map((light, l) => (l === index ? withDirection(light, camera, turned) : light)) };
 }
 
-// Half of the light's width.
+// Returns half of the light's width.
 function reach(light) {
   if (light.type === "rect") return Math.max(length(light.edge1), length(light.edge2)) / 2;
   if (light.type === "polygon") return Math.max(...light.vertices.map((v) => length(subtract(v, center(light)))));
   return light.radius ?? 0;
 }
 
-// The light's width in degrees, seen from the target.
+// Returns the light's width in degrees, as seen from the target.
 export function sizeOf(light, camera) {
   if (light.type === "directional") return light.angular_diameter_deg ?? 0;
   return (2 * Math.atan2(reach(light), length(arm(light, camera)))) / radians;
@@ -93,7 +98,8 @@ export function withSize(light, camera, degrees) {
   return { ...light, vertices: light.vertices.map((v) => add(middle, scale(subtract(v, middle), factor))) };
 }
 
-// The light in the other axes; it keeps its present place and brightness.
+// Returns the light with its coordinates in the other axes, the camera's or the world's. The light
+// keeps its present position and brightness.
 export function withOtherFrame(light, camera) {
   const was = isInCamera(light), turn = (v) => (was ? toWorld(v, camera) : toCamera(v, camera));
   const point = (p) => (was ? add(camera.target, turn(p)) : turn(subtract(p, camera.target)));
@@ -104,11 +110,11 @@ export function withOtherFrame(light, camera) {
   return was ? changed : { ...changed, frame: "camera" };
 }
 
-// A new light from the upper right.
+// Makes a new directional light that shines from the upper right.
 export const newLight = () => ({
   type: "directional", frame: "camera", direction: normalize([-0.6, -0.6, -0.5]),
   angular_diameter_deg: 7, color: [1, 1, 1], intensity: 0.8,
 });
 
-// The paths in a scene of what says where a light is.
+// Returns the paths of the settings of a light that say where the light is.
 export const placesOf = (light, index) => ["direction", "normal", "edge1", "edge2", "position"].filter((key) => light[key]).map((key) => `lights.${index}.${key}`);
