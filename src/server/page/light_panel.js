@@ -5,17 +5,18 @@ import { color, keyButton, make, row, section, segments, select, slider, tabs, t
 import { gallery } from "./gallery.js";
 import { LARGEST_SIZE, newLight, placesOf, sizeOf, withOtherFrame, withSize } from "./light.js";
 
-// Sets a light's colour so that its brightest channel is 1; the light's strength is then its intensity.
+// Returns a light's colour, scaled so that its brightest channel is 1. The light's intensity then tells
+// its strength.
 const shown = (light) => light.color.map((c) => c / Math.max(...light.color, 1e-9));
 
-// The rigs: lights and a sky by name. Each begins from the light that the viewer began with, so that all are
-// equally bright.
+// Makes the gallery of rigs. A rig is a set of lights and a sky with a name. Each rig is derived from the
+// lights with which the viewer began, so that all rigs are equally bright.
 function rigsOf(viewer) {
   const { store, start, channel, atRest } = viewer, { lights, sky, ambient } = start.scene;
   const told = (scene) => JSON.stringify([scene.lights, scene.sky]);
   const rigs = gallery({
     label: "Light rigs", names: start.rigs ?? [], viewer, made: (rig) => channel.completeScene({ ...store.scene, lights, ...(sky ? { sky } : {}), ...(ambient ? { ambient } : {}) }, { rig }),
-    seen: ({ camera: _, image: __, ...rest }) => rest, // not the view: all small pictures take seconds of processor time
+    seen: ({ camera: _, image: __, ...rest }) => rest, // small pictures of rigs are not made anew when the view changes, because all of them together take seconds of processor time
     isTaken: (scene) => told(scene) === told(store.scene),
     take: (name, made) => store.change(`rig ${name}`, (scene) => ({ ...scene, lights: made.lights, sky: made.sky, ambient: made.ambient })),
   });

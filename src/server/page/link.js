@@ -1,14 +1,15 @@
-// A person's changes as a short text, for the end of an address: the differences of the scene, the marks and
-// the layout from their state when the viewer began. The text names no files, so it fits any viewer of the
-// same file.
+// Links: a person's changes as a short text for the end of an address. The text holds the differences of the
+// scene, the marks and the layout from their state when the viewer began. The text contains no file names,
+// so that the link works in any viewer of the same file.
 
 import { reshaped } from "./camera.js";
 import { readMarks } from "./marks.js";
 
 const MARK = "#view=";
-const MOST_BYTES = 1 << 20; // the most bytes of the text to which a link unfolds
+const MOST_BYTES = 1 << 20; // the greatest number of bytes of a link's text after it is decompressed
 
-// A difference: { to: value }, { gone: 1 }, or { in: { key: difference } } of an object or an array of the same length; undefined: none, whatever the order of keys.
+// Returns the difference between two values: { to: value }, { gone: 1 }, or { in: { key: difference } } for two objects or two arrays of the same length.
+// Undefined: the values are equal; the order of keys does not matter.
 export function difference(from, to) {
   if (from === to || JSON.stringify(from) === JSON.stringify(to)) return undefined;
   const both = (test) => test(from) && test(to), isObject = (x) => x !== null && typeof x === "object" && !Array.isArray(x);
@@ -50,7 +51,8 @@ async function unpacked(word) {
   }
 }
 
-// The scene with the picture's size at the beginning, so that a link does not tell how large a window is.
+// Returns the state that links compare. Its scene has the size of the picture with which the viewer
+// began, so that a link does not contain the window's size.
 function comparable(store, start) {
   const { scene, marks, page: { bookmarks: _, film: __, ...page } } = store, { width, height } = start.scene.image;
   return { scene: { ...scene, camera: reshaped(scene.camera, scene.image, { width, height }), image: { ...scene.image, width, height } }, marks, page };
@@ -66,7 +68,8 @@ export async function linkOf(store, start) {
 
 export const isLink = (text) => text.includes(MARK);
 
-// Shows the state in a link, as one step. Throws where the text is no link, or does not fit the open scene.
+// Shows the state in a link, as one step of the history. Throws an error if the text is no link or does not
+// fit the open scene.
 export async function follow(text, { store, start, channel, waits }) {
   let told;
   try {

@@ -4,12 +4,13 @@ import { section } from "./controls.js";
 import { gallery } from "./gallery.js";
 import { difference } from "./link.js";
 
-const PROJECTION = "mip"; // the look that is no surface and no medium: its greys are a preset
+const PROJECTION = "mip"; // the look of a maximum projection; its greys are a preset of the transfer function
 
-// The scene that a maximum projection can show: without isosurfaces and meshes.
+// Returns the scene without isosurfaces and meshes, which a maximum projection cannot show.
 const projected = ({ meshes: _, ...scene }) => ({ ...scene, volumes: scene.volumes.map(({ iso: __, ...volume }) => (volume.labels ? volume : { ...volume, transfer_function: { preset: PROJECTION } })) });
 
-// What makes a look of a scene, whichever its view and light.
+// Returns the parts of a scene that a look sets: all but the camera, the lights, the sky and the
+// picture's size.
 const seen = ({ camera: _, lights: __, sky: ___, ambient: ____, image: _____, ...rest }) => rest;
 
 export function lookPanel(viewer) {

@@ -1,4 +1,5 @@
-// The page: a viewer over the whole window that shows the server's open scene, as this tab has left it.
+// The page: a viewer that fills the window and shows the server's open scene, with the changes that
+// were made in this tab.
 
 import { HttpChannel } from "./http_channel.js";
 import { isLink } from "./link.js";
@@ -7,8 +8,8 @@ import { mount } from "./viewer.js";
 
 let channel = null, shown = { source: null, keeping: null };
 
-// Shows the open scene, and replaces the viewer before. source: the path by which it was opened; kept: a
-// session to go on with.
+// Shows an open scene in a new viewer, which replaces the present viewer. source: the path by which the
+// scene was opened. kept: a session whose state the viewer takes.
 function show(start, source = null, kept = null) {
   const focused = document.activeElement?.id;
   globalThis.halflight?.end();
@@ -27,8 +28,8 @@ function show(start, source = null, kept = null) {
   return viewer;
 }
 
-// Shows the state in a link at the end of the address, and removes it from there: a reload then goes on with
-// the changes since.
+// Shows the state in a link at the end of the address, and removes the link from the address. A reload then
+// keeps the changes that were made after the link was followed.
 function followAddress() {
   const { hash } = location;
   if (!isLink(hash)) return;
@@ -36,8 +37,8 @@ function followAddress() {
   globalThis.halflight.followLink(hash);
 }
 
-// Opens the file of a session, and goes on with the session. False: the file is not in the viewer's folder,
-// or is another file.
+// Opens the file of a session, and shows the session's state. Returns false if the file is not in the
+// viewer's folder, or is another file.
 async function reopen(session) {
   const opened = session.source === null ? null : await channel.open(session.source);
   if (opened === null || !isOfOpen(session.scene, opened)) return false;
@@ -45,8 +46,8 @@ async function reopen(session) {
   return true;
 }
 
-// Opens the file that the tab had open, with the changes; where there is none, the scene that the viewer
-// began with.
+// Opens the file that the tab had open before a reload, with the tab's changes. If the tab had no file
+// open, the scene is opened with which the viewer began.
 async function begin() {
   const kept = keptSession(), first = new HttpChannel();
   if (kept?.source) {
@@ -63,7 +64,8 @@ async function begin() {
 
 addEventListener("hashchange", followAddress);
 addEventListener("pagehide", () => channel?.leave());
-// The server has given back what the page had.
+// A page that comes back from the browser's cache is loaded anew, because the server has released
+// what it held for the page.
 addEventListener("pageshow", (event) => { if (event.persisted) location.reload(); });
 
 try {

@@ -8,9 +8,9 @@ import { add, scale } from "./vector.js";
 
 const HEAD = 9; // pixels of an arrow's head
 const DOT = 4; // pixels; radius
-const TEXT_HEIGHT = 13, TEXT_WIDTH = 8; // pixels, the width of a letter at most; of .mark-text in style.css
-const MOST_STEPS = 8; // lines by which a text gives way
-const KEY_REACH = 0.25; // fraction of the height of the shown area; a key moves a point by a fiftieth of it
+const TEXT_HEIGHT = 13, TEXT_WIDTH = 8; // pixels: the line height, and the greatest width of a letter, of .mark-text in style.css
+const MOST_STEPS = 8; // the greatest number of lines by which a text moves down to avoid other texts
+const KEY_REACH = 0.25; // fraction of the height of the shown area; an arrow key moves a point by a fiftieth of this length
 
 // The head of an arrow that points to [x, y].
 function head([fromX, fromY], [x, y]) {
@@ -18,7 +18,8 @@ function head([fromX, fromY], [x, y]) {
   return `M${x} ${y}L${x - dx - dy / 2} ${y - dy + dx / 2}M${x} ${y}L${x - dx + dy / 2} ${y - dy - dx / 2}`;
 }
 
-// The least place at or below [x, y] where a text covers none of the rectangles in `taken`, to which its own is added.
+// Returns the nearest place at or below [x, y] where a text covers none of the rectangles in `taken`. The text's
+// rectangle is added to `taken`.
 function freePlace([x, y], text, taken) {
   const wide = TEXT_WIDTH * text.length, free = (top) => taken.every(([left, t, right, bottom]) => x >= right || x + wide <= left || top >= bottom || top + TEXT_HEIGHT <= t);
   let top = y - TEXT_HEIGHT;
@@ -27,12 +28,14 @@ function freePlace([x, y], text, taken) {
   return [x, top + TEXT_HEIGHT];
 }
 
-// The elements of a mark, whose points lie on the screen at `places`. taken: the rectangles of texts: [left, top, right, bottom].
+// Makes the elements that draw a mark. places: the mark's points on the screen. taken: the rectangles of texts, [left, top,
+// right, bottom].
 function drawn(mark, places, caption, className, taken) {
   const path = places.map(([x, y], n) => `${n > 0 ? "L" : "M"}${x} ${y}`).join("") + (mark.kind === "arrow" && places.length === 2 ? head(...places) : "");
   const at = mark.kind === "ruler" && places.length === 2 ? [(places[0][0] + places[1][0]) / 2, (places[0][1] + places[1][1]) / 2]
     : mark.kind === "angle" && places.length > 1 ? places[1] : places.at(mark.kind === "arrow" ? 0 : -1);
-  // To the right of a ruler's middle, above a ruler that falls to the right and below one that rises: it covers neither the line nor its end.
+  // A ruler's text stands to the right of the ruler's middle: above the line if the ruler falls to the right, below the line if the ruler
+  // rises. The text then covers neither the line nor its ends.
   const rises = mark.kind === "ruler" && places.length === 2 && (places[1][0] - places[0][0]) * (places[1][1] - places[0][1]) < 0;
   const [x, y] = freePlace([at[0] + 8, rises ? at[1] + 8 + TEXT_HEIGHT : at[1] - 8], caption, taken);
   return [make("svg:path", { d: path, class: "mark-halo" }), make("svg:path", { d: path, class: className }), make("svg:text", { x, y, class: "mark-text" }, caption)];
@@ -41,7 +44,7 @@ function drawn(mark, places, caption, className, taken) {
 export class Marks {
   #viewer;
   #picture;
-  #planes = new Map(); // for each slice view: its handles
+  #planes = new Map(); // the elements and handles of marks, by slice view
 
   constructor(viewer) {
     this.#viewer = viewer;
@@ -54,7 +57,7 @@ export class Marks {
     return { shapes, handles };
   }
 
-  // The marks, and the mark that is being made.
+  // All marks, with the mark that is being made.
   get #all() {
     const { store, marking } = this.#viewer;
     return [...store.marks, ...(marking?.unfinished ? [marking.unfinished] : [])];
@@ -68,7 +71,8 @@ export class Marks {
       if (m < this.#viewer.store.marks.length)
         mark.points.forEach((point, n) => { if (inside(places[n])) points.push(this.#handle(m, n, mark, point, ways)); });
       if (m < this.#viewer.store.marks.length) return drawn(mark, places, captionOf(mark, this.#viewer), `mark ${style}`, taken);
-      // Of a mark that is being made, a single point has no length yet; its points are seen as dots.
+      // A mark that is being made has dots at its points. While the mark has only one point, no
+      // length is shown.
       return [...drawn(mark, places, places.length > 1 ? captionOf(mark, this.#viewer) : mark.text ?? "", `mark ${style}`, taken),
         ...places.map(([x, y]) => make("svg:circle", { cx: x, cy: y, r: DOT, class: "mark-dot" }))];
     }), isText = (one) => one.localName === "text";
@@ -76,7 +80,7 @@ export class Marks {
     handles.draw(points, project, points[0]?.at ?? [0, 0, 0], width, height);
   }
 
-  // ways: the two directions of the screen in the scene, with the length of KEY_REACH.
+  // ways: the screen's two directions as vectors of the scene, with the length of KEY_REACH.
   #handle(m, n, mark, point, ways) {
     const { store } = this.#viewer;
     return {
@@ -96,7 +100,7 @@ export class Marks {
     this.#draw(this.#picture, projector(store.scene.camera, width, height), [scale(right, reach), scale(up, reach)], width, height, () => "");
   }
 
-  // The marks in the plane, and fainter the marks that only pass through it.
+  // Draws the marks that lie in the plane, and, fainter, the marks that only cross the plane.
   drawPlane(view) {
     if (!this.#planes.has(view)) this.#planes.set(view, this.#makeLayer(view.marks));
     const { clientWidth: width, clientHeight: height } = view.area, project = (point) => view.project(point);

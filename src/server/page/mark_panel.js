@@ -7,8 +7,8 @@ import { length, subtract } from "./vector.js";
 
 export function markPanel(viewer) {
   const { store, root, slices } = viewer, { element, body } = section("Measure", false);
-  let kind = null, points = [], aimed = null; // aimed: where the crosshair lay when the last point was made
-  element.hidden = !viewer.channel.depth && !slices.available; // without depths, no click tells a place
+  let kind = null, points = [], aimed = null; // aimed: the crosshair's position when the last point was made
+  element.hidden = !viewer.channel.depth && !slices.available; // a channel without depth() cannot tell the point of the scene under a click
 
   const tools = Object.entries(KINDS).map(([name, { name: text }]) => button(text, () => change(kind === name ? null : name), { "aria-pressed": "false", "data-kind": name }));
   const hint = make("p", { class: "facts", role: "status" }), list = make("ul", { class: "files marks", "aria-label": "Marks" });
@@ -20,16 +20,17 @@ export function markPanel(viewer) {
     store.setPage({});
   }
 
-  // Another tool is chosen, or none. A line that is under way is finished, as far as it has come.
+  // Chooses another tool, or no tool. A line that is being made is finished with the points that it
+  // has.
   function change(name) {
     finish();
     if (name !== null) choose(name);
   }
 
-  // Adds a point; returns whether it was taken.
+  // Adds a point to the mark that is being made. Returns whether a tool has taken the point.
   function addPoint(point) {
     if (kind === null) return false;
-    // The second click of two.
+    // The second click of a double click adds no point.
     if (points.length > 0 && length(subtract(point, points.at(-1))) === 0) return true;
     points = [...points, point];
     aimed = slices.available ? slices.cursor : null;
@@ -38,7 +39,7 @@ export function markPanel(viewer) {
     return true;
   }
 
-  // Ends a line that has enough points, and ends the tool.
+  // Finishes the mark if it has enough points, and puts the tool away.
   function finish() {
     if (kind === null) return;
     const made = points.length >= KINDS[kind].least ? { kind, points, text: kind === "text" ? "Text" : "" } : null;
@@ -50,8 +51,8 @@ export function markPanel(viewer) {
     if (wasText) list.querySelector("li:last-child input").select();
   }
 
-  // Enter in a slice: a point at the crosshair. Where the crosshair has not moved since the last point, it ends the line. Returns whether
-  // a tool is chosen.
+  // Handles the key Enter in a slice: adds a point at the crosshair. If the crosshair has not moved since the last point, Enter finishes
+  // the line. Returns whether a tool is chosen.
   function enter() {
     if (kind === null) return false;
     const hasMoved = aimed === null || length(subtract(slices.cursor, aimed)) > 0;
@@ -60,7 +61,7 @@ export function markPanel(viewer) {
     return true;
   }
 
-  // The functions of the tool for other files.
+  // The functions of the tools that other files call.
   viewer.marking = {
     addPoint, enter, finish, cancel: () => choose(null), get isMaking() { return kind !== null; },
     get unfinished() { return points.length > 0 ? { kind, points, text: "" } : null; },

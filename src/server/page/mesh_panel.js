@@ -5,7 +5,7 @@ import { button, isActive, make, section } from "./controls.js";
 
 const nameOf = (mesh, number) => mesh.file?.split("/").pop() ?? `mesh ${number + 1}`;
 
-// The row of one mesh. get() returns the mesh; change(name, part) changes it.
+// Makes the row of one mesh. get(): returns the mesh. change(name, part): changes the mesh.
 function meshRow({ name, get, change }) {
   const eye = button("", () => change("eye", { visible: get().visible === false }), { class: "eye", "aria-label": `Show ${name}` });
   const shade = make("input", { type: "color", "aria-label": `Colour of ${name}`, oninput: () => change("color", { color: linearOf(shade.value) }) });

@@ -1,6 +1,6 @@
-// The panel that opens another file: a list of the folder in which the viewer was started, or a chooser where there is
-// no server, and files that are dropped anywhere on the viewer. It is there only where files can be opened, so not in
-// notebooks.
+// The panel that opens another file. The panel lists the folder in which the viewer was started; a page without a
+// server has a file chooser in place of the list. Files can also be dropped anywhere on the viewer. The panel is
+// hidden where no files can be opened, as in notebooks.
 
 import { button, make, section, toggle } from "./controls.js";
 
@@ -8,7 +8,8 @@ const ASK_EVERY = 250; // milliseconds between questions for the progress of rea
 
 const size = (bytes) => (bytes < 1 << 20 ? `${Math.ceil(bytes / 1024)} KiB` : `${Math.round(bytes / (1 << 20))} MiB`);
 
-// The source by which a page opens both files when it is loaded again; null where one of them was dropped.
+// Returns the source with which the page opens the present files and the added file after a reload. Null:
+// one of these files was dropped, so that the page cannot open it again.
 function sourceOfBoth({ store, start }, added) {
   const own = store.source ?? (start.opened === 0 ? "" : null);
   return own === null || added === null ? null : [own, added].flat();
@@ -28,7 +29,8 @@ export function openPanel(viewer) {
   const choose = button("choose files …", () => chooser.click(), { hidden: !viewer.choose });
   if (viewer.choose) where.textContent = "or drop files anywhere on the page";
 
-  // The folder of the file that is open, below the viewer's; "": the viewer's own.
+  // Returns the folder of the open file, as a path below the viewer's folder; "": the file lies in
+  // the viewer's folder.
   function folderOf(source) {
     const path = [source].flat().at(-1);
     return typeof path === "string" && path.includes("/") ? path.slice(0, path.lastIndexOf("/")) : "";
@@ -51,8 +53,9 @@ export function openPanel(viewer) {
     }
   }
 
-  // Reads a file while the bar shows the progress; then the viewer shows the file. path: in the viewer's
-  // folder; null: the file was dropped. Resolves to the file's viewer, or to null.
+  // Reads a file while the bar shows the progress; then the viewer shows the file. path: the file's path
+  // in the viewer's folder; null: the file was dropped. Resolves to the viewer that shows the file, or
+  // to null after an error.
   async function load(open, name, path = null, added = adds) {
     element.open = true;
     bar.hidden = false;
@@ -76,7 +79,7 @@ export function openPanel(viewer) {
     return null;
   }
 
-  // A JSON file of the list may be a session.
+  // Opens a file of the list. A JSON file may be a session.
   async function openListed(path, name) {
     const session = name.endsWith(".json") ? await channel.session(path).catch(() => null) : null;
     return session === null ? load(() => channel.open(path), name, path) : viewer.openSession(session);
@@ -85,7 +88,7 @@ export function openPanel(viewer) {
   // Opens another DICOM series of a file, in place of the one that is open.
   viewer.openSeries = (file, series) => load(() => channel.open({ file, series }), file.split("/").pop(), { file, series }, false);
   viewer.upload = (file, added = adds) => load(() => channel.upload(file), file.name, null, added);
-  // Where there are several files, the others are added to the first one.
+  // Opens dropped files. If several files are dropped, all but the first are added to the first.
   async function drop([first, ...others]) {
     if (others.length === 0 && first?.name.endsWith(".json") && viewer.openSession) return viewer.openSession(first);
     let shown = first ? await viewer.upload(first) : null;
@@ -100,7 +103,7 @@ export function openPanel(viewer) {
     element.addEventListener("toggle", async () => {
       if (!element.open || list.childElementCount > 0) return;
       await show(folderOf(store.source));
-      element.scrollIntoView({ block: "nearest" }); // the list has come below what was in view
+      element.scrollIntoView({ block: "nearest" }); // the new list may lie below the visible part of the side bar
     });
   }
   body.append(add.element, choose, chooser, where, bar, list);

@@ -11,9 +11,9 @@ import { directionOf, sizeOf, steppedDirection, withDirection, withSize } from "
 import { SkyRing } from "./sky_ring.js";
 import { symbolOf } from "./units.js";
 
-const MARKER = { size: 34, left: 64, bottom: 64, roomy: 360, letter: 24 }; // pixels; in a picture whose shorter side is less than roomy it is smaller
-const BAR_WIDTH = 140, LEAST_BAR = 20; // the most pixels, and the fewest where there is no room
-// Radius of the sphere on which lights are moved, as a part of the picture's shorter side.
+const MARKER = { size: 34, left: 64, bottom: 64, roomy: 360, letter: 24 }; // pixels; the marker is smaller in a picture whose shorter side is below `roomy`
+const BAR_WIDTH = 140, LEAST_BAR = 20; // pixels: the greatest width of the scale bar, and the width that the bar may have even where there is no room
+// Radius of the sphere on which lights are moved, as a fraction of the picture's shorter side.
 const SPHERE_OF_HEIGHT = 0.42;
 const RING_PER_DEGREE = 1.6; // a handle's ring has this radius in pixels for each degree of the light's size
 const RING_LEAST = 15;
@@ -21,14 +21,15 @@ const KEY_STEP = 3; // degrees
 
 const AXIS_NAMES = { RAS: ["R", "A", "S"], LPS: ["L", "P", "S"], LAS: ["L", "A", "S"] };
 
-// A length with a short number, 1, 2 or 5 times a power of ten, that is at most `most`.
+// Returns the greatest length of the form 1, 2 or 5 times a power of ten that is at most `most`.
 export function roundLength(most) {
   const power = 10 ** Math.floor(Math.log10(most));
   return [5, 2, 1].map((n) => n * power).find((x) => x <= most * 1.0000001);
 }
 
-// What lengths of the world are measured in: " mm" where volumes tell it, none another, and all keep their size; what a person has
-// said where none tells it; else nothing.
+// Returns the unit of lengths of the world, with a space in front, such as " mm". The unit is known if a volume's file tells it,
+// no other volume tells another unit, and no volume is scaled. If no file tells a unit, the user's unit is taken. "": the unit is
+// not known.
 function unitOf({ scene, page }, volumes) {
   const told = new Set(volumes.map((volume) => symbolOf(volume?.unit)).filter(Boolean));
   if (told.size === 0 && page.unit) told.add(symbolOf(page.unit));
@@ -72,19 +73,20 @@ export class Overlay {
     this.draw();
   }
 
-  // The edges of the volumes' boxes, and the handles that clip the chosen one.
+  // Sets whether the edges of the volumes' boxes and the handles of the chosen volume's clip box
+  // are shown.
   set showsBox(shows) {
     this.#showBox = shows;
     this.draw();
   }
 
-  // The horizon, and the handles of the sky.
+  // Sets whether the sky's horizon and handles are shown.
   set showsSky(shows) {
     this.#showSky = shows;
     this.draw();
   }
 
-  // The handles of a cut, as long as its source shows a cut (cut_handles.js).
+  // Adds the handles of a cut. The handles are visible while `source` has a cut (cut_handles.js).
   addCut(source) {
     const handles = new CutHandles(source);
     this.#cuts.push(handles);
@@ -94,7 +96,7 @@ export class Overlay {
   draw() {
     this.#width = this.#svg.clientWidth;
     this.#height = this.#svg.clientHeight;
-    if (this.#height === 0) return; // the picture is not laid out yet
+    if (this.#height === 0) return; // the picture has no size yet
     this.#drawMarker();
     this.#drawBar();
     this.#drawBox();
@@ -105,7 +107,7 @@ export class Overlay {
     this.#drawLights();
   }
 
-  // The marker's size in this picture, as a part of its full size.
+  // The marker's size in this picture, as a fraction of its full size.
   get #markerPart() { return Math.min(Math.max(Math.min(this.#width, this.#height) / MARKER.roomy, 0.5), 1); }
 
   #drawMarker() {
@@ -126,7 +128,7 @@ export class Overlay {
 
   #drawBar() {
     const perPixel = worldHeight(this.#store.scene.camera) / this.#height;
-    const right = this.#width - 24, room = right - this.#markerPart * (MARKER.left + MARKER.size) - MARKER.letter; // beside the marker
+    const right = this.#width - 24, room = right - this.#markerPart * (MARKER.left + MARKER.size) - MARKER.letter; // the pixels between the marker and the right edge
     const size = roundLength(Math.min(BAR_WIDTH, Math.max(room, LEAST_BAR)) * perPixel), pixels = size / perPixel, y = this.#height - 26;
     const path = `M${right - pixels} ${y - 5}v5h${pixels}v-5`;
     this.#bar.replaceChildren(
@@ -169,7 +171,8 @@ export class Overlay {
     const [right, up, towards] = directionOf(light, camera), size = sizeOf(light, camera);
     const [ring, dot] = handle.children;
     handle.setAttribute("transform", `translate(${sphere.x + right * sphere.radius} ${sphere.y - up * sphere.radius})`);
-    // The handle of a fill light from the eye would be in the way of the hand that turns the picture.
+    // The handle of a light without shadows is hidden unless the light is chosen: a fill light from
+    // the eye would have its handle in the picture's middle, where users drag to turn the picture.
     handle.toggleAttribute("hidden", light.shadows === "off" && l !== this.#current.light);
     handle.setAttribute("class", `light${towards < 0 ? " behind" : ""}${l === this.#current.light ? " chosen" : ""}`);
     handle.setAttribute("aria-valuetext",
@@ -186,7 +189,7 @@ export class Overlay {
     const target = make("svg:circle", { class: "target", r: 12, onpointerdown: (event) => this.#grab(event, l, "place") });
     return make("svg:g", {
       class: "light", tabindex: 0, role: "slider", "aria-label": `Light ${l + 1}`, "aria-valuenow": l + 1, "data-light": l,
-      onkeydown: (event) => this.#key(event, l), // the focus alone chooses nothing: a window that comes to the front again has it, too
+      onkeydown: (event) => this.#key(event, l), // the focus alone does not choose a light, because the focus also comes back when the window comes to the front
     }, ring, dot, target);
   }
 
@@ -194,8 +197,8 @@ export class Overlay {
     if (this.#current.light !== l) this.#current.choose("light", l);
   }
 
-  // Drags the dot over the sphere; beyond its rim the light goes behind. Or drags the ring, which is the
-  // light's size.
+  // Starts a drag of a light's handle. A drag of the dot moves the light over the sphere; beyond the
+  // sphere's rim, the light moves behind the scene. A drag of the ring changes the light's size.
   #grab(event, l, what) {
     event.stopPropagation();
     event.preventDefault();
@@ -217,7 +220,9 @@ export class Overlay {
     });
   }
 
-  // right and up: on the sphere of radius 1; beyond it the light turns to the side away from where it began.
+  // Moves a light. right, up: the pointer's position relative to a sphere of radius 1. If the pointer lies
+  // beyond the sphere's rim, the light moves to the half of the sphere on which it was not at the drag's
+  // start.
   moveLight(l, right, up, side = 1) {
     const far = Math.hypot(right, up), folded = far > 1 ? Math.max(2 - far, 0) / far : 1;
     const [x, y] = [right * folded, up * folded];

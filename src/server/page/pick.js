@@ -1,14 +1,15 @@
-// The place of the scene that a pixel of the picture shows: where half of what is seen there has been passed.
+// Finds the point of the scene that a pixel of the picture shows: the point on the pixel's ray at which the opacity has
+// reached half of the ray's whole opacity.
 //
-// The program tells the depth at which a ray's opacity reaches 1 %. So the scene is asked for twice, in a tiny picture
-// along the pixel's ray: for the whole opacity A of the ray, and once more with all matter so thin that its opacity reaches
-// 1 % where the ray's own reaches A / 2. Thinning by a factor f turns each transmittance T into T^f (Beer and Lambert), so
-// f = ln(0.99) / ln(1 - A / 2) (derived).
+// The program tells the depth at which a ray's opacity reaches 1 %. The depth of the scene is therefore requested twice,
+// with a tiny picture around the pixel's ray. The first answer tells the whole opacity A of the ray. For the second
+// request, all matter is made so thin that the ray's opacity reaches 1 % where it was A / 2 before. Thinning by a factor f
+// turns each transmittance T into T^f (Beer and Lambert), so f = ln(0.99) / ln(1 - A / 2) (derived).
 
 import { along, axes, worldHeight } from "./camera.js";
 import { add, scale, subtract, normalize } from "./vector.js";
 
-const SIDE = 15; // pixels, an odd number: one is in the middle
+const SIDE = 15; // pixels; an odd number, so that one pixel is in the middle
 const FIRST = 0.01; // the opacity whose depth the program tells
 
 const thinner = (opacity, f) => 1 - (1 - Math.min(opacity, 1)) ** f;
@@ -23,7 +24,8 @@ function thinned(scene, f) {
   return { ...scene, volumes, ...(scene.meshes ? { meshes: surfaces(scene.meshes) } : {}) };
 }
 
-// The scene without lights, in a tiny picture whose middle pixel is the one at [x, y] of a picture of width x height.
+// Returns the scene without lights, with a tiny picture whose middle pixel is the pixel at [x, y] of a picture of
+// width x height.
 function rayScene({ sky: _, ...scene }, [x, y], width, height) {
   const camera = scene.camera, { right, up, towards } = axes(camera), tall = worldHeight(camera);
   const offset = add(scale(right, ((x - width / 2) / height) * tall), scale(up, ((height / 2 - y) / height) * tall));
@@ -37,7 +39,7 @@ function rayScene({ sky: _, ...scene }, [x, y], width, height) {
   return { scene: narrow, eye, direction };
 }
 
-// [x, y]: pixels in a picture that is shown as width x height. Resolves to the point of the scene; null: nothing is seen there.
+// place: [x, y], in pixels of a picture of width x height. Resolves to the point of the scene; null: the pixel shows nothing.
 export async function pick(channel, whole, place, width, height) {
   const { scene, eye, direction } = rayScene(whole, place, width, height);
   const seen = await channel.depth(scene);

@@ -1,17 +1,19 @@
 // Handles over the picture: small squares that are dragged, or moved by arrow keys, along one or two directions of the scene.
 //
-// A handle is { label, kind, at, ways, move }: kind is a name for the style sheet, `at` its place in the scene, and each of
-// `ways` { to, size, low, high, now }: moved by `size` numbers it comes to be at `to`; now is its number, low and high where
-// such numbers lie. move(steps) moves it by so many numbers along each way from where it was when it was made.
+// A handle is { label, kind, at, ways, move }. kind: a name for the style sheet. at: the handle's point in the scene. ways:
+// the directions in which the handle moves, each { to, size, low, high, now }. A way has a coordinate: now is its present
+// value, low and high are its bounds, and an increase by `size` brings the handle to the point `to`. move(steps): moves the
+// handle; steps: the increase of each way's coordinate since the handle was made.
 
 import { make } from "./controls.js";
 import { followDrag } from "./drag.js";
 
-const KEY_STEP = 0.02; // of the way from low to high
+const KEY_STEP = 0.02; // how far an arrow key moves a handle, as a fraction of the way from low to high
 const MARGIN = 14; // pixels between a handle and the picture's edge
-const KEYS = { ArrowLeft: [0, -1], ArrowRight: [0, 1], ArrowDown: [1, -1], ArrowUp: [1, 1] }; // the way, and its sign
+const KEYS = { ArrowLeft: [0, -1], ArrowRight: [0, 1], ArrowDown: [1, -1], ArrowUp: [1, 1] }; // [index of the way, sign]
 
-// A place, moved towards another until it lies in the picture: what is beyond the edge keeps its handle.
+// Moves a place towards another place until it lies in the picture, so that a point beyond the picture's
+// edge still has a handle.
 function within([x, y], [towardsX, towardsY], width, height) {
   const part = (from, to, most) => {
     const inside = Math.min(Math.max(from, MARGIN), most - MARGIN);
@@ -21,7 +23,8 @@ function within([x, y], [towardsX, towardsY], width, height) {
   return [x + t * (towardsX - x), y + t * (towardsY - y)];
 }
 
-// How far along each way, in parts of its length in pixels, lies a movement of the pointer; null where no way is seen.
+// Splits a movement of the pointer into movements along the ways, as fractions of each way's length in pixels. Null:
+// no way is visible, because all run along the line of sight.
 function partsOf(ways, [x, y]) {
   const [a, b] = ways, square = a[0] ** 2 + a[1] ** 2;
   if (ways.length === 1) return square > 1e-3 ? [(x * a[0] + y * a[1]) / square] : null;
@@ -39,7 +42,8 @@ export class PictureHandles {
     this.#className = className;
   }
 
-  // handles: none hides them. middle: the place in the scene that handles beyond the edge are brought towards.
+  // Draws the handles. handles: an empty list hides all handles. middle: the point of the scene towards which
+  // handles beyond the picture's edge are moved.
   draw(handles, project, middle, width, height) {
     this.#handles = handles;
     this.#project = project;

@@ -1,7 +1,7 @@
-// The drawing of a transfer function of two numbers: its boxes and polygons over a histogram of value and
-// gradient, which the pointer changes. Shapes, and their edges, vertices and apexes, are dragged. A click
-// beside them adds a box. A double click on a polygon's side adds a vertex; elsewhere it removes the vertex
-// or the shape, as Delete does.
+// The editor of a transfer function of two numbers: it draws the function's boxes and polygons over a
+// histogram of value and gradient. The pointer drags shapes and their edges, vertices and apexes. A click
+// beside all shapes adds a box. A double click on a polygon's side adds a vertex; a double click
+// elsewhere, or the key Delete, removes the vertex or the shape.
 
 import { hexOf } from "./color.js";
 import { make, shortNumber } from "./controls.js";
@@ -20,7 +20,7 @@ export class PlaneCanvas {
   #set;
   #range; // [from, to] of both axes
   #histogram;
-  selected = 0; // index of the chosen shape: boxes, then polygons
+  selected = 0; // index of the chosen shape in the list of all boxes, followed by all polygons
   vertex = 0; // index of the chosen vertex of a polygon
   onSelect = () => {};
 
@@ -69,7 +69,7 @@ export class PlaneCanvas {
     return Object.fromEntries(AXES.map((key, axis) => [key, shape[key].map((number) => this.#pixel(axis, number))]));
   }
 
-  // The shape under the pointer: its index and its part (partAt); or null.
+  // Returns the shape under the pointer: its index and its part (partAt()); or null.
   #find(event) {
     const at = this.#place(event), shapes = this.shapes;
     for (let index = shapes.length - 1; index >= 0; index--) {
@@ -113,7 +113,7 @@ export class PlaneCanvas {
     this.#select(place);
   }
 
-  // A new polygon in the middle: a rhomb.
+  // Adds a polygon, a rhombus in the middle.
   addPolygon() {
     const middle = this.#range.map(([from, to]) => (from + to) / 2), half = this.#range.map(([from, to]) => (to - from) / 6);
     const vertices = [[-1, 0], [0, -1], [1, 0], [0, 1]].map((to) => to.map((sign, axis) => middle[axis] + sign * half[axis]));
@@ -239,7 +239,7 @@ export class PlaneCanvas {
     if (vertices && chosen) this.#drawHandles(context, vertices, apex);
   }
 
-  // A disk at each vertex, larger at the chosen one, and a ring at the apex.
+  // Draws a disk at each vertex and a ring at the apex. The disk at the chosen vertex is larger.
   #drawHandles(context, vertices, apex) {
     const disk = ([x, y], radius) => { context.beginPath(); context.arc(x, y, radius, 0, 2 * Math.PI); };
     context.fillStyle = context.strokeStyle;

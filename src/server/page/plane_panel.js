@@ -9,13 +9,15 @@ import { rangeOf } from "./transfer_function.js";
 
 const GRADIENT = "gradient";
 
-// The greatest gradient in the drawing, per unit of the world; scenes may scale volumes.
+// Returns [0, greatest gradient in the drawing], per unit of the world. A volume's scale in the
+// scene divides the gradient.
 function gradientsOf(volume, about) {
   const scale = volume.transform?.scale ?? 1, mean = Array.isArray(scale) ? Math.cbrt(scale[0] * scale[1] * scale[2]) : scale;
   return [0, (about.plane?.gradient ?? (about.range[1] - about.range[0]) / 4) / mean];
 }
 
-// A function of value and gradient that shows about the same as a function of the value alone.
+// Returns a function of value and gradient that shows about the same matter as a function of the
+// value alone.
 export function byGradient(tf, volume, about) {
   const [low, high] = rangeOf(tf), greatest = tf.opacity.reduce((a, b) => (b[1] > a[1] ? b : a), [0, 0.5]);
   const middle = tf.color[Math.floor(tf.color.length / 2)] ?? [0, 0.8, 0.8, 0.8];
@@ -28,7 +30,8 @@ export function byGradient(tf, volume, about) {
   };
 }
 
-// Returns { element, parts }: the rows, and the parts that follow the scene.
+// Returns { element, parts }. element: contains the rows. parts: the controls that show the scene's
+// present values.
 export function planePanel({ store, start, current, get, set }) {
   const volume = store.scene.volumes[current.volume], about = start.volumes[current.volume], second = get().second;
   const other = store.scene.volumes.findIndex((v) => v.name !== undefined && v.name === second.volume);
@@ -37,10 +40,11 @@ export function planePanel({ store, start, current, get, set }) {
     get, set, range: [about.range, seconds], histogram: second === GRADIENT ? (about.plane ?? null) : null,
   });
   const chosen = () => canvas.shapes[canvas.selected] ?? { color: [1, 1, 1], opacity: 0, value: [0, 1], second: [0, 1] };
-  // The softness of a shape: the falloff of a polygon, or the part of a box that is edge.
+  // The softness of a shape: half the falloff of a polygon, or the width of a box's edge as a
+  // fraction of the box's width.
   const soft = () => (isPolygon(chosen()) ? (chosen().falloff ?? 1) / 2 : (chosen().edge?.[0] ?? 0) / (chosen().value[1] - chosen().value[0]));
   const softened = (part) => (isPolygon(chosen()) ? { falloff: 2 * part } : { edge: ["value", "second"].map((key) => part * (chosen()[key][1] - chosen()[key][0])) });
-  // The chosen shape in the scene.
+  // Returns the path of the chosen shape in the scene.
   const place = () => {
     const n = canvas.selected, boxes = canvas.boxes.length;
     return `volumes.${current.volume}.transfer_function.${n < boxes ? `boxes.${n}` : `polygons.${n - boxes}`}`;

@@ -1,6 +1,6 @@
-// Boxes and polygons of a transfer function of two numbers: which part of a shape lies at a place, and how a
-// hand changes shapes. Places and shapes are [x, y], either in the canvas's pixels or in the function's
-// numbers.
+// Boxes and polygons of a transfer function of two numbers: functions that find the part of a shape under
+// the pointer, and that change shapes. Coordinates are [x, y], either in pixels of the canvas or in the
+// function's two numbers.
 
 const AXES = ["value", "second"];
 export const isPolygon = (shape) => shape.vertices !== undefined;
@@ -9,7 +9,8 @@ export const apexOf = ({ vertices, apex }) => apex ?? [0, 1].map((axis) => verti
 const cross = (a, b, c) => (b[0] - a[0]) * (c[1] - a[1]) - (b[1] - a[1]) * (c[0] - a[0]);
 const distance = (a, b) => Math.hypot(a[0] - b[0], a[1] - b[1]);
 
-// Whether straight lines within the polygon lead from the apex to all of the border.
+// Returns whether all points of a polygon's border can be reached from the apex by straight lines
+// inside the polygon.
 export function apexSees(polygon) {
   const apex = apexOf(polygon), turns = polygon.vertices.map((vertex, n, all) => cross(apex, vertex, all[(n + 1) % all.length]));
   return turns.every((turn) => turn > 0) || turns.every((turn) => turn < 0);
@@ -24,7 +25,8 @@ function isInside(vertices, at) {
   return inside;
 }
 
-// The side of a polygon that is within reach, given by its first vertex; -1: none.
+// Returns the index of the first vertex of the polygon's side that is within reach of a place; -1:
+// no side is within reach.
 function sideAt(vertices, at, reach) {
   return vertices.findIndex((a, n) => {
     const b = vertices[(n + 1) % vertices.length], length = distance(a, b) || 1;
@@ -33,8 +35,9 @@ function sideAt(vertices, at, reach) {
   });
 }
 
-// The part of a shape at a place. For a box it is { ends }: for each axis, the end that is grabbed (0, 1;
-// null: neither). For a polygon it is { vertex }, { apex }, { side }, or {} for its inside. Null: no part.
+// Returns the part of a shape at a place. The part of a box is { ends }: for each axis, the end that is
+// grabbed, 0 or 1; null: neither end. The part of a polygon is { vertex }, { apex }, { side }, or {} for
+// the inside. Null: the shape does not lie at this place.
 export function partAt(shape, at, reach) {
   if (!isPolygon(shape)) {
     const pairs = AXES.map((key) => shape[key]);
@@ -51,8 +54,9 @@ export function partAt(shape, at, reach) {
   return isInside(shape.vertices, at) ? {} : null;
 }
 
-// The keys of a shape after its part was moved by `by`. The ends of a box stay at least `least` apart, and
-// the apex of a polygon keeps seeing the border.
+// Returns the settings of a shape after its part was moved by `by`. The ends of a box stay at least
+// `least` apart. A polygon's apex stays at a point from which straight lines inside the polygon reach the
+// whole border.
 export function moved(shape, part, by, least) {
   const shifted = (place) => place.map((number, axis) => number + by[axis]);
   if (isPolygon(shape)) {
@@ -69,13 +73,15 @@ export function moved(shape, part, by, least) {
   }));
 }
 
-// A polygon's vertices with one more vertex after vertex n, at a place or in the middle of the side. Or
-// without vertex n, where the polygon has more than three vertices and the apex still sees the border. Null:
-// neither.
+// Returns a polygon's vertices with one more vertex after vertex n: at the place `at`, or in the middle of
+// the side.
 export function withVertex({ vertices }, n, at) {
   const next = vertices[(n + 1) % vertices.length];
   return [...vertices.slice(0, n + 1), at ?? vertices[n].map((number, axis) => (number + next[axis]) / 2), ...vertices.slice(n + 1)];
 }
+
+// Returns a polygon's vertices without vertex n. Null: the polygon has only three vertices, or the apex
+// would not see the whole border any more.
 export function withoutVertex(polygon, n) {
   const vertices = polygon.vertices.filter((_, index) => index !== n);
   return vertices.length >= 3 && apexSees({ ...polygon, vertices }) ? vertices : null;

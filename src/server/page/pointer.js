@@ -1,6 +1,6 @@
-// The mouse and fingers on the picture, as in VTK and ParaView: the left button turns, with ctrl it rolls, with
-// shift or the middle button it pans; the right button and the wheel zoom. One finger turns, two pan, zoom and
-// roll.
+// The mouse and fingers on the picture, as in VTK and ParaView: a drag with the left button turns the camera;
+// with ctrl, the drag rolls; with shift, or with the middle button, the drag pans. A drag with the right button
+// and the wheel zoom. One finger turns the camera; two fingers pan, zoom and roll.
 
 import { pan, roll, turn, zoom } from "./camera.js";
 
@@ -11,12 +11,13 @@ const PINCH_SPEED = 6;
 export class Pointer {
   #area;
   #store;
-  #points = new Map(); // the pointers that are down, by their numbers: [x, y]
+  #points = new Map(); // the positions [x, y] of the pressed pointers, by their pointer numbers
   #action = null;
 
   #nearest;
 
-  // area: the element that pointers move over; nearest: how near the eye comes to its target.
+  // area: the element that pointers move over; nearest: the least distance of the eye from its
+  // target.
   constructor(area, store, nearest) {
     this.#area = area;
     this.#nearest = nearest;
@@ -35,7 +36,8 @@ export class Pointer {
     return event.ctrlKey || event.metaKey ? "roll" : "turn";
   }
 
-  // A place from the middle, to the right and up, in fractions of the height.
+  // Returns a place relative to the middle of the area, [right, up], in fractions of the area's
+  // height.
   #fromMiddle(x, y) {
     const box = this.#area.getBoundingClientRect();
     return [(x - box.left - box.width / 2) / box.height, (box.top + box.height / 2 - y) / box.height];
@@ -89,7 +91,7 @@ export class Pointer {
     event.preventDefault();
     const pixels = event.deltaMode === 1 ? 30 * event.deltaY : event.deltaY;
     const cursor = this.#fromMiddle(event.clientX, event.clientY);
-    // A trackpad's pinch comes as a wheel with ctrl, in small steps.
+    // Browsers report a pinch on a trackpad as small wheel steps with ctrl.
     const speed = event.ctrlKey ? PINCH_SPEED : 1;
     this.#store.setCamera(zoom(this.#store.scene.camera, WHEEL_FACTOR ** (-pixels * speed), cursor, this.#nearest));
   }

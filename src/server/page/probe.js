@@ -1,15 +1,16 @@
-// The probe: reads the volumes under the cursor. At rest it asks for three small pictures, as floats: one
-// shows data values as colours, two show white matter without highlights, with and without shadows. The sky
-// and the meshes are left out, but meshes still cast shadows. A pixel of the first picture, divided by its
-// opacity, is the mean of the values that are seen there, weighted by how much each sample is seen. The ratio
-// of the other two pictures is the part of the lights that arrives there.
+// The probe: reads the volumes under the cursor. When the picture is at rest, the probe requests three small
+// pictures of floats. The first picture shows data values as colours. The other two show white matter without
+// highlights, one with shadows and one without. The sky and the meshes are invisible in the small pictures,
+// but meshes still cast shadows. A pixel of the first picture, divided by its opacity, is the mean of the
+// data values that the pixel shows; the weight of a sample is its share of the pixel. The ratio of the other
+// two pictures is the fraction of the lights' light that arrives at the pixel's matter.
 
 import { make, shortNumber } from "./controls.js";
 import { isPlane } from "./transfer_function.js";
 
 const PIXELS = 90000; // number of pixels of a small picture
 
-// The floats of a .npy file of the program: { width, height, rgba }, top row first.
+// Reads a .npy file of the program. Returns { width, height, rgba }; rgba: floats, top row first.
 export function readNpy(bytes) {
   const view = new DataView(bytes), begin = 10 + view.getUint16(8, true);
   const [, height, width] = new TextDecoder().decode(new Uint8Array(bytes, 10, begin - 10)).match(/\((\d+), (\d+), 4\)/).map(Number);
@@ -25,8 +26,9 @@ function small(scene) {
   };
 }
 
-// The scene without sky and with unseen meshes, whose volumes have the colours colorAt(value, number of the volume).
-// tfColor(number): the rows of colours of a transfer function.
+// Returns the scene without sky, with invisible meshes, and with other colours of the volumes. colorAt(value, index
+// of the volume): returns the colour of a label or isosurface. tfColor(index of the volume): returns the colour rows
+// of a transfer function.
 function recolored({ sky: _, ...scene }, { colorAt, tfColor, change }) {
   const paint = (things, v) => things.map((thing) => ({ ...thing, color: colorAt(thing.value, v) }));
   const volumes = scene.volumes.map((volume, v) => ({
@@ -37,7 +39,7 @@ function recolored({ sky: _, ...scene }, { colorAt, tfColor, change }) {
   return { ...scene, volumes, ...(scene.meshes ? { meshes: scene.meshes.map((mesh) => ({ ...mesh, visible: false })) } : {}) };
 }
 
-// Colours from 0 to 1 over each volume's range, in even light.
+// Returns the scene with greys that rise from 0 to 1 over each volume's range, in even light.
 export function valueScene(scene, start) {
   const ends = (v) => start.volumes[v].range;
   return recolored({ ...small(scene), lights: [], ambient: [1, 1, 1] }, {
@@ -60,7 +62,7 @@ export class Probe {
   #box;
   #on = false;
   #maps = null; // { value, lit, unlit } of the scene at rest
-  #asked = null; // the scene for which they are asked
+  #asked = null; // the scene for which the maps were requested
   #cursor = null; // [x, y] in fractions of the picture
 
   // area: the picture's element, over which the readout is shown.
@@ -80,7 +82,7 @@ export class Probe {
     if (on) this.rest();
   }
 
-  // The picture has come to rest: asks for the small pictures.
+  // Called when the picture has come to rest: requests the small pictures.
   async rest() {
     const { store, start, channel } = this.#viewer, scene = store.scene;
     if (!this.#on || this.#maps !== null || this.#asked === scene) return;
@@ -101,7 +103,8 @@ export class Probe {
     }
   }
 
-  // { value, opacity, light } at a place in fractions of the picture; null: not known yet.
+  // Returns { value, opacity, light } at a place, given in fractions of the picture; null: the
+  // small pictures have not arrived.
   at(x, y) {
     if (this.#maps === null) return null;
     const { value, lit, unlit } = this.#maps, { width, height } = value;

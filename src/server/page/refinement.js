@@ -1,22 +1,24 @@
-// Volumes of several resolutions are read from coarse to fine. While finer ones are still to be read, the page asks how far that is; each
-// time one is there, the volumes of start.json are brought up to date, and the picture is made anew.
+// Volumes of several resolutions are read from coarse to fine. While finer resolutions are still to be read, the page asks the server for
+// the progress. Each time a finer resolution has been read, the page updates the volumes of start.json and makes the picture anew.
 
 import { Lost } from "./connection.js";
 
 const ASK_EVERY = 250; // milliseconds
 
-// What a server lacks of the store that a volume (of start.json) was read from: a line, "" where it lacks nothing.
+// Returns a line that says how many chunks of a volume's store are absent from the store's server; "": none.
+// volume: the volume's entry in start.json.
 export function absenceOf(volume) {
   const [absent = 0, chunks = 0] = volume?.absent_chunks ?? [];
   return absent > 0 ? `the server has no file for ${absent} of ${chunks} chunks: their voxels have the fill value` : "";
 }
 
-// The same for all volumes, with their names where there are several.
+// Returns the absenceOf() lines of all volumes, each with the volume's name.
 export const absenceIn = ({ volumes, scene }) => volumes.map((volume, v) => [absenceOf(volume), (scene.volumes?.[v]?.file ?? "").split("/").pop()])
   .filter(([line]) => line !== "").map(([line, name]) => `${name}: ${line}`).join("; ");
 
-// The line about the resolution of the picture. of(text): what is to be told of the voxels that are open; seen(frame): a picture of frames.js,
-// whose finer voxels go before, as long as it is the picture that is shown. warn(text) and failed(error) are told once for each new line.
+// The line about the resolution of the picture. of(text): sets the line about the open voxels. seen(frame): takes a frame of frames.js; while
+// its picture is shown, the line about the picture's finer voxels replaces the line about the open voxels. warn(text) and failed(error) are
+// called once for each new line.
 export function resolutionLine(element, { warn, failed }) {
   let open = "", finer = "", told = "";
   const show = () => { element.textContent = element.title = finer || open; };
@@ -33,13 +35,13 @@ export function resolutionLine(element, { warn, failed }) {
   return { seen, of: (text) => { open = text; show(); } };
 }
 
-// whole: start.json, whose volumes the viewer's panels have; its entries are changed in place. tell(text): shows what the picture is
-// of, "" for the voxels that it shall be of. warn(text): called once for each line about voxels that a server lacks. renew(): called when
-// the volumes have changed. Returns end().
+// whole: start.json, whose volumes the viewer's panels have; its entries are changed in place. tell(text): shows a line about the
+// resolution of the picture; "": the picture has the resolution that it shall have. warn(text): called once for each line about voxels
+// that a server lacks. renew(): called when the volumes have changed. Returns end().
 export function followRefinement(whole, channel, { tell, warn, renew, failed }) {
   let timer = 0, ended = false, warned = "";
 
-  // Tells what the server lacks, where all is read.
+  // Tells which chunks the server lacks, after everything was read.
   function tellAbsence() {
     const line = absenceIn(whole);
     tell(line);

@@ -1,9 +1,10 @@
-// Planes through a volume: which voxels they show, how they lie on the screen, and where their samples are in the scene.
+// Planes through a volume: the voxels that a plane shows, the plane's orientation on the screen, and the positions of its
+// samples in the scene.
 //
 // A plane is { name, width, height, depth, origin, across, down, through, between, pitch, edges }: a grid of samples in the
 // indices of the volume's voxels (http_channel.js, slice()), the lengths between samples along a row and between rows in
-// the scene, and the letters at its left, right, upper and lower edge. The planes of a grid go along its own axes, so that
-// each sample is a voxel; the oblique one is as the picture's.
+// the scene, and the letters at its left, right, upper and lower edge. The axial, coronal and sagittal planes follow the
+// grid's axes, so that each sample is a voxel. The oblique plane is parallel to the picture.
 
 import { placed, unplaced } from "./boxes.js";
 import { axes } from "./camera.js";
@@ -13,15 +14,15 @@ const LARGEST = 1024; // the most samples along a side of an oblique plane
 const MOST_LAYERS = 1023;
 const OPPOSITE = { L: "R", R: "L", A: "P", P: "A", S: "I", I: "S" };
 
-// What each plane is called, and the directions that go across and down on the screen: letters of a body, as radiologists
-// look at it, or signed axes.
+// The directions that run across and down on the screen, by the plane's name: letters of a body, in the orientation that
+// radiologists use, or signed axes.
 const ANATOMICAL = { axial: ["L", "P"], coronal: ["L", "I"], sagittal: ["P", "I"] };
 const OF_AXES = { axial: ["+x", "-y"], coronal: ["+x", "-z"], sagittal: ["+y", "-z"] };
 export const PLANES = ["axial", "coronal", "sagittal"];
 
 export const isAnatomical = (grid) => ["RAS", "LPS", "LAS"].includes(grid?.space);
 
-// The name of a plane of this volume for people.
+// Returns the title of a plane of a volume.
 export function planeTitle(name, grid) {
   if (name === "oblique") return "Oblique";
   return isAnatomical(grid) ? name[0].toUpperCase() + name.slice(1) : { axial: "xy", coronal: "xz", sagittal: "yz" }[name];
@@ -34,7 +35,7 @@ export function planeTitle(name, grid) {
 export const pointAt = (grid, transform, index) =>
   placed(grid.axes.reduce((point, step, a) => add(point, scale(step, index[a])), grid.origin), transform);
 
-// The indices of a point of the scene, which need not be whole.
+// Returns the grid indices of a point of the scene, which need not be integers.
 export function indexAt(grid, transform, point) {
   const from = subtract(unplaced(point, transform), grid.origin), [a, b, c] = grid.axes, volume = dot(a, cross(b, c));
   return [dot(from, cross(b, c)) / volume, dot(from, cross(c, a)) / volume, dot(from, cross(a, b)) / volume];
@@ -43,7 +44,7 @@ export function indexAt(grid, transform, point) {
 export const voxelAt = (grid, transform, point) => indexAt(grid, transform, point).map((x) => Math.floor(x + 0.5));
 export const holds = (grid, index) => index.every((x, a) => x >= -0.5 && x < grid.dimensions[a] - 0.5);
 
-// A point of the volume's file in words of the body, "R 12.1 A 3.0 S 40.5".
+// Returns a point of the volume's file as a text in anatomical directions, "R 12.1 A 3.0 S 40.5".
 export function anatomical(grid, point) {
   return point.map((x, k) => {
     const letter = grid.space[k];
@@ -53,7 +54,7 @@ export function anatomical(grid, point) {
 
 // ---- planes along the grid's axes ----
 
-// For each axis of the world, the axis of the grid that runs most nearly along it.
+// Returns, for each axis of the world, the grid axis whose direction is nearest to it.
 function axisOfWorld(grid) {
   const left = new Set([0, 1, 2]), found = [];
   const pairs = [0, 1, 2].flatMap((a) => [0, 1, 2].map((w) => ({ a, w, share: Math.abs(grid.axes[a][w]) / length(grid.axes[a]) })));
@@ -62,7 +63,7 @@ function axisOfWorld(grid) {
   return found;
 }
 
-// A direction as { axis, sign } of the grid's axes.
+// Returns a direction's grid axis and sign, { axis, sign }.
 function directionOf(grid, name) {
   const letters = isAnatomical(grid) ? grid.space : "xyz", sought = name.at(-1);
   const w = [...letters].findIndex((letter) => letter === sought || OPPOSITE[letter] === sought), axis = axisOfWorld(grid)[w];
@@ -73,7 +74,8 @@ function directionOf(grid, name) {
 const step = (grid, transform, along) => length(subtract(placed(along, transform), placed([0, 0, 0], transform)));
 const unit = (axis, sign = 1) => [0, 1, 2].map((a) => (a === axis ? sign : 0));
 
-// The number of layers that fill a thickness. It is odd, so that the middle layer is the plane itself.
+// Returns the number of layers that fill a thickness. The number is odd, so that the middle layer is
+// the plane itself.
 function layersOf(thickness, pitch) {
   const layers = Math.min(Math.max(Math.round(thickness / pitch), 1), MOST_LAYERS);
   return layers % 2 === 1 ? layers : layers + 1;
@@ -95,7 +97,7 @@ function gridPlane(name, { grid, transform, cursor, thickness }) {
   };
 }
 
-// ---- the plane as the picture's, through the crosshair ----
+// ---- the plane through the crosshair that is parallel to the picture ----
 
 function obliquePlane({ grid, transform, cursor, thickness, camera }) {
   const { right, up, towards } = axes(camera), finest = Math.min(...grid.axes.map((along) => step(grid, transform, along)));
@@ -119,20 +121,21 @@ function obliquePlane({ grid, transform, cursor, thickness, camera }) {
 // length of the scene. camera: the oblique plane is parallel to its picture.
 export const planeOf = (name, about) => (name === "oblique" ? obliquePlane(about) : gridPlane(name, about));
 
-// The same samples in the indices of another grid.
+// Returns a plane with the same samples, in the indices of another grid.
 export function planeIn(plane, from, to) {
   const moved = (index) => indexAt(to.grid, to.transform, pointAt(from.grid, from.transform, index));
   const origin = moved(plane.origin), along = (direction) => subtract(moved(add(plane.origin, direction)), origin);
   return { ...plane, origin, across: along(plane.across), down: along(plane.down), through: along(plane.through), between: "nearest" };
 }
 
-// Column, row and layer, whole or not, of a point of the scene; the middle layer is 0.
+// Returns [column, row, layer] of a point of the scene, which need not be integers. The middle
+// layer is 0.
 export function sampleAt(plane, { grid, transform }, point) {
   const from = subtract(indexAt(grid, transform, point), plane.origin), { across: a, down: b, through: c } = plane, volume = dot(a, cross(b, c));
   return [dot(from, cross(b, c)) / volume, dot(from, cross(c, a)) / volume, dot(from, cross(a, b)) / volume - (plane.depth - 1) / 2];
 }
 
-// The point of the scene at a column and a row, in the middle layer or `layers` layers before or behind it.
+// Returns the point of the scene at a column and a row, `layers` layers away from the middle layer.
 export function samplePoint(plane, { grid, transform }, column, row, layers = 0) {
   const middle = (plane.depth - 1) / 2 + layers;
   const index = [0, 1, 2].map((k) => plane.origin[k] + column * plane.across[k] + row * plane.down[k] + middle * plane.through[k]);

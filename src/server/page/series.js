@@ -1,4 +1,4 @@
-// Several DICOM series in one folder, of which a volume is one.
+// The choice among several DICOM series of one folder, when a volume was read from such a folder.
 
 import { select } from "./controls.js";
 
@@ -6,14 +6,15 @@ const nameOf = ({ modality, description, dimensions }) => [modality, description
 
 const several = ({ series = [] }) => (series.length > 1 ? series : []);
 
-// Which series a volume (of start.json) is, where its folder has others: a line, else "".
+// Returns a line that names the series of a volume, if the volume's folder has other series; else
+// "". about: the volume's entry in start.json.
 export function seriesOf(about) {
   const all = several(about), shown = all.find(({ chosen }) => chosen);
   return shown ? `${nameOf(shown)} is shown, one of ${all.length} series` : "";
 }
 
-// A list that opens another series in place of the one that is open: [its row], or [] where there is none to choose. file: the folder's
-// whole path.
+// Makes a list that opens another series in place of the open series. Returns [the list's row], or [] if there is no other series to
+// choose. file: the folder's whole path.
 export function seriesRow(viewer, about, file) {
   const { start, channel } = viewer, all = several(about), isAlone = start.volumes.length === 1 && !start.scene.meshes?.length;
   if (all.length === 0 || !isAlone || !channel.open || !file?.startsWith("/")) return [];

@@ -7,16 +7,18 @@ import { readMarks } from "./marks.js";
 const KEY = "halflight-session", VERSION = 1;
 const KEEP_AFTER = 300; // milliseconds without a change
 
-// source: the path, or the list of paths, that the viewer's own list has opened; null for the scene that the
-// viewer began with. own: those of them that the scene is of, where the last ones are undone. title and whole: what the scene's files, and
-// all files that are open, are called.
+// source: the path, or the list of paths, that the viewer's own list has opened; null for the scene that the viewer began with. own: the
+// paths of the files that the scene contains; this list is shorter than `source` after the addition of files was undone. title: the name
+// of the scene's files; whole: the name of all open files.
 export const sessionOf = (store, { title: whole }, source) =>
   ({ halflight_session: VERSION, title: store.title, whole, source, own: store.source, scene: store.scene, marks: store.marks, page: store.page });
 
-// A path, a path with one of its series, or a list of these that are opened together.
+// Returns whether a value is a source: a path, a path with one of its series, or a list of these
+// that are opened together.
 const isSource = (source) => [source].flat().every((one) => typeof one === "string" || (typeof one?.file === "string" && typeof one.series === "string"));
 
-// A session; the parts on which the page relies are checked. Null: the object is no session.
+// Returns the session in an object. The parts on which the page relies are checked. Null: the
+// object is no session.
 export function readSession(object) {
   if (object === null || typeof object !== "object" || object.halflight_session !== VERSION || typeof object.scene?.camera !== "object") return null;
   const { source = null, own = null, title = "", whole = title, scene, page = {} } = object, marks = readMarks(object.marks);
@@ -24,7 +26,7 @@ export function readSession(object) {
   return { source: isSource(source) ? source : null, own: isSource(own) ? own : null, title: String(title), whole: String(whole), scene, marks, page: known };
 }
 
-// The names of the files that a scene is made of, as texts: of the volumes, and of the meshes.
+// Returns the names of a scene's files, as texts: [names of the volumes, names of the meshes].
 const namesOf = (scene) => [
   (scene.volumes ?? []).map(({ file, shapes, array, component, series, time, channel, level, mask }) => [file, shapes, array, component, series, time, channel, level, mask?.file]),
   (scene.meshes ?? []).map(({ file }) => file ?? "")].map((names) => names.map((name) => JSON.stringify(name)));
@@ -36,19 +38,21 @@ export const isOfSameFiles = (scene, other) => {
   return names.every((kind, k) => kind.length === others[k].length && begins(kind, others[k]));
 };
 
-// A scene whose volumes have the resolutions of what is open, where the resolution follows the view: a scene file has those of its picture.
+// Returns the scene with the resolutions of the open volumes, for volumes whose resolution follows the view. A scene file has the
+// resolutions of its picture instead.
 export const atOpenLevels = (scene, { scene: { volumes: open = [] }, volumes: about }) => ({
   ...scene, volumes: (scene.volumes ?? []).map((volume, v) => (about[v]?.level_follows_view && open[v]?.file === volume.file ? { ...volume, level: open[v].level } : volume)),
 });
 
-// Whether a scene is of what is open: of all of it, or of what was open before the last files were added.
-// Volumes whose resolution follows the view have the one that is open.
+// Returns whether a scene consists of the open files, or of the first of the open files. For volumes
+// whose resolution follows the view, the resolutions need not agree.
 export const isOfOpen = (scene, start) => {
   const [names, all] = [namesOf(atOpenLevels(scene, start)), namesOf(start.scene)];
   return names.flat().length > 0 && names.every((kind, k) => begins(kind, all[k]));
 };
 
-// What is open as it was when the scene had no further files.
+// Returns start.json with only the volumes and meshes that the scene has, as before further files
+// were added.
 export function startOf(scene, start) {
   const volumes = scene.volumes?.length ?? 0, meshes = scene.meshes?.length ?? 0, first = start.scene;
   if ((first.volumes?.length ?? 0) === volumes && (first.meshes?.length ?? 0) === meshes) return start;
@@ -56,7 +60,8 @@ export function startOf(scene, start) {
   return { ...start, volumes: start.volumes.slice(0, volumes), scene: { ...rest, volumes: first.volumes.slice(0, volumes), ...(meshes > 0 ? { meshes: all.slice(0, meshes) } : {}) } };
 }
 
-// Keeps the session in the tab. Where there is no room for all of it, it is kept without its history.
+// Keeps the session in the tab's storage. If the storage has no room for the whole session, the
+// session is kept without its history.
 function keep(store, start, source) {
   const session = sessionOf(store, start, source);
   for (const kept of [{ ...session, history: store.history }, session])
@@ -68,7 +73,7 @@ function keep(store, start, source) {
     }
 }
 
-// The window is called as the files of the scene are.
+// Sets the window's title to the name of the scene's files, also after changes.
 export function followTitle(store) {
   const follow = () => { document.title = `${store.title} · Halflight`; };
   store.listen((_, name) => { if (name === "history") follow(); });
@@ -79,13 +84,13 @@ export function keepSession(store, start, source, signal) {
   let timer = 0;
   const now = () => { clearTimeout(timer); keep(store, start, source); };
   const soon = () => { clearTimeout(timer); timer = setTimeout(now, KEEP_AFTER); };
-  soon(); // what was opened or added, too
+  soon(); // the session is kept even before the first change, because a file may have just been opened or added
   store.listen(soon);
   addEventListener("pagehide", now, { signal });
   signal.addEventListener("abort", () => clearTimeout(timer));
 }
 
-// The session that the tab has kept, with its history; null: there is none.
+// Returns the session that the tab has kept, with its history; null: the tab has kept no session.
 export function keptSession() {
   try {
     const object = JSON.parse(sessionStorage.getItem(KEY)), session = readSession(object);
@@ -95,9 +100,9 @@ export function keptSession() {
   }
 }
 
-// Shows what a file has, a session or a scene, where it is of the volumes that a viewer (mount() of viewer.js) has open. Of a
-// session of other volumes, reopen(session) may open these and show it: it resolves to whether it could. Resolves to "opened", or to
-// "other" for a scene of other files.
+// Shows the session or the scene in a file, if its volumes are open in the viewer (mount() of viewer.js). If the volumes of a
+// session are not open, reopen(session) may open them and show the session; reopen() resolves to whether it has done so. Resolves to
+// "opened", or to "other" for a scene of other files.
 export async function restoreFrom(file, { store, start }, channel, reopen = () => false) {
   let object;
   try {

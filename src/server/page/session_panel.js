@@ -1,4 +1,4 @@
-// The panel of things to keep: bookmarks of views, and the session as a file.
+// The panel with bookmarks of views, and with buttons that save and open the session as a file.
 
 import { reshaped } from "./camera.js";
 import { button, isActive, make, row, section } from "./controls.js";
@@ -8,7 +8,7 @@ import { sessionOf } from "./session.js";
 
 const THUMBNAIL = 72; // pixels of height
 
-// The picture as it is shown, small.
+// Returns a small copy of the shown picture.
 function thumbnail(picture) {
   const canvas = document.createElement("canvas");
   canvas.height = THUMBNAIL;

@@ -1,4 +1,4 @@
-// Keys, and the sheet that lists them together with the uses of the mouse.
+// Keyboard shortcuts, and the help sheet that lists the shortcuts and the uses of the mouse.
 
 import { lookAlong, roll, turn, zoom } from "./camera.js";
 import { make } from "./controls.js";
@@ -12,11 +12,11 @@ const MOUSE = [
 
 const TEXTS = "textarea, input:is([type=text], [type=number], [type=search])";
 const TYPING = `${TEXTS}, select, dialog`;
-// Controls that take some keys for themselves and leave other keys to the viewer.
+// Controls that handle some keys (OF_CONTROLS) themselves and leave all other keys to the viewer.
 const MOVED = "input, [role=slider], canvas.function, [role=radiogroup]";
 const OF_CONTROLS = /^(Arrow.*|Page.*|Home|End|Insert|Delete|Backspace|Enter|Tab| |[+-])$/;
 
-// keyboard: { target, signal }, the element or document whose keys are used, until the signal ends this.
+// keyboard: { target, signal }, the element or document whose keys are used, until `signal` is aborted.
 // area: the picture's element. actions: functions, by name, for keys that do not move the camera. nearest:
 // the least distance of the eye from its target.
 export function installShortcuts(store, keyboard, area, actions, nearest) {

@@ -9,7 +9,8 @@ import { length, withoutErrors } from "./vector.js";
 
 const BLENDS = [["maximum", "Maximum"], ["mean", "Mean"], ["minimum", "Minimum"]];
 
-// A value with just enough digits to read back as the same float, or as the same double where it is no float.
+// Returns a value as a text with just enough digits for the text to be read back as the same float, or as the
+// same double if the value is no float.
 function exact(value) {
   if (Number.isNaN(value)) return "no value";
   const same = (other) => other === value || (Math.fround(value) === value && Math.fround(other) === value);

@@ -1,5 +1,5 @@
-// The values of the planes that slices show. They are asked for one after the other, so that the newest wins;
-// then they become pictures.
+// The values of the planes that slices show. Requests for values are sent one after the other, and only the
+// newest waiting request is sent. The functions below turn the values into pictures.
 
 import { hexOf } from "./color.js";
 import { contourPieces } from "./contours.js";
@@ -7,8 +7,8 @@ import { planeIn } from "./sections.js";
 
 const LABEL_STRENGTH = 0.45; // strength of a label's colour over the greys
 
-// The range of values for the greys where nobody has chosen one: all but the rarest values. The commonest
-// value does not count; it is mostly air around things.
+// Returns the range of values for the greys, used until the user chooses a range: all values except the
+// rarest. The commonest value is left out of the count, because it is mostly the air around things.
 export function automaticWindow({ histogram, range: [low, high] }) {
   const commonest = histogram.indexOf(Math.max(...histogram)), counts = histogram.map((count, bin) => (bin === commonest ? 0 : count));
   const total = counts.reduce((sum, count) => sum + count, 0), width = (high - low) / counts.length;
@@ -20,10 +20,12 @@ export function automaticWindow({ histogram, range: [low, high] }) {
   return [low + reached(0.005) * width, low + (reached(0.995) + 1) * width];
 }
 
-// { histogram, range } of the values that slices show of a volume: the file's, also where the picture shows smoothed ones.
+// Returns { histogram, range } of the values that slices show of a volume: the file's values, even if the picture shows
+// smoothed values.
 export const measured = (about) => about.unsmoothed ?? about;
 
-// The volume of the scene that slices cut: the chosen one, or the first that is no label map.
+// Returns the index of the volume that slices show: the chosen volume, or the first volume that is
+// no label map.
 export function sourceVolume({ store, start, current }) {
   const { volumes } = store.scene, isGrey = (v) => start.volumes[v] && !volumes[v].labels;
   if (start.volumes.length === 0) return -1;
@@ -32,8 +34,8 @@ export function sourceVolume({ store, start, current }) {
   return found >= 0 ? found : current.volume;
 }
 
-// The sources of labels: the source itself, its mask, and label maps beside it: { volume, of, grid,
-// transform, labels }.
+// Returns the sources of labels: the source volume itself, its mask, and other label maps, each as
+// { volume, of, grid, transform, labels }.
 export function labelSources({ store, start }, source) {
   return store.scene.volumes.flatMap((volume, v) => {
     const about = start.volumes[v];
@@ -52,8 +54,8 @@ export class SliceValues {
   #onFail;
   #wanted = null;
   #busy = false;
-  #known = new Map(); // for each text of a request: its answer; for the newest plane only
-  shown = null; // { plane, values, pictured: what the picture shows of them, labels: [{ volume, of, values }] }
+  #known = new Map(); // the answers to the newest plane's requests, by the text of the request
+  shown = null; // { plane, values, pictured, labels: [{ volume, of, values }] }; pictured: the values that the picture shows, which may be smoothed
 
   constructor(channel, onLoad, onFail) {
     this.#channel = channel;
@@ -61,8 +63,8 @@ export class SliceValues {
     this.#onFail = onFail;
   }
 
-  // source: { volume, grid, transform }; labels: labelSources(); hasLines: isolines are drawn, which lie where the picture has its
-  // isosurfaces.
+  // source: { volume, grid, transform }; labels: the result of labelSources(). hasLines: whether isolines are drawn; isolines need
+  // the picture's values, so that they lie on the picture's isosurfaces.
   want(plane, source, labels, blend, hasLines) {
     const requests = [asked(plane, source.volume, "voxels", blend), asked(plane, source.volume, hasLines && source.grid.unsmoothed ? "picture" : "voxels", blend),
       ...labels.map((map) => asked(planeIn(plane, source, map), map.volume, map.of, "maximum"))].map((request) => JSON.stringify(request));
@@ -70,10 +72,11 @@ export class SliceValues {
     if (!this.#busy) this.#load();
   }
 
-  // Whether values are still to come.
+  // Whether requested values have not arrived yet.
   get isBusy() { return this.#busy; }
 
-  // Finer voxels have taken the place of those that are known. An answer that is on its way is of the old ones and is dropped.
+  // Drops all known values, because finer voxels have replaced the old voxels. An answer that is on its way holds old values
+  // and is dropped, too.
   forget() {
     this.#known = new Map();
     this.shown = null;
@@ -87,7 +90,7 @@ export class SliceValues {
       try {
         const known = new Map(), before = this.#known;
         for (const request of new Set(requests)) known.set(request, before.get(request) ?? (await this.#channel.slice(JSON.parse(request))));
-        if (this.#known !== before) continue; // they are forgotten, and whoever forgot them asks again
+        if (this.#known !== before) continue; // forget() was called meanwhile; its caller requests the values again
         this.#known = known;
         const [values, pictured, ...labels] = requests.map((request) => known.get(request));
         this.shown = { plane, values: values.values, pictured: pictured.values, labels: labels.map(({ values: own }, m) => ({ volume: maps[m].volume, of: maps[m].of, values: own })) };
@@ -100,8 +103,8 @@ export class SliceValues {
   }
 }
 
-// Puts greys and labels into a canvas with one pixel for each sample. maps: the labelSources() that are drawn, of
-// which some may have no values yet. isAlone: the values themselves are labels.
+// Puts greys and labels into a canvas with one pixel for each sample. maps: the results of labelSources() that
+// are drawn; some maps may have no values yet. isAlone: whether the values themselves are labels.
 export function paint(canvas, { plane, values, labels }, [low, high], maps, isAlone) {
   const { width, height } = plane, image = new ImageData(width, height), { data } = image, span = high > low ? high - low : 1;
   for (let n = 0; n < width * height; n++) {
@@ -130,6 +133,6 @@ function tint(data, values, labels, strength) {
 
 const rgbOf = (linear) => [1, 3, 5].map((at) => parseInt(hexOf(linear).slice(at, at + 2), 16));
 
-// The isolines of the source's isosurfaces: [{ color, pieces }].
+// Returns the isolines of the source volume's isosurfaces: [{ color, pieces }].
 export const isolines = ({ plane, pictured }, surfaces) =>
   surfaces.map((surface) => ({ color: hexOf(surface.color), pieces: contourPieces(pictured, plane.width, plane.height, surface.value) }));

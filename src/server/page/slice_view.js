@@ -1,7 +1,7 @@
-// One plane through the volume beside the picture: its greys, labels and isolines, the crosshair, and hands on it. A click moves
-// the crosshair. A drag does what the panel of slices chooses for it (DRAGS in slices.js); a right drag (or alt + drag) changes
-// window and level, shift + drag pans, the wheel goes through the planes, ctrl + wheel or two fingers zoom. With the keyboard,
-// arrow keys move the crosshair.
+// The view of one plane through the volume, beside the picture: it draws the plane's greys, labels and isolines and the
+// crosshair, and handles the pointer and the keyboard. A click moves the crosshair. A drag does what the panel of slices chooses
+// for it (DRAGS in slices.js); a drag with the right button (or alt + drag) changes window and level. A drag with shift pans.
+// The wheel moves to other planes. ctrl + wheel or two fingers zoom. With the keyboard, arrow keys move the crosshair.
 
 import { isActive, make } from "./controls.js";
 import { drawSections } from "./cut_sections.js";
@@ -10,12 +10,12 @@ import { isolines, paint } from "./slice_values.js";
 import { subtract } from "./vector.js";
 
 const WHEEL_FACTOR = 1.0015; // factor of zooming for each pixel of the wheel
-const WHEEL_STEP = 40; // pixels of the wheel for each plane
-const DRAG_STEP = 8; // pixels of a drag through the planes for each plane
+const WHEEL_STEP = 40; // pixels of the wheel that move the view by one plane
+const DRAG_STEP = 8; // pixels of a drag that move the view by one plane
 const STILL = 6; // pixels that a finger may move during a tap
 const LEAST_ZOOM = 0.2, MOST_ZOOM = 60;
 const EDGE = 14; // pixels from a line of the crosshair to a letter beside it
-const SMOOTH_UP_TO = 3; // up to this many pixels of the screen, a voxel is not drawn as a square
+const SMOOTH_UP_TO = 3; // voxels that are at most this many pixels large on the screen are interpolated; larger voxels are drawn as squares
 
 export class SliceView {
   #slices;
@@ -28,13 +28,13 @@ export class SliceView {
   #drawn = null; // the values and settings from which the greys are drawn
   #zoom = 1;
   #pan = [0, 0]; // pixels
-  #points = new Map(); // the pointers that are down: [x, y]
-  #action = null; // one of DRAGS, "pinch", or "none": the pointer has done all that it does
-  #tapped = null; // the place where a finger went down that has not moved yet
-  #wheeled = 0; // pixels of the wheel or of a drag that are less than a plane
+  #points = new Map(); // the positions [x, y] of the pressed pointers
+  #action = null; // one of DRAGS, or "pinch", or "none": the rest of the drag has no effect
+  #tapped = null; // the place where a finger was pressed, while the finger has not moved
+  #wheeled = 0; // pixels of the wheel or of a drag that have not moved the view by a plane yet
   marks = make("svg:g");
 
-  // slices: slices.js; name: the plane's name.
+  // slices: an object of class Slices (slices.js). name: the plane's name.
   constructor(slices, name) {
     this.#slices = slices;
     this.#name = name;
@@ -69,28 +69,30 @@ export class SliceView {
 
   get #plane() { return this.#slices.shown(this.#name)?.plane ?? null; }
 
-  // The number of pixels of the screen for a sample, across and down, and the place of the middle of sample
-  // 0, 0.
+  // Returns { x, y, left, top }. x, y: the size of a sample in pixels of the screen. left, top: the place
+  // of the middle of sample 0, 0.
   #fit() {
     const { width, height, pitch } = this.#plane, wide = this.area.clientWidth, tall = this.area.clientHeight;
     const scale = this.#zoom * Math.min(wide / (width * pitch[0]), tall / (height * pitch[1])), x = scale * pitch[0], y = scale * pitch[1];
     return { x, y, left: (wide - (width - 1) * x) / 2 + this.#pan[0], top: (tall - (height - 1) * y) / 2 + this.#pan[1] };
   }
 
-  // The point of the scene under a place of the area.
+  // Returns the point of the scene under a place [x, y] of the area.
   pointAt([x, y]) {
     const fit = this.#fit();
     return samplePoint(this.#plane, this.#slices.source, (x - fit.left) / fit.x, (y - fit.top) / fit.y);
   }
 
-  // [x, y, layers] for a point of the scene; layers: its distance from the plane. Null: nothing is shown yet.
+  // Returns [x, y, layers] for a point of the scene. layers: the point's distance from the plane, in layers.
+  // Null: no plane is shown yet.
   project(point) {
     if (this.#plane === null || this.#slices.source === null) return null;
     const [column, row, layers] = sampleAt(this.#plane, this.#slices.source, point), fit = this.#fit();
     return [fit.left + column * fit.x, fit.top + row * fit.y, layers];
   }
 
-  // The directions across and up on the screen, in the scene, with the lengths of the plane's sides.
+  // Returns the directions across and up on the screen, as vectors of the scene with the lengths of
+  // the plane's sides.
   directions() {
     const plane = this.#plane, at = (column, row) => samplePoint(plane, this.#slices.source, column, row);
     return [subtract(at(plane.width, 0), at(0, 0)), subtract(at(0, 0), at(0, plane.height))];
@@ -144,7 +146,7 @@ export class SliceView {
     }
   }
 
-  // What cuts and clip boxes remove is dimmed.
+  // Dims the parts that cuts and clip boxes remove.
   #drawCuts(context, fit, density) {
     const { width, height } = this.#plane, [x, y, left, top] = [fit.x, fit.y, fit.left, fit.top].map((part) => density * part);
     context.setTransform(1, 0, 0, 1, 0, 0);
@@ -155,7 +157,7 @@ export class SliceView {
     const [cross, letters] = this.#svg.children, [x, y] = this.project(this.#slices.cursor), gap = 7;
     cross.setAttribute("d", `M0 ${y}H${x - gap}M${x + gap} ${y}H${wide}M${x} 0V${y - gap}M${x} ${y + gap}V${tall}`);
     const [left, right, upper, lower] = this.#plane.edges;
-    const beside = (at, line) => (Math.abs(at - line) < EDGE ? line + EDGE : at), across = beside(wide / 2, x), down = beside(tall / 2, y); // of the crosshair's lines
+    const beside = (at, line) => (Math.abs(at - line) < EDGE ? line + EDGE : at), across = beside(wide / 2, x), down = beside(tall / 2, y); // keeps the letters away from the crosshair's lines
     const places = [[left, 10, down], [right, wide - 10, down], [upper, across, 12], [lower, across, tall - 10]];
     letters.replaceChildren(...places.map(([text, lx, ly]) => make("svg:text", { x: lx, y: ly, class: "edge" }, text)));
   }
@@ -180,7 +182,8 @@ export class SliceView {
     return event.button === 1 || event.shiftKey ? "pan" : this.#slices.drag;
   }
 
-  // A pointer is pressed: it makes a point of a mark, or moves the crosshair there where this is what drags do.
+  // Handles the press of a pointer: adds a point to the mark that is being made, or moves the crosshair if
+  // drags move the crosshair.
   #press(at, action) {
     this.#action = action;
     this.#wheeled = 0;
@@ -229,7 +232,7 @@ export class SliceView {
     this.#panBy((now[0] - before[0]) / 2, (now[1] - before[1]) / 2);
   }
 
-  // The sample under the cursor stays there.
+  // Zooms such that the sample under the cursor keeps its place.
   #zoomBy(factor, [x, y]) {
     const zoom = Math.min(Math.max(this.#zoom * factor, LEAST_ZOOM), MOST_ZOOM), part = zoom / this.#zoom;
     const middle = [this.area.clientWidth / 2, this.area.clientHeight / 2];
@@ -242,14 +245,15 @@ export class SliceView {
     event.preventDefault();
     if (this.#plane === null) return;
     const pixels = event.deltaMode === 1 ? 30 * event.deltaY : event.deltaY;
-    if (event.ctrlKey || event.metaKey) { // a trackpad's pinch comes so, too
+    if (event.ctrlKey || event.metaKey) { // browsers report a trackpad's pinch as a wheel with ctrl, too
       this.#zoomBy(WHEEL_FACTOR ** (-3 * pixels), this.#place(event));
       return;
     }
     this.#scrollBy(pixels, WHEEL_STEP);
   }
 
-  // pixels: of the wheel or of a drag; step: their number for each plane.
+  // Moves the view to other planes. pixels: the movement of the wheel or of a drag. step: the
+  // pixels for one plane.
   #scrollBy(pixels, step) {
     this.#wheeled += pixels;
     const planes = Math.trunc(this.#wheeled / step);
@@ -261,7 +265,8 @@ export class SliceView {
     this.#step(0, 0, planes);
   }
 
-  // Moves the crosshair by whole samples, rows and planes. It may be planes away from the shown plane already, which comes later.
+  // Moves the crosshair by whole columns, rows and planes. The crosshair may be some planes ahead of the shown plane, whose
+  // values arrive later.
   #step(columns, rows, planes) {
     const [column, row, layer] = sampleAt(this.#plane, this.#slices.source, this.#slices.cursor);
     this.#slices.moveTo(samplePoint(this.#plane, this.#slices.source, column + columns, row + rows, Math.round(layer) + planes));

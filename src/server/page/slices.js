@@ -1,6 +1,6 @@
-// The planes beside the picture: their layout, the crosshair that links them, their window and level, and
-// what they show. A person's choices are in store.page: layout, plane (beside the picture), cursor (a point
-// of the scene), drag (of DRAGS), windows (by volume: [low, high]), thickness (a length of the scene), blend, showLabels,
+// The planes beside the picture: their layout, the crosshair that links the planes, their window and level, and their
+// content. A person's choices are members of store.page: layout, plane (beside the picture), cursor (a point of the
+// scene), drag (of DRAGS), windows (by volume: [low, high]), thickness (a length of the scene), blend, showLabels,
 // showIsolines, oblique (a camera that the oblique plane keeps; null: it follows the picture's).
 
 import { middle, placed, worldBox } from "./boxes.js";
@@ -23,13 +23,13 @@ export class Slices {
   #viewer;
   #place;
   #views;
-  #values = new Map(); // for each plane: its SliceValues
+  #values = new Map(); // the SliceValues of each plane, by the plane's name
   #marks;
   // The crosshair in the picture.
   #cross = make("svg:path", { class: "crosshair in-picture", "aria-hidden": "true" });
-  #reading = null; // the place whose readouts are asked for
+  #reading = null; // the text of the crosshair's position and sources for which readouts were requested
   #readout = null;
-  #reads = 0; // number of readouts that are still to come
+  #reads = 0; // number of requested readouts that have not arrived
   #onReadout = () => {};
   #pickNumber = 0;
 
@@ -49,12 +49,13 @@ export class Slices {
   get available() { return this.#viewer.channel.slice !== undefined && this.#viewer.start.volumes.length > 0; }
   get layout() { return this.available ? (this.#viewer.store.page.layout ?? "picture") : "picture"; }
   get plane() { return this.#viewer.store.page.plane ?? "axial"; }
-  // The points of a mark are set whatever drags do.
+  // The action of a drag. While a mark is being made, clicks set the mark's points, whatever action
+  // the user has chosen for drags.
   get drag() { return this.#viewer.marking?.isMaking ? "cursor" : (this.#viewer.store.page.drag ?? "cursor"); }
   get thickness() { return this.#viewer.store.page.thickness ?? 0; }
   get blend() { return this.#viewer.store.page.blend ?? "maximum"; }
 
-  // { volume, grid, transform } of the volume that slices are cut out of; null: there is none.
+  // { volume, grid, transform } of the volume that the slices show; null: there is no such volume.
   get source() {
     const { store, start } = this.#viewer, volume = sourceVolume(this.#viewer);
     return volume < 0 || !start.volumes[volume] ? null : { volume, grid: start.volumes[volume], transform: store.scene.volumes[volume].transform };
@@ -75,7 +76,8 @@ export class Slices {
     store.setPage({ windows: ends === null ? rest : { ...rest, [this.source.volume]: ends } });
   }
 
-  // right and down: fractions of a plane's sides. To the right the window widens; upwards the level rises.
+  // Changes window and level by a drag. right, down: the movement as fractions of the plane's sides. A
+  // movement to the right widens the window; a movement upwards raises the level.
   changeWindow(right, down) {
     const [low, high] = this.window, [least, greatest] = measured(this.source.grid).range, whole = Math.max(greatest - least, 1e-30);
     const width = Math.max((high - low) * Math.exp(2 * right), whole * 1e-5), level = (low + high) / 2 - down * Math.max(high - low, whole * 1e-3);
@@ -86,7 +88,7 @@ export class Slices {
     this.#viewer.store.setPage({ cursor: point });
   }
 
-  // Whether a click was taken as a point of the mark that is being made.
+  // Returns whether the mark that is being made has taken the point.
   addPoint(point) { return this.#viewer.marking?.addPoint(point) ?? false; }
   enter() { return this.#viewer.marking?.enter() ?? false; }
   finishMark() { this.#viewer.marking?.finish(); }
@@ -96,7 +98,8 @@ export class Slices {
   #followClicks(picture) {
     let from = null;
     picture.addEventListener("pointerdown", (event) => { from = event.button === 0 && event.isPrimary && !event.shiftKey && !event.ctrlKey ? event : null; });
-    // The event tells the number of clicks: the second of two adds no point.
+    // event.detail is the number of successive clicks: the second click of a double click adds no
+    // point.
     picture.addEventListener("click", (event) => {
       if (event.detail <= 1 && from !== null && Math.hypot(event.clientX - from.clientX, event.clientY - from.clientY) <= STILL) this.#clicked(event, picture);
       from = null;
@@ -104,13 +107,14 @@ export class Slices {
     picture.addEventListener("dblclick", () => this.finishMark());
   }
 
-  // The crosshair, or the next point of a mark, goes to the place that is seen there.
+  // Handles a click in the picture: moves the crosshair, or sets the next point of a mark, to the
+  // point of the scene that the clicked pixel shows.
   async #clicked(event, picture) {
     const { channel, store, report, marking } = this.#viewer, box = picture.getBoundingClientRect(), number = ++this.#pickNumber;
     if (!channel.depth || (this.layout === "picture" && !marking?.isMaking)) return;
     try {
       const point = await pick(channel, store.scene, [event.clientX - box.left, event.clientY - box.top], box.width, box.height);
-      if (number !== this.#pickNumber) return; // a later click has come
+      if (number !== this.#pickNumber) return; // a later click replaces this click
       if (point === null) report("Nothing is seen there.");
       else if (!this.addPoint(point)) this.moveTo(point);
     } catch (error) {
@@ -120,14 +124,14 @@ export class Slices {
 
   // ---- what is shown ----
 
-  // Volumes were replaced by finer resolutions of themselves.
+  // Called when volumes were replaced by their finer resolutions.
   refine() {
     for (const values of this.#values.values()) values.forget();
     this.#reading = null;
     this.update();
   }
 
-  // Brings layout and planes to the state of the store.
+  // Makes the layout and the planes follow the state of the store.
   update() {
     const { layout } = this, shown = layout === "four" ? 3 : layout === "beside" ? 1 : 0;
     this.#place.dataset.layout = layout;
@@ -151,14 +155,14 @@ export class Slices {
     this.#cross.setAttribute("d", at === null ? "" : `M${at[0] - ARM} ${at[1]}h${ARM - 4}m8 0h${ARM - 4}M${at[0]} ${at[1] - ARM}v${ARM - 4}m0 8v${ARM - 4}`);
   }
 
-  // Whether values of planes or of the crosshair are still to come.
+  // Whether requested values of planes or of the crosshair have not arrived yet.
   get isBusy() { return this.#reads > 0 || [...this.#values.values()].some((values) => values.isBusy); }
 
   view(name) { return this.#views.find((view) => view.name === name); }
   shown(name) { return this.#values.get(name)?.shown ?? null; }
   drawMarks(view) { this.#marks.drawPlane(view); }
 
-  // The sections of the source's cuts with a plane.
+  // Returns the sections of the source volume's cuts with a plane.
   sections(plane) {
     const { source } = this;
     return sectionsOf(cutsOf(this.#viewer.store.scene, source.volume), plane, source);
@@ -172,13 +176,14 @@ export class Slices {
     this.#values.get(name).want(plane, source, labelSources(this.#viewer, source.volume), blend, this.#surfaces.length > 0);
   }
 
-  // The isosurfaces of the source that are drawn as isolines.
+  // The isosurfaces of the source volume that are drawn as isolines.
   get #surfaces() {
     const { store } = this.#viewer;
     return store.page.showIsolines ?? true ? (store.scene.volumes[this.source.volume].iso ?? []) : [];
   }
 
-  // The look of planes besides their values; `key` differs where the look does.
+  // Returns the settings that determine the look of planes besides their values. `key` is a text
+  // that differs if and only if the look differs.
   look() {
     const { store } = this.#viewer, { source, window } = this, surfaces = this.#surfaces, { showLabels = true } = store.page;
     const sources = labelSources(this.#viewer, source.volume), maps = showLabels ? sources : [];
@@ -188,8 +193,8 @@ export class Slices {
 
   // ---- the crosshair's own value ----
 
-  // listener({ voxel, value, labels }) gets the voxel under the crosshair; null: the crosshair lies beside
-  // the volume.
+  // The listener is called when the readout changes: the voxel under the crosshair, its value and its
+  // labels.
   set onReadout(listener) { this.#onReadout = listener; }
   get readout() { return this.#readout; }
 

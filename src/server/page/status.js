@@ -1,42 +1,47 @@
-// The line below the picture. It says whether the picture shows the present scene, the progress of the next
-// picture, and which other pictures are waited for.
+// The line below the picture. The line says whether the picture shows the present scene. It shows the
+// progress of the next picture, and names the other pictures that the server is making.
 
 import { make } from "./controls.js";
 
 // Milliseconds until the progress of a picture is first asked for, and between such questions.
 const ASK_AFTER = 600, ASK_EVERY = 400;
-// What is waited for before the picture is begun, for each stage of progress() of the channel.
+// The texts about the work that comes before a picture, by the stage that the channel's progress()
+// tells.
 const AWAITED = { voxels: "finer voxels are being read", labels: "smoothing labels", sky: "light of the sky" };
-// The names of the stages of frames.js. A coarse picture is at rest, while finer voxels are still to come.
+// The names of the stages of frames.js. "coarse": the final picture of the present voxels, while finer
+// voxels are still to be read.
 const STAGES = { moving: "moving", settling: "refining", settled: "refining", refining: "refining", final: "final", coarse: "refining" };
-// The parts of the way to the final picture that are left behind when the quick pictures, the first picture at rest and the final one are there.
+// The fraction of the progress that is reached when the quick picture, the first picture at rest or the final picture is finished.
 const ENDS = { moving: 0.2, settling: 0.4, refining: 1 };
-const AHEAD = 0.5; // the part of a picture's own way that each thing takes which is made before it
+const AHEAD = 0.5; // the fraction of a picture's remaining progress that each stage before the picture takes
 
-// The way to the final picture of one state, which has up to three pictures. The part that is done never falls.
+// The progress to the final picture of one state of the scene. Up to three pictures are made on the way. The
+// progress `done` never falls.
 export class Way {
   done = 0;
-  #from = 0; // the part at which the present stage began
-  #end = 0; // the part at which the present picture will be there
+  #from = 0; // the progress at which the present stage began
+  #end = 0; // the progress at which the present picture will be finished
   #picture = "";
   #made = "";
 
-  // A picture is begun: a stage of frames.js.
+  // Notes that a picture is begun. picture: a stage of frames.js.
   begin(picture) {
     if (!(picture in ENDS) || picture === this.#picture) return;
     [this.#picture, this.#made, this.#from] = [picture, "", this.done];
     this.#end = Math.max(this.done, ENDS[picture]);
   }
 
-  // This part of what is made now for the picture is there: of progress() of the channel.
+  // Takes the progress { part, stage } of the present picture, as the channel's progress() tells
+  // it.
   go({ part, stage }) {
     if (stage !== this.#made) [this.#made, this.#from] = [stage, this.done];
     this.done = Math.max(this.done, this.#from + (this.#end - this.#from) * part * (stage in AWAITED ? AHEAD : 1));
   }
 }
 
-// find(id): an element of the viewer. Returns show(frame), of frames.js; wait(promise), which returns the promise: until it is kept, a state is
-// awaited that a person has asked for, and no picture is final; and end().
+// find(id): returns an element of the viewer. Returns three functions. show(frame): takes a frame of frames.js. wait(promise): returns the
+// promise; until the promise is settled, the page waits for a state that a person has requested, and no picture counts as final. end(): ends
+// the line.
 export function statusLine(find, channel) {
   const stage = find("stage"), progress = find("progress");
   let timer = 0, number = 0, state = null, way = new Way(), name = "", awaited = 0, ended = false;
@@ -46,7 +51,7 @@ export function statusLine(find, channel) {
     const told = await channel.progress().catch(() => ({ part: 0, stage: "picture", others: 0 }));
     if (mine !== number) return;
     way.go(told);
-    const { part, stage: made, others } = told, before = part < 1 ? AWAITED[made] : undefined; // what is made before the picture may be ready
+    const { part, stage: made, others } = told, before = part < 1 ? AWAITED[made] : undefined; // a finished stage (part = 1) is not shown
     const percent = Math.min(Math.floor(100 * way.done), 99);
     const line = [percent > 0 ? `${percent} %` : "", before].filter(Boolean).join(", ");
     progress.textContent = line + (others > 0 ? ` · with ${others} other ${others === 1 ? "picture" : "pictures"} under way` : "");
@@ -74,7 +79,7 @@ export function statusLine(find, channel) {
   }
 
   function show(frame) {
-    if (ended) return; // of a picture that was under way at the end
+    if (ended) return; // a picture may still arrive after end()
     name = frame.error ? "failed" : STAGES[frame.stage];
     const isOver = !(frame.stage in ENDS) && frame.stage !== "settled";
     if (isOver || frame.state !== state) stop();

@@ -8,7 +8,7 @@ import { difference } from "./link.js";
 import { readMarks } from "./marks.js";
 
 const MOST_STEPS = 100; // the most steps that can be undone, for each history
-const UNREMEMBERED = ["camera", "size", "time", "page"]; // changes that are no steps of the main history
+const UNREMEMBERED = ["camera", "size", "time", "page"]; // names of changes that are no steps of the main history
 
 // The settings of the page that are undone besides the film. The crosshair and which sections are unfolded are left as they are.
 const KEPT = [...KINDS, "aside", "layout", "plane", "oblique", "windows", "thickness", "blend", "showLabels", "showIsolines", "bookmarks", "over", "unit"];
@@ -17,23 +17,25 @@ const keptOf = (page) => Object.fromEntries(KEPT.map((key) => [key, page[key]]))
 
 // The number of the frame that a film shows.
 const frameOf = (film) => film?.frame ?? 0;
-const NO_FRAME = -1; // of a scene that is not the one of the film's frame
+const NO_FRAME = -1; // stands for a scene that is not the scene of the film's frame
 
-// What is undone: everything of the scene but the camera and the picture's size, the marks, the film's keys, length and format, settings of
-// the page, and what the scene's files are called and were opened by.
+// Returns the state that undo restores: the scene without the camera and the picture's size, the marks, the film, some settings of the
+// page, and the source and the title of the scene's files.
 function lasting({ scene: { camera, image: { width, height, ...image }, ...rest }, marks, page, source, title, isDue }) {
   return { rest, image, marks, film: page.film, frame: isDue ? NO_FRAME : frameOf(page.film), shown: keptOf(page), source, title };
 }
 
-// Whether two films have the same keys, length and format. They may show other frames, and turn from other views.
+// Returns whether two films have the same keys, length and format. The films may be at different frames, and may
+// turn from different cameras.
 const isSameFilm = (a, b) => ["tracks", "frames", "fps", "turns", "format"].every((key) => a?.[key] === b?.[key]);
 
-// A film of the history, at the frame and with the panel of the film now.
+// Returns a film of the history, with the frame of the present film and with the film's panel open
+// or closed as it is now.
 const filmAgain = (film, now) => ({ ...film, frame: film ? Math.min(frameOf(now), film.frames - 1) : 0, open: now?.open ?? false });
 
 const isSame = (a, b) => Object.keys({ ...a, ...b }).every((key) => a[key] === b[key]);
 
-// Whether two parts of a scene or of the page are alike, as files would have them.
+// Returns whether two parts of a scene or of the page would be equal in a file.
 const isAlike = (a, b) => a === b || difference(a, b) === undefined;
 
 export class Store {
@@ -42,15 +44,16 @@ export class Store {
   #redo = [];
   #undoCamera = []; // { camera, image: { width, height } }
   #redoCamera = [];
-  #gesture = 0; // number of the present or the last gesture
+  #gesture = 0; // number of the present gesture, or of the last gesture if none is under way
   #holds = false; // a gesture is under way
   #last = { name: "", gesture: -1 };
   #lastCamera = -1; // number of the gesture in which the camera was last moved
   #shown = { scene: null, levels: [] }; // the resolutions of the volumes in the picture of this scene
-  isDue = false; // the scene of the film's frame is still to come
+  isDue = false; // the scene of the film's frame has been requested and has not arrived
 
-  // scene: a scene file, which may have marks. marks: a person's measures and texts (marks.js) in place of those of the file. page: settings that are no part of pictures: layout,
-  // crosshair, bookmarks, film. source: by which the scene's files are opened (http_channel.js, open()), or null. title: what they are called.
+  // scene: a scene file, which may have marks. marks: a person's measures and texts (marks.js) in place of those of the file. page: settings that are no part
+  // of pictures: layout, crosshair, bookmarks, film. source: the argument with which open() of http_channel.js opens the scene's files, or null. title: the
+  // name of the scene's files.
   constructor({ marks: own, ...scene }, { marks = readMarks(own), page = {}, history = null, source = null, title = "" } = {}) {
     this.scene = { volumes: [], ...scene }; // a scene may consist of meshes only
     this.marks = marks;
@@ -71,18 +74,19 @@ export class Store {
     return levels.some((level) => level >= 0) ? { ...file, volumes: file.volumes.map((volume, v) => (levels[v] >= 0 ? { ...volume, level: levels[v] } : volume)) } : file;
   }
 
-  // A picture of a scene is shown whose volumes have these resolutions; below 0: a volume has one alone.
+  // Notes the resolutions that the shown picture has of the scene's volumes. A level below 0: the volume
+  // has only one resolution.
   showsLevels(scene, levels) {
     this.#shown = { scene, levels };
   }
 
-  // listener(scene, name, frame) is called after every change. frame: after undo or redo, the frame of the film whose scene this is; the film
-  // itself stays where it is.
+  // listener(scene, name, frame) is called after every change. frame: after undo or redo, the number of the film's frame whose scene was
+  // restored; the film stays at its present frame.
   listen(listener) {
     this.#listeners.push(listener);
   }
 
-  // A gesture has begun: all changes until endGesture() are undone together.
+  // Begins a gesture: all changes until endGesture() are undone together.
   beginGesture() {
     this.#gesture++;
     this.#holds = true;
@@ -93,9 +97,9 @@ export class Store {
     this.#holds = false;
   }
 
-  // Replaces the scene by change(scene), which must not alter its argument. `name` says what changes ("camera",
-  // "light 0"). Changes outside of a gesture are undone together as long as they have one name and no gesture comes between.
-  // What changes nothing, as the choice of what is chosen, is no step.
+  // Replaces the scene by change(scene), which must not alter its argument. `name` says what changes ("camera", "light 0").
+  // Successive changes outside of gestures are undone together if they have the same name and no gesture lies between them.
+  // A change that leaves the scene as it is makes no step.
   change(name, change) {
     const scene = change(this.scene);
     if (!isAlike(scene, this.scene)) {
@@ -128,7 +132,8 @@ export class Store {
     this.#tell("page");
   }
 
-  // What a switch has taken out of the scene, to bring it back; undefined: nothing.
+  // Returns the part that a switch has taken out of the scene, so that the switch can put the part
+  // back; undefined: there is no such part.
   aside(name) {
     return this.page.aside?.[name];
   }
@@ -157,7 +162,8 @@ export class Store {
     this.change(`render ${key}`, (scene) => ({ ...scene, render: { ...scene.render, [key]: value } }));
   }
 
-  // Replaces everything, as one step, by a session or a scene that was opened. The picture keeps its size.
+  // Replaces the whole state by a session or a scene that was opened, as one step of the history. The
+  // picture keeps its size.
   replace({ scene: { marks: own, ...scene }, marks = own === undefined ? this.marks : readMarks(own), page = this.page, source = this.source, title = this.title }) {
     const { width, height } = this.scene.image;
     this.beginGesture();
@@ -200,7 +206,8 @@ export class Store {
     if (steps.length > MOST_STEPS) steps.shift();
   }
 
-  // The scene before the last step that changed it, seen as the picture is now; null where there is no such step.
+  // The scene before the last step that changed it, with the present camera and picture size; null: there is no
+  // such step.
   get before() {
     const now = lasting(this), step = this.#undo.findLast(({ rest, image }) => !isSame(rest, now.rest) || !isSame(image, now.image));
     if (step === undefined) return null;
@@ -212,7 +219,8 @@ export class Store {
   get canRedo() { return this.#redo.length > 0; }
   get canUndoCamera() { return this.#undoCamera.length > 0; }
   get canRedoCamera() { return this.#redoCamera.length > 0; }
-  // The history of a store that takes the place of this one, as its next step.
+  // The history for a store that replaces this store; the replacement is the next step of the
+  // history.
   get historyBefore() {
     const further = (steps, step) => [...steps, step].slice(-MOST_STEPS);
     return [further(this.#undo, lasting(this)), [], further(this.#undoCamera, this.#view()), []];
@@ -233,7 +241,7 @@ export class Store {
     this.source = source ?? null;
     this.title = title ?? this.title;
     this.#last = { name: "", gesture: -1 };
-    // A step of marks only leaves the scene, and so its picture.
+    // A step that changed only marks leaves the scene as it is, and so starts no new picture.
     if (!isSame(rest, now.rest) || !isSame(image, now.image)) {
       const { camera, image: { width, height } } = this.scene;
       this.scene = { ...rest, camera, image: { ...image, width, height } };

@@ -7,12 +7,13 @@ import { blankContext, drawBars, drawValueAxis, smoothedLine } from "./histogram
 import { isProjection, opacityAt, rangeOf } from "./transfer_function.js";
 
 const HEIGHT = 88, AXIS = 16, MARGIN = 9, GRIP = 10; // pixels
-// A further surface is added around the last one: at this part of the way from its value to the value of the
-// surroundings.
+// A further surface is added around the last surface: its value lies at this fraction of the way from the
+// last surface's value to the value of the surroundings.
 const OUTWARDS = 0.6;
 const PALETTE = ["#e8c39e", "#4fa3e0", "#d9534f", "#6cc070", "#c48be0", "#e0c04f"];
 
-// The lines over the histogram, which are dragged. The slider below serves the keyboard.
+// Makes the histogram with a line at each surface's value. Lines can be dragged; for the keyboard,
+// there is a slider below the histogram.
 function lines({ surfaces, chosen, choose, set, about }) {
   const [low, high] = about.range[1] > about.range[0] ? about.range : [about.range[0] - 0.5, about.range[0] + 0.5];
   const canvas = make("canvas", { class: "values", "aria-hidden": "true", onpointerdown: down });
@@ -58,7 +59,8 @@ function lines({ surfaces, chosen, choose, set, about }) {
   return { element: area, update };
 }
 
-// The value of the first surface: the first value at which the function reaches half of its greatest opacity.
+// Returns the value for the first surface: the least value at which the transfer function reaches half of its
+// greatest opacity.
 function firstValue(tf, range) {
   const most = Math.max(...tf.opacity.map((point) => point[1])), [low, high] = rangeOf(tf);
   for (let n = 0; n <= 200 && most > 0; n++) {
@@ -71,7 +73,7 @@ function firstValue(tf, range) {
 const isClear = (tf) => tf.opacity.every((point) => point[1] === 0);
 const cleared = (tf) => ({ ...tf, opacity: tf.opacity.map(([value]) => [value, 0]) });
 
-// The middle of the fullest bin, which is mostly the surroundings of things.
+// Returns the middle of the fullest bin, which is mostly the value of the things' surroundings.
 function commonest({ histogram, range: [low, high] }) {
   return low + ((histogram.indexOf(Math.max(...histogram)) + 0.5) / histogram.length) * (high - low);
 }
@@ -80,9 +82,10 @@ export function surfacePanel({ store, start, current, failed, channel, waits }) 
   const { element, body } = section("Isosurfaces", false);
   const volume = () => store.scene.volumes[current.volume], about = () => start.volumes[current.volume];
   const surfaces = () => volume().iso ?? [], chosen = () => current.of("surface", surfaces().length), surface = () => surfaces()[chosen()];
-  const key = () => `alone ${current.volume}`; // the transfer function that "Surfaces alone" has hidden is put aside by this name
+  const key = () => `alone ${current.volume}`; // the name under which the transfer function is kept that the switch "Surfaces alone" has hidden
   let parts = [];
-  // Surfaces can be added where the function is of one number and the scene is no maximum projection.
+  // Surfaces can be added if the transfer function takes one number and the scene is no maximum
+  // projection.
   const isOfValue = () => volume()?.transfer_function?.opacity !== undefined && !isProjection(store.scene);
 
   const changeSurface = (name, part) => store.changeVolume(current.volume, `iso ${chosen()} ${name}`, (v) => ({
@@ -110,8 +113,8 @@ export function surfacePanel({ store, start, current, failed, channel, waits }) 
     choose(Math.max(0, gone - 1));
   }
 
-  // Hides everything else that the volume shows, or brings it back. Where the volume came without anything
-  // else, its default look comes back.
+  // Hides everything of the volume but its isosurfaces, or shows it again. If the volume had only
+  // isosurfaces from the beginning, the volume gets its default look.
   async function setAlone(alone) {
     const tf = volume().transfer_function, { iso: _, transfer_function: __, ...bare } = volume(), index = current.volume;
     const set = (wanted) => store.changeVolume(index, "iso alone", (v) => ({ ...v, transfer_function: wanted }));

@@ -1,4 +1,4 @@
-// Dark or light: as the system has it, until the user chooses.
+// The theme, dark or light: the system's theme, until the user chooses one.
 
 const KEY = "halflight-theme";
 
@@ -10,8 +10,8 @@ function stored() {
   }
 }
 
-// root: the viewer's element, which carries the theme. changed() is called after each change, until the signal. Returns the function
-// that changes from one to the other.
+// root: the viewer's element, which carries the theme. changed() is called after each change of the theme, until `signal` is
+// aborted. Returns a function that switches between the dark and the light theme.
 export function installTheme(root, changed, signal) {
   const apply = (theme) => { root.dataset.theme = theme; };
   const notebook = document.body.dataset.jpThemeLight; // JupyterLab has a theme of its own

@@ -6,26 +6,29 @@ import { add, rotate, scale, subtract, turnOfFrames } from "./vector.js";
 
 export const CAMERA = "camera";
 
-// What changes as a whole: its three numbers have one track, as otherwise a direction would pass through wrong ones between its keys.
+// Paths of vectors whose three numbers have one track together. With three tracks, a direction would pass through wrong directions
+// between its keys.
 const VECTORS = /(^|[._])(ambient|background|albedo|color|direction|normal|axis|up|position|target|translate|center|point|edge1|edge2)$/;
 
-// What lies at a path of a scene: a number, a vector, or something without a track.
+// Returns the value at a path of a scene: a number, a vector, or a value that can have no track.
 export const valueAt = (scene, path) => path.split(".").reduce((at, key) => at?.[key], scene);
 
-// The scene with another value there.
+// Returns the scene with another value at a path.
 export function withValue(scene, path, value) {
   const [key, ...rest] = path.split("."), copy = Array.isArray(scene) ? [...scene] : { ...scene };
   copy[key] = rest.length > 0 ? withValue(copy[key], rest.join("."), value) : value;
   return copy;
 }
 
-// The path of the track of a number.
+// Returns the path of the track of a number: the vector's path if the number belongs to a vector,
+// else the number's path.
 export function trackOf(scene, path) {
   const whole = path.replace(/\.[012]$/, "");
   return VECTORS.test(whole) && isVector(valueAt(scene, whole)) ? whole : path;
 }
 
-// The name of a track for people: "light 1, intensity" for lights.0.intensity, "volume 1, clip min x" for volumes.0.clip.min.0.
+// Returns the displayed name of a track: "light 1, intensity" for lights.0.intensity, "volume 1, clip min x" for
+// volumes.0.clip.min.0.
 export function trackName(path) {
   const [kind, number, ...rest] = path.split("."), isOne = ["lights", "volumes", "meshes"].includes(kind) && rest.length > 0;
   const words = (isOne ? rest : path.split(".")).map((word, n, all) => (n === all.length - 1 && /^[012]$/.test(word) ? "xyz"[word] : word.replaceAll("_", " ").replace(/ deg$/, "")));
@@ -33,14 +36,15 @@ export function trackName(path) {
 }
 export const MOST_FRAMES = 100000, MOST_FPS = 240;
 export const FORMATS = [["mp4", "MP4"], ["webm", "WebM"], ["gif", "GIF"], ["zip", "Pictures"]];
-// Angle between two points of a turning camera's keys: the chord is 0.14 % nearer than the arc.
+// Angle between two successive keys of a turning camera. At this angle, the middle of the chord is
+// 0.14 % nearer to the target than the arc.
 const STEP = Math.PI / 30;
-const ZOOM_STEP = 0.1; // step of the logarithm of its distance
+const ZOOM_STEP = 0.1; // greatest step, between two keys, of the logarithm of the camera's distance
 const DIGITS = 7; // digits of numbers between keys
 
 const byFrame = (a, b) => a[0] - b[0];
 
-// Sets a key at a frame. A key that is there already gets the value.
+// Sets a key at a frame. If the frame already has a key, the key gets the new value.
 export function withKey(tracks, path, frame, value) {
   const point = [frame, value], before = tracks.find((track) => track.path === path);
   if (!before) return [...tracks, { path, points: [point] }];
@@ -48,19 +52,20 @@ export function withKey(tracks, path, frame, value) {
   return tracks.map((track) => (track === before ? { path, points } : track));
 }
 
-// Removes a key. The last key of a track takes the track with it.
+// Removes a key. A track without keys is removed, too.
 export function withoutKey(tracks, path, frame) {
   return tracks.map((track) => (track.path === path ? { path, points: track.points.filter(([at]) => at !== frame) } : track))
     .filter((track) => track.points.length > 0);
 }
 
-// Moves a key to another frame, where it replaces a key that is there.
+// Moves a key to another frame. The key replaces any key at that frame.
 export function withMovedKey(tracks, path, from, to) {
   const value = tracks.find((track) => track.path === path).points.find(([at]) => at === from)[1];
   return withKey(withoutKey(tracks, path, from), path, to, value);
 }
 
-// The tracks of a film that is made longer or shorter: keys keep their part of it. Of keys that come to one frame, the last one stays.
+// Returns the tracks of a film that is made longer or shorter. Each key keeps its fraction of the film's length. If several keys come
+// to the same frame, the last of them stays.
 export function stretched(tracks, before, frames) {
   const to = (frame) => Math.round((frame * (frames - 1)) / Math.max(before - 1, 1));
   return tracks.map(({ path, points }) => ({ path, points: [...new Map(points.map(([frame, value]) => [to(frame), value]))] }));
@@ -74,7 +79,7 @@ const isTrack = (track) => typeof track?.path === "string" && Array.isArray(trac
   track.points.every((point, n, all) => Array.isArray(point) && Number.isInteger(point[0]) && point[0] >= 0 && (n === 0 || point[0] > all[n - 1][0]) &&
     (track.path === CAMERA ? isCamera(point[1]) : isKeyable(point[1]) && Array.isArray(point[1]) === Array.isArray(all[0][1])));
 
-// The value of a track of numbers at a frame.
+// Returns the value at a frame of a track of numbers.
 function numberBetween(points, frame) {
   const next = points.findIndex(([at]) => at >= frame);
   if (next <= 0) return points.at(next)[1];
@@ -82,7 +87,8 @@ function numberBetween(points, frame) {
   return a + ((b - a) * (frame - from)) / (to - from);
 }
 
-// Films of earlier versions have a track for each number of a vector: all three become one.
+// Films of earlier versions have a track for each number of a vector. These three tracks become one
+// track.
 export function joined(tracks, scene) {
   return tracks.flatMap((track) => {
     const { path } = track, whole = trackOf(scene, path), parts = [0, 1, 2].map((k) => tracks.find((one) => one.path === `${whole}.${k}`));
@@ -92,8 +98,8 @@ export function joined(tracks, scene) {
   });
 }
 
-// What is right of a film in a file: its numbers within their bounds, and its tracks that are tracks. from: { camera, image }, the view from
-// which a film turns.
+// Returns the valid parts of a film from a file: numbers that lie within their bounds, and valid tracks. from: { camera, image }, the view
+// from which a film turns.
 export function readFilm(object) {
   const { frames, fps, frame, turns, open, format, tracks, from } = object ?? {};
   const within = (value, low, high) => Number.isInteger(value) && value >= low && value <= high;
@@ -105,8 +111,8 @@ export function readFilm(object) {
   };
 }
 
-// The camera on its way from one camera to another. It turns about its target at an even speed; part: from 0
-// to 1.
+// Returns the camera on the way from camera a to camera b. The camera turns about its target at an even
+// speed. part: the fraction of the way, from 0 to 1.
 export function cameraBetween(a, b, part) {
   const [from, to] = [a, b].map((camera) => { const { right, up, towards } = axes(camera); return [right, up, towards]; });
   const { axis, angle } = turnOfFrames(from, to), turned = (vector) => rotate(vector, axis, part * angle);
@@ -121,7 +127,8 @@ export function cameraBetween(a, b, part) {
 const cameraParts = ({ type }) => ["position", "target", "up", type === "orthographic" ? "height" : "fovy_deg"];
 const keyText = (path, points) => `${path}=${points.map(([frame, value]) => `${frame}:${value}`).join(",")}`;
 
-// The frames and cameras of a camera's track, so close that straight lines between them follow the arc.
+// Returns the frames and cameras of a camera's track, with additional cameras so close to each other
+// that straight lines between them follow the arc.
 function cameraPoints(points, type) {
   const keys = points.map(([frame, camera]) => [frame, withType(camera, type)]);
   return keys.flatMap(([frame, camera], n) => {
@@ -134,7 +141,8 @@ function cameraPoints(points, type) {
   });
 }
 
-// The keys as `halflight animate` takes them. type: of the scene's camera.
+// Returns the keys as `halflight animate` takes them. type: the projection type of the scene's
+// camera.
 export function keyTexts(tracks, type) {
   return tracks.flatMap(({ path, points }) => {
     if (path !== CAMERA) return [keyText(path, points)];

@@ -1,14 +1,13 @@
-// The timeline under the picture: a row for each track with its keys, which are dragged, and below them a slider of frames, which stays where it
-// is while tracks are added.
+// The timeline under the picture: a row for each track, with keys that can be dragged, and below the rows a slider of frames. The slider keeps
+// its place when tracks are added.
 
 import { button, make, shortNumber } from "./controls.js";
 import { followDrag } from "./drag.js";
 import { CAMERA, trackName, withMovedKey, withoutKey } from "./timeline.js";
 
-// People count the frames from 1 to the last one; in keys, as in commands, the first frame is 0.
-// get() returns { tracks, frames, frame, fps }; setTracks(tracks) takes changed tracks; show(frame) goes to a
-// frame; play() begins or ends playing; canShow: whether frames can be shown at all. Returns { element,
-// update }.
+// The page shows frame numbers that begin at 1. In keys, as in commands, the first frame is 0. get() returns
+// { tracks, frames, frame, fps }; setTracks(tracks) takes changed tracks; show(frame) goes to a frame; play()
+// begins or ends playing; canShow: whether frames can be shown at all. Returns { element, update }.
 export function timelineStrip({ get, setTracks, show, play, canShow }) {
   const slider = make("input", { type: "range", min: 0, step: 1, "aria-label": "Frame", oninput: () => show(+slider.value) });
   const told = make("span", {}), seconds = make("span", {});
@@ -54,7 +53,7 @@ export function timelineStrip({ get, setTracks, show, play, canShow }) {
     return mark;
   };
 
-  // The keyboard's focus goes from an element of the rows that are drawn anew to the key of the same track that is nearest, or to the slider.
+  // Moves the keyboard's focus after the rows were drawn anew: to the nearest key of the same track, or to the slider.
   function focusNear({ path, frame }) {
     const away = (key) => Math.abs(key.dataset.frame - frame);
     const keys = [...rows.querySelectorAll(".key")].filter((key) => key.dataset.path === path).sort((a, b) => away(a) - away(b));

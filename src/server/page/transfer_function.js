@@ -4,17 +4,20 @@
 const byValue = (a, b) => a[0] - b[0];
 const clamp = (x, low, high) => Math.min(Math.max(x, low), high);
 
-// Two rows at one value make a step. A third row there would mean nothing, and the scene's reader refuses it.
+// Two rows at one value make a step. A third row at this value would have no meaning, and the scene's reader
+// refuses the function.
 const isReadable = (rows) => rows.every((row, n) => n < 2 || row[0] !== rows[n - 2][0]);
 const nearest = (rows, value) => rows.reduce((best, row, n) => (Math.abs(row[0] - value) < Math.abs(rows[best][0] - value) ? n : best), 0);
 
-// Whether a volume's function takes two numbers, so that it has boxes instead of points.
-// Whether a scene is a maximum projection, which shows no surfaces and goes by one number.
+// isProjection(): whether a scene is a maximum projection, which shows no surfaces and uses
+// transfer functions of one number. isPlane(): whether a volume's transfer function takes two
+// numbers, so that it has boxes and polygons instead of points.
 export const isProjection = (scene) => scene.render?.compositing === "maximum";
 export const isPlane = (volume) => volume?.transfer_function?.second !== undefined;
 
-// Opacity points at one value, as at a step, keep their order. The first and the last point may go as far as
-// `range`, or stay beyond it where their neighbours are.
+// Moves an opacity point between its neighbours. Opacity points at the same value, as at a step, keep their
+// order. The first and the last point may be moved to the ends of `range`, or may stay beyond the ends if
+// they lie there already.
 export function movePoint(tf, index, value, opacity, range) {
   const before = tf.opacity[index - 1]?.[0] ?? Math.min(range[0], tf.opacity[index][0]);
   const after = tf.opacity[index + 1]?.[0] ?? Math.max(range[1], tf.opacity[index][0]);
@@ -23,7 +26,7 @@ export function movePoint(tf, index, value, opacity, range) {
   return isReadable(points) ? { ...tf, opacity: points } : tf;
 }
 
-// { tf, index }: the function with a new point, and the point's index.
+// Returns { tf, index }: the function with a new point, and the point's index.
 export function addPoint(tf, value, opacity) {
   const point = [value, clamp(opacity, 0, 1)];
   const points = [...tf.opacity, point].sort(byValue);
@@ -57,12 +60,14 @@ export function removeStop(tf, index) {
   return tf.color.length > 1 ? { ...tf, color: tf.color.filter((_, n) => n !== index) } : tf;
 }
 
-// The named colormap's rows of values from 0 to 1, stretched over a range.
+// Returns the function with a colormap's colours. rows: the colormap's rows for values from 0 to 1,
+// which are stretched over a range.
 export function withColormap(tf, rows, [low, high]) {
   return { ...tf, color: rows.map(([at, ...rgb]) => [low + at * (high - low), ...rgb]) };
 }
 
-// The name of the colormap whose colours a function has, over any range; "": none.
+// Returns the name of the colormap whose colours a function has, over any range; "": no colormap
+// has these colours.
 export function colormapOf(tf, colormaps) {
   const [low, high] = [tf.color[0]?.[0], tf.color.at(-1)?.[0]], isNear = (a, b) => Math.abs(a - b) < 1e-9;
   const has = (rows) => rows.length === tf.color.length && rows.every(([at, ...rgb], n) =>
@@ -70,19 +75,20 @@ export function colormapOf(tf, colormaps) {
   return Object.keys(colormaps).find((name) => has(colormaps[name])) ?? "";
 }
 
-// The same colours and opacities over another range.
+// Returns the function with the same colours and opacities over another range.
 export function stretched(tf, [from, to], [low, high]) {
   const moved = ([value, ...rest]) => [low + ((value - from) / (to - from)) * (high - low), ...rest];
   return { ...tf, opacity: tf.opacity.map(moved), color: tf.color.map(moved) };
 }
 
-// The range from the first to the last value at which a point or a colour stands.
+// Returns the range from the least to the greatest value of all opacity points and colours.
 export function rangeOf(tf) {
   const values = [...tf.opacity, ...tf.color].map((p) => p[0]);
   return [Math.min(...values), Math.max(...values)];
 }
 
-// The row at a value, of rows [value, number, ...], which are piecewise linear and constant beyond the ends.
+// Interpolates rows [value, number, ...] at a value: linearly between rows, and constant beyond the first
+// and the last row.
 export function interpolate(rows, value) {
   if (rows.length === 0) return [];
   if (value <= rows[0][0]) return rows[0].slice(1);

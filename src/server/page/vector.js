@@ -16,23 +16,27 @@ export function normalize(a) {
   return size > 0 ? scale(a, 1 / size) : [0, 0, 1];
 }
 
-// a turned about a unit axis, counter-clockwise seen from its tip (Rodrigues' formula).
+// Returns the vector a, turned about a unit axis by an angle, counter-clockwise as seen from the
+// axis's tip (Rodrigues' formula).
 export function rotate(a, axis, angle) {
   const cosine = Math.cos(angle), sine = Math.sin(angle);
   return add(add(scale(a, cosine), scale(cross(axis, a), sine)), scale(axis, dot(axis, a) * (1 - cosine)));
 }
 
-// The turn that takes three perpendicular unit vectors to three others: { axis, angle }, by the quaternion of the matrix.
+// Returns the turn { axis, angle } that takes three perpendicular unit vectors to three others. The turn follows from the
+// quaternion of the turn's matrix.
 export function turnOfFrames(from, to) {
   const entry = (row, column) => from.reduce((sum, axis, n) => sum + to[n][row] * axis[column], 0);
   const w = Math.sqrt(Math.max(0, 1 + entry(0, 0) + entry(1, 1) + entry(2, 2))) / 2;
   let axis = [entry(2, 1) - entry(1, 2), entry(0, 2) - entry(2, 0), entry(1, 0) - entry(0, 1)];
-  // There is no turn, or half a turn.
+  // The quaternion's axis vanishes for no turn and for half a turn; the axis then follows from the
+  // matrix's diagonal.
   if (length(axis) < 1e-9) axis = [0, 1, 2].map((k) => Math.sqrt(Math.max(0, (1 + entry(k, k)) / 2)));
   return { axis: normalize(axis), angle: 2 * Math.acos(Math.min(w, 1)) };
 }
 
-// The turn that takes the unit vector `from` to `to` the shortest way, as a function of vectors.
+// Returns the shortest turn that takes the unit vector `from` to the unit vector `to`, as a
+// function of vectors.
 export function turnBetween(from, to) {
   let axis = cross(from, to);
   const angle = Math.atan2(length(axis), dot(from, to));
@@ -41,5 +45,6 @@ export function turnBetween(from, to) {
   return (a) => rotate(a, axis, angle);
 }
 
-// Rounding errors beside a length are 0, where people read the numbers.
+// Returns a vector whose components are 0 where they are only rounding errors of lengths near
+// `size`, for numbers that people read.
 export const withoutErrors = (a, size) => a.map((x) => (Math.abs(x) < 1e-9 * size ? 0 : x));

@@ -40,7 +40,8 @@ import { length, subtract } from "./vector.js";
 import { viewPanel } from "./view_panel.js";
 import { volumeChooser, volumePanel } from "./volume_panel.js";
 
-// Each panel is a file. They stand in the order of the side bar, whose four parts have names.
+// Each panel is a file. The panels are listed in their order in the side bar, under the names of
+// the side bar's four parts.
 const PARTS = {
   Look: [volumeChooser, lookPanel, functionPanel, labelPanel, surfacePanel, meshPanel, volumePanel], Light: [lightPanel, shadowPanel, skyPanel],
   Inside: [cutSwitch, cutPanel, sceneCutPanel, slicePanel, markPanel], "Picture and files": [viewPanel, openPanel, exportPanel, sessionPanel, filmPanel],
@@ -88,9 +89,9 @@ const MARKUP = `
 const MOST_SIDE = 4096; // the most pixels along a side of the picture
 const NEAR = 0.02; // fraction of a volume's diagonal
 const MESSAGE_TIME = 5000, WARNING_TIME = 15000; // milliseconds
-const SWEEP_TIME = 1800; // milliseconds of the moving light that shows, once, what shadows tell
+const SWEEP_TIME = 1800; // milliseconds of the animation of a moving light, shown once when the viewer opens
 
-// Returns the function that shows a line over the picture for a while, in milliseconds.
+// Returns a function that shows a line of text over the picture for some milliseconds.
 function messageBox(box) {
   let timer = 0;
   return (text, time = MESSAGE_TIME) => {
@@ -104,7 +105,7 @@ function messageBox(box) {
   };
 }
 
-// The picture's size follows the window's.
+// Makes the picture's size follow the window's size.
 function followSize(store, area, signal) {
   const measure = () => {
     const density = Math.min(devicePixelRatio || 1, 2);
@@ -121,8 +122,8 @@ function followSize(store, area, signal) {
   measure();
 }
 
-// Fits the seen part into the picture again, from the same side: the program chooses only the distance and
-// the target.
+// Moves the camera so that everything visible fits into the picture. The direction of the camera stays the
+// same; the program chooses the distance and the target.
 async function frameEverything({ store, channel, failed, waits }) {
   const { camera, ...rest } = store.scene;
   try {
@@ -133,7 +134,8 @@ async function frameEverything({ store, channel, failed, waits }) {
   }
 }
 
-// The least distance of the eye from its target: a small part of the largest volume.
+// Returns the least distance of the eye from its target: a small fraction of the largest volume's
+// diagonal.
 const nearestOf = ({ volumes }) => NEAR * Math.max(0, ...volumes.filter(Boolean).map((volume) => length(subtract(worldBox(volume).max, worldBox(volume).min))));
 
 // The functions of keys and buttons that do not move the camera.
@@ -176,11 +178,11 @@ async function openSession(file, restore, viewer) {
   }
 }
 
-// Unfolds and folds the sections as they were before a reload or in a session's file, and keeps which ones are not as at first:
-// page.sections, by title.
+// Unfolds and folds the sections of the side bar as they were before a reload or in a session's file. page.sections holds, by
+// title, the sections whose state differs from the initial state.
 function keepOpenSections(panels, store) {
   const titleOf = (element) => element.firstElementChild.textContent, all = [...panels.querySelectorAll(".section")].map((element) => ({ element, first: element.open }));
-  let shown; // as all are unfolded and folded
+  let shown; // the value of page.sections that the side bar shows
   const show = () => {
     shown = store.page.sections;
     for (const { element, first } of all) element.open = shown?.[titleOf(element)] ?? first;
@@ -205,7 +207,7 @@ function revealIn(root) {
   };
 }
 
-// Where undo or redo reaches a scene of fewer or more of the files that are open, another viewer takes this one's place.
+// If undo or redo reaches a scene with fewer or more of the open files, a new viewer replaces this viewer.
 function followFiles(store, whole, source, reopen) {
   let before = store.scene;
   store.listen((scene, name) => {
@@ -215,13 +217,11 @@ function followFiles(store, whole, source, reopen) {
   });
 }
 
-// Fills an empty element with a viewer. channel: the way to ask for pictures (http_channel.js). start: the
-// open scene (start.json), of whose files kept.scene may have the first ones alone. keyboard: the element or document whose keys are used. reopen(start, source,
-// kept): called when a person opens another file. source: the path by which the present file was opened.
-// kept: a session (session.js) to go on with. restore(file): opens a session or a scene. startAfresh():
-// forgets all changes. choose(files): opens files of a chooser, or adds them where adds() says so; null: there is no
-// chooser. address: the part of a link before its end. Returns { store, start, frames, overlay, probe, slices, marking,
-// report, adds, end }; end() stops all of it.
+// Fills an empty element with a viewer. channel: the way to ask for pictures (http_channel.js). whole: the open scene (start.json); kept.scene may contain only
+// the first of its files. keyboard: the element or document whose keys are used. reopen(start, source, kept): called when a person opens another file. source:
+// the path by which the present file was opened. kept: a session (session.js) to go on with. restore(file): opens a session or a scene. startAfresh(): forgets
+// all changes. choose(files): opens files of a chooser, or adds them where adds() says so; null: there is no chooser. address: the part of a link before its
+// end. Returns { store, start, frames, overlay, probe, slices, marking, report, adds, end }; end() stops all of it.
 export function mount(element, channel, whole, { keyboard = element, reopen = () => {}, source = null, kept = null, restore = null, startAfresh = () => {}, choose = null, address = "" } = {}) {
   if (kept !== null) kept = { ...kept, scene: atOpenLevels(kept.scene, whole) };
   element.innerHTML = MARKUP;
@@ -255,8 +255,8 @@ export function mount(element, channel, whole, { keyboard = element, reopen = ()
     find("title").textContent = find("title").title = store.title; // where there is no room for all of it, the cursor shows it
     followHistory();
   };
-  // Following the camera and the layout is little work, which is done for each movement of the hand.
-  let shown = viewer.current.volume, page = store.page; // of which the panels are
+  // The overlays follow the camera and the layout at every change, because this takes little time.
+  let shown = viewer.current.volume, page = store.page; // the volume and the page's state for which the panels were made
   store.listen((_, name) => {
     const isOther = KINDS.some((kind) => store.page[kind] !== page[kind]);
     page = store.page;
@@ -266,16 +266,16 @@ export function mount(element, channel, whole, { keyboard = element, reopen = ()
     }
     if (isOther || (name !== "camera" && name !== "page")) update();
     else panels.forEach((panel) => panel.updateView?.());
-    followHistory(); // changes of the page may be steps, too
+    followHistory(); // changes of the page's state may be steps of the history, too
     followLayout();
   });
   viewer.probe = new Probe(viewer, find("view"));
   viewer.slices.update();
   followLayout();
-  followSize(store, find("view"), ended.signal); // once all stands where it is to be
+  followSize(store, find("view"), ended.signal); // the size is measured after all elements have their places
   const status = statusLine(find, channel), resolution = resolutionLine(find("resolution"), { warn: (line) => report(line, WARNING_TIME), failed: viewer.failed });
   const frames = new Frames(viewer, find("picture"), (frame) => {
-    // A picture is not final as long as finer voxels are still to come.
+    // A picture is not final while finer voxels are still to be read.
     status.show(frame.stage === "final" && whole.refining ? { ...frame, stage: "coarse" } : frame);
     if (frame.error) viewer.failed(frame.error);
     resolution.seen(frame);
@@ -304,7 +304,7 @@ export function mount(element, channel, whole, { keyboard = element, reopen = ()
     },
   });
   const series = start.volumes.map((volume) => volume && seriesOf(volume)).filter(Boolean).join("; ");
-  const first = series !== "" ? `${series}. The panel “Volume” tells them.` : (whole.note ?? "").replace(/^\.(?=[:/])/, whole.title); // a folder that was opened is "."
+  const first = series !== "" ? `${series}. The panel “Volume” tells them.` : (whole.note ?? "").replace(/^\.(?=[:/])/, whole.title); // the note names an opened folder by "."
   if (kept === null && first !== "") report(first, WARNING_TIME);
   if (kept === null && !matchMedia("(prefers-reduced-motion: reduce)").matches) frames.animate(sweptLight, SWEEP_TIME);
   else frames.move();

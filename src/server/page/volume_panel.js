@@ -9,7 +9,8 @@ import { measured } from "./slice_values.js";
 import { symbolOf } from "./units.js";
 import { length } from "./vector.js";
 
-// Two sliders on one track: the two ends of the part of the volume that is kept along an axis.
+// Two sliders on one track: the two ends, along an axis, of the part of the volume that the clip
+// box keeps.
 function clipRow(axis, box, get, set, paths) {
   const name = "xyz"[axis], span = box.max[axis] - box.min[axis];
   const input = (end) => make("input", {
@@ -34,7 +35,8 @@ function clipRow(axis, box, get, set, paths) {
   return { element: row(make("span", { class: `name axis-name axis-${axis}` }, `Clip ${name}`), track, measure), update };
 }
 
-// The list above all panels, where there are several volumes: it chooses the volume of the panels.
+// Makes the list above all panels, which is visible if there are several volumes. The list chooses
+// the volume that the panels edit.
 export function volumeChooser({ store, current }) {
   const { element, update } = select({
     label: "Volume", choices: store.scene.volumes.map((v, n) => [String(n), v.name ?? (v.file ?? "shapes").split("/").pop()]),
@@ -57,7 +59,8 @@ export function volumePanel(viewer) {
     }));
   }
 
-  // The scattering of a medium: how much light, in which colour, and in which direction.
+  // Makes the controls of a medium's scattering: the strength and the colour of the albedo, and the
+  // anisotropy.
   function scatteringParts() {
     const scattering = () => volume().scattering ?? {}, albedo = () => scattering().albedo ?? [1, 1, 1];
     const level = () => Math.max(...albedo()), tint = () => (level() > 0 ? albedo().map((c) => c / level()) : [1, 1, 1]);
@@ -77,8 +80,8 @@ export function volumePanel(viewer) {
     ];
   }
 
-  // The switch that treats values as names of things, not as amounts. Each thing gets a smooth surface, a
-  // name and a colour.
+  // Turns the volume into a label map: values then are names of things, not amounts. Each thing gets a
+  // smooth surface, a name and a colour.
   async function showLabels() {
     const { transfer_function: _, iso: __, shading: ___, ...bare } = volume(), index = current.volume;
     const volumes = store.scene.volumes.map((v, n) => (n === index ? { ...bare, labels: true } : v));
@@ -108,7 +111,7 @@ export function volumePanel(viewer) {
     const casts = toggle({ label: "Casts shadows", get: () => volume().casts_shadow !== false, set: (on) => change("casts", (v) => ({ ...v, casts_shadow: on })) });
     const material = materialSliders();
     const unit = about.unit ? ` ${symbolOf(about.unit)}` : "", edges = about.axes.map((axis) => shortNumber(length(axis))).join(" × ");
-    const series = seriesRow(viewer, about, volume().file), own = measured(about); // as the file has them
+    const series = seriesRow(viewer, about, volume().file), own = measured(about); // the range of the file's values
     const facts = make("p", { class: "facts" }, `${about.dimensions.join(" × ")} voxels of ${edges}${unit}, ${own.type}, values ${own.range.map(shortNumber).join(" to ")}${absenceOf(about) ? `; ${absenceOf(about)}` : ""}${seriesOf(about) ? `; ${seriesOf(about)}` : ""}`);
     parts = [...rows, labelled, shading, ...scattering, visible, casts, ...material];
     body.replaceChildren(facts, ...series, ...rows.map((r) => r.element), reset, labelled.element, shading.element,

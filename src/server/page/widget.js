@@ -6,14 +6,14 @@ import { make } from "./controls.js";
 import { HeldScene } from "./held_scene.js";
 import { mount } from "./viewer.js";
 
-const TELL_AFTER = 150; // milliseconds without a change, after which Python is told the scene
+const TELL_AFTER = 150; // milliseconds without a change, after which the page sends the scene to Python
 
 class WidgetChannel {
   #model;
   #view = Math.random().toString(36).slice(2); // several views of one widget share its messages
   #number = 0;
-  #held = new HeldScene(() => ++this.#number); // not of the frames in lanes
-  #waiting = new Map(); // by number: what to do with the answer
+  #held = new HeldScene(() => ++this.#number); // frames in lanes always send the whole scene
+  #waiting = new Map(); // the functions that take the answers, by the number of the request
 
   constructor(model) {
     this.#model = model;
@@ -60,15 +60,16 @@ class WidgetChannel {
     const ask = (number, body, base) => this.#ask("frame", { ...asked, scene: body, ...(base === undefined ? {} : { base }) }, number);
     const { type, times, buffers } = await (lane === "" ? this.#held.send(scene, moving, ask) : ask(++this.#number, JSON.stringify(scene)));
     if (type === undefined) return null; // cancelled
-    if (isStill(asked)) this.#model.set("still", buffers[0]); // the page's own copy: nothing is sent
+    if (isStill(asked)) this.#model.set("still", buffers[0]); // this sets the page's copy of the trait; no message is sent
     return { blob: new Blob(buffers, { type }), times };
   }
 }
 
-// Whether a frame is one at rest, as it is shown where no kernel answers.
+// Returns whether a frame is a picture at rest, which is shown if no kernel answers.
 const isStill = ({ format, depth, moving, lane }) => format === "png" && depth === 8 && !moving && lane === "";
 
-// The last frame at rest, until the viewer is there. No kernel answers in a notebook that was exported to HTML.
+// Shows the last picture at rest until the viewer has started. In a notebook that was exported to HTML, no
+// kernel answers and this picture stays.
 function showStill(model, cell) {
   const bytes = model.get("still");
   if (!bytes?.byteLength) return;
@@ -80,7 +81,7 @@ function showStill(model, cell) {
 export async function render({ model, el }) {
   const channel = new WidgetChannel(model), sheet = new CSSStyleSheet(), cell = document.createElement("div");
   const place = document.createElement("div"), shadow = place.attachShadow({ mode: "open" });
-  // JupyterLab's own keys and menu are not meant here.
+  // JupyterLab's keyboard shortcuts and context menu are switched off inside the viewer.
   place.setAttribute("data-lm-suppress-shortcuts", "true");
   place.setAttribute("data-jp-suppress-context-menu", "true");
   sheet.replaceSync(model.get("sheet"));
@@ -93,7 +94,7 @@ export async function render({ model, el }) {
   const start = await channel.start();
   const viewer = mount(cell, channel, start);
   el.halflight = viewer; // for the browser's console, and for tests
-  // Python's camera and lights; the picture stays as large as the page made it.
+  // Takes a scene from Python. The picture keeps the size that the page has given it.
   channel.onShow = (scene) => viewer.store.change("python", ({ image: { width, height } }) => (
     { ...scene, image: { ...scene.image, width, height } }));
   let timer = 0;
