@@ -82,8 +82,8 @@ static void draw_arrows(const hl_ink *ink, const hl_overlay_place *place) {
 
 /* ---- letters ---- */
 
-/* Names a direction of the picture by one axis or two. An axis is named if the direction's component along it
- * is at least 0.4; the axis with the greater component comes first. */
+/* Names a direction in the picture by the one or two axes of the volume that run along it. An axis is named
+ * if the direction's component along it is at least 0.4; the axis with the greater component comes first. */
 static void name_direction(const hl_overlay_place *place, const axis_names *names, vec3 way, char name[8]) {
   double part[3] = {way.x, way.y, way.z};
   name[0] = '\0';

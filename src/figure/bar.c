@@ -1,10 +1,10 @@
 /* figure/bar.c - draws the scale bar, which shows the length of a line in the world.
  *
- * The unit is the one in the volumes' files, or the one that the overlay names; without either, the bar is
- * refused. After the scales that the scene gives them, the lengths of all visible volumes whose files tell a
- * unit must be in one unit. A volume whose file tells none, such as a mask over a scan, lies in their world.
- * In a perspective picture the scale changes with depth. The bar is then right at one depth, which the
- * overlay chooses and the bar's text names. */
+ * The bar's unit is the unit that the volumes' files tell, or else the unit that the overlay names. If both
+ * are missing, the bar is refused. After the scales that the scene gives them, the lengths of all visible
+ * volumes whose files tell a unit must be in one unit. A volume whose file tells no unit, such as a mask over
+ * a scan, is taken to be in the unit of the others. In a perspective picture the scale changes with depth.
+ * The bar's length is then right at one depth only, which the overlay chooses and the bar's text names. */
 #include <stdio.h>
 #include <string.h>
 

@@ -1,7 +1,7 @@
 /* figure/legend.c - draws the legend, which explains the colours of the picture. Each visible volume has a
- * part: a strip with its transfer function's colours and opacity over its values, or rows for its isosurfaces
- * or its labels. The range of a strip begins at the least value with opacity and ends at the greatest, or
- * where the function's points end, unless the overlay or the volume states it. */
+ * part: a strip with its transfer function's colours and opacity over its values, or rows for its
+ * isosurfaces or its labels. The range of a strip begins at the least value with opacity and ends at the
+ * greatest, or where the function's points end, unless the overlay or the volume states the range. */
 #include <inttypes.h>
 #include <stdio.h>
 #include <string.h>
@@ -18,15 +18,15 @@ enum { TITLE_LINES_MOST = 4, ROW_LINES_MOST = 3, NUMBER_BYTES = 40, NAME_BYTES =
 
 /* lengths in the legend, in units of the letters' size */
 static const double row = 1.35, gap = 0.45, swatch = 0.9, column_gap = 1.6;
-/* A title that is at most this wide has one line, also if all else in the legend is narrower. */
+/* A title that is at most this wide has one line, even if the rest of the legend is narrower. */
 static const double title_width = 10;
 
 /* The state of drawing the legend, from its top downwards; in columns, also from the left to the right. */
 typedef struct legend {
   const hl_ink *ink;
   const hl_overlay_place *place;
-  double top, right, bottom; /* the legend's upper, right and lower edge, or those of its current column;
-                              * points */
+  double top, right, bottom; /* the upper, right and lower edge of the legend or, in columns, of its current
+                              * column; points */
   double y;                  /* the place of the top of the next volume's part on the page, points */
   double strip_height;       /* height of a strip of colours, points */
   size_t left_out;           /* the number of rows without room */
@@ -77,7 +77,7 @@ static const char *title_of(const hl_overlay_place *place, const hl_scene_volume
 
 /* ---- rows: a colour and a name ---- */
 
-/* The width of the text of one row of the legend, points. */
+/* Returns the width of the text of one row of the legend, in points. */
 static double widest_row(const legend *made, const char *text) {
   double width, height;
   hl_ink_measure(made->ink, &(hl_line_of_text){.text = text}, &width, &height);
@@ -174,8 +174,8 @@ static bool rows_fit(const legend *made, const hl_scene_volume *volume, double w
   return true;
 }
 
-/* The width of a volume's rows; 0 if it has none. It is at most the width that the legend's shape states,
- * unless words and rows need more. */
+/* Returns the width of a volume's rows; 0 if the volume has no rows. The width is at most the width of the
+ * legend's shape, unless a word or the number of lines of a row needs more. */
 static double width_of_rows(const legend *made, const hl_scene_volume *volume) {
   const double size = made->ink->size, beside = (swatch + gap) * size;
   double widest = 0, word = 0;
@@ -200,8 +200,8 @@ static void make_room(legend *made, double height) {
   made->y = made->top;
 }
 
-/* Draws the rows for which there is room, and says how many are left out. The first row is drawn in any case:
- * a legend that is too high for the picture finds no place in it. */
+/* Draws the rows for which there is room, and counts the rows that are left out. The first row is drawn in
+ * any case: a legend that is too high for the picture finds no place in it. */
 static void draw_rows(legend *made, const hl_scene_volume *volume) {
   const size_t count = count_rows(volume);
   const bool in_columns = made->place->legend.in_columns;
@@ -253,8 +253,8 @@ static hl_status find_scale(const legend *made, const hl_scene_volume *volume, h
     range[0] = function->color[0].value;
     range[1] = function->color[function->color_count - 1].value;
   }
-  /* A stated range holds values of the legend's volume. It does not hold for the colours of a second volume,
-   * which have a range of their own. */
+  /* A stated range holds values of the legend's volume. The stated range does not hold for the colours of a
+   * second volume, because these colours have another range. */
   *scale = hl_strip_scale_of(function, !even && stated[0] < stated[1] ? stated : range);
   if (hl_curves_have_own(&function->plane.curves)) {
     memcpy(scale->own, function->plane.curves.own_between, sizeof scale->own);
@@ -298,8 +298,9 @@ static hl_status widen_body(legend *made, const hl_scene_volume *volume, bool fi
   return status;
 }
 
-/* Draws a title above something of a height. The title is broken into lines that are as wide as the body of
- * the legend, or a little wider; wider still where it would have too many lines. */
+/* Draws a title above a part of the legend. below: the height of this part. The title is broken into lines
+ * that are as wide as the body of the legend, or a little wider. If the title would have too many lines,
+ * the lines are wider still. */
 static void draw_title(legend *made, const char *title, double below) {
   const double size = made->ink->size;
   const bool in_columns = made->place->legend.in_columns;
@@ -341,7 +342,7 @@ static hl_status draw_volume(legend *made, const hl_scene_volume *volume, bool f
 /* A volume that gives another volume its colours. */
 typedef struct other_volume {
   hl_scene_volume volume; /* its function has the colours of the other volume's function */
-  hl_color_point own;     /* the colour that the surface of the other volume has where it keeps its own */
+  hl_color_point own; /* the colour of the coloured volume's surface where the surface keeps its own colour */
 } other_volume;
 
 /* Finds the colour of a volume's surface: of its first isosurface, or of the least value that has half of the
@@ -357,8 +358,8 @@ static void own_color(const hl_scene_volume *volume, double color[3]) {
   else hl_transfer_function_color(&own, curves->opacity[n].value, color);
 }
 
-/* The volume whose values a volume's colours stand for: itself, or the one that gives its colours, which
- * *other then holds with these colours. */
+/* Returns the volume whose values the colours of `volume` stand for: `volume` itself, or a second volume
+ * that gives the colours. *other then holds the second volume with these colours. */
 static const hl_scene_volume *volume_of_colors(const hl_scene_description *scene,
                                                const hl_scene_volume *volume, other_volume *other) {
   static const hl_opacity_point opaque = {0, 1};

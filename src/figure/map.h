@@ -23,8 +23,8 @@ typedef struct hl_map {
 
 hl_map hl_map_of(const hl_camera *camera, hl_rectangle picture);
 
-/* The number of points on the page for one unit of the world. depth: the distance from the eye, which only
- * perspective cameras need. */
+/* Returns the length on the page, in points, of one unit of the world. depth: the distance from the eye;
+ * used only for perspective cameras. */
 double hl_map_scale(const hl_map *map, double depth);
 
 /* Finds the place on the page of a point of the world. Returns false if the point lies behind the eye. */

@@ -26,7 +26,8 @@ static vec3 in_file(const hl_scene_description *scene, vec3 difference) {
   return mat3_apply(to_file.linear, difference);
 }
 
-/* The vector from one point of a mark to another, in the world of the first volume's file. */
+/* Returns the vector from one point of a mark to another point, in the world coordinates of the first
+ * volume's file. */
 static vec3 way_of(const hl_scene_description *scene, const hl_mark *mark, size_t from, size_t to) {
   return in_file(scene, vec3_subtract(vec3_of(mark->points[to]), vec3_of(mark->points[from])));
 }
@@ -131,8 +132,8 @@ static bool rises(const hl_mark *mark, const point_on_page first[3]) {
   return mark->kind == HL_MARK_RULER && (first[1].x - first[0].x) * (first[1].y - first[0].y) < 0;
 }
 
-/* One place of a caption. far: its distance from the usual place, in lines. On the side that rises() names,
- * a ruler's caption begins at the ruler; on the other side it ends there. */
+/* One place of a caption. far: its distance from the usual place, in lines. A ruler's caption begins at the
+ * ruler on the side that rises() names, and ends at the ruler on the opposite side. */
 static hl_line_of_text try_caption(const hl_ink *ink, const char *caption, point_on_page at, bool below,
                                    bool left, int far) {
   const double way = (0.4 + 1.3 * far) * ink->size;
@@ -144,8 +145,8 @@ static hl_line_of_text try_caption(const hl_ink *ink, const char *caption, point
 }
 
 /* Places a caption beside a mark: below or above its anchor, to the right or to the left, of a ruler also
- * beside other points of its line. The first place that nothing has taken is chosen, or else the usual one.
- */
+ * beside other points of its line. The first free place is chosen for the caption. If no place is free, the
+ * caption stands at its usual place. */
 static hl_line_of_text lay_caption(const hl_ink *ink, const hl_overlay_place *place, const char *caption,
                                    const hl_mark *mark, const point_on_page first[3], point_on_page anchor) {
   static const double along[] = {0, -0.25, 0.25, -0.45, 0.45}; /* parts of the ruler's length */

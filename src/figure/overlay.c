@@ -1,10 +1,11 @@
 /* figure/overlay.c - draws the overlay of one picture. Annotations and the panel's letter are drawn here;
  * each other part has a file of its own.
  *
- * All places are found before anything is drawn, on a surface of its own, so that a figure has the same
- * places in every format. First come the insets and the texts whose places are stated, then the parts that
- * have asked for corners, then the arrows, the bar and the legend, which takes the height that is left, and
- * at last the texts that stand at edges and beside marks. Each keeps clear of all before it. */
+ * All places are found before anything is drawn, by trial drawings on a recording surface, so that a figure
+ * has the same places in every format. Places are found in a fixed order. First come the insets and the texts
+ * whose places are stated, then the parts whose corners are stated. Then come the arrows, the bar and the
+ * legend, which takes the height that is left. Texts at edges and beside marks come last. Each part keeps
+ * clear of all parts before it. */
 #include "figure/overlay.h"
 
 #include <string.h>
@@ -18,7 +19,8 @@ static const double rim = 0.4;
 
 /* ---- measuring ---- */
 
-/* Makes an ink that draws on a surface which only records. Destroy trial.cairo after use. */
+/* Makes an ink that draws on a recording surface, whose drawings are not seen. Destroy trial.cairo after use.
+ */
 static hl_ink begin_trial(const hl_ink *ink) {
   cairo_surface_t *record = cairo_recording_surface_create(CAIRO_CONTENT_COLOR_ALPHA, NULL);
   hl_ink trial = *ink;
@@ -48,7 +50,8 @@ hl_line_of_text hl_overlay_beside(const hl_ink *ink, const hl_taken *taken, hl_l
   const double x = text.x, y = text.y;
   hl_search search = {.taken = taken, .unit = 1};
   for (int turn = 0; turn <= 4; turn++) {
-    const double *side = sides[turn % 4]; /* the usual side once more, if no side is free */
+    const double *side =
+        sides[turn % 4]; /* the last turn takes the usual side again, because no side is free */
     text.x = x + apart * side[0];
     text.y = y + apart * side[1];
     text.align_x = (1 - side[0]) / 2;
@@ -62,16 +65,16 @@ hl_line_of_text hl_overlay_beside(const hl_ink *ink, const hl_taken *taken, hl_l
 static double ring_of(const hl_ink *ink) { return 0.3 * ink->size; }
 static double apart_of(const hl_ink *ink) { return 2.2 * ring_of(ink); }
 
-/* How an annotation finds its place: it states one in the picture, has none, or states a point of the world.
- */
+/* The ways in which an annotation gets its place: from a place in the picture that the annotation states,
+ * from a point of the world that it states, or automatically if it states neither. */
 typedef enum place_kind { STATED, FREE, AT_POINT, PLACE_KINDS } place_kind;
 
 static place_kind kind_of(const hl_annotation *note) {
   return note->in_world ? AT_POINT : isnan(note->at[0]) ? FREE : STATED;
 }
 
-/* Finds the text of the n-th annotation without a place: at the upper left below those before it, or further
- * down where something stands there. */
+/* Finds the text of the n-th annotation without a place: at the upper left, below the annotations before
+ * it, or further down if the place is taken. */
 static hl_line_of_text lay_free(const hl_ink *ink, const hl_overlay_place *place, const char *text, int n) {
   static const double left = 0.03, top = 0.05;
   const hl_rectangle picture = place->picture;
@@ -101,8 +104,8 @@ static hl_status lay_annotation(const hl_overlay_place *place, const hl_annotati
   return HL_OK;
 }
 
-/* Finds the texts of all annotations, first of annotations with a stated place in the picture. The others
- * keep clear of them. lines: [annotation_count]. */
+/* Finds the texts of all annotations, first of annotations with a stated place in the picture. The texts of
+ * other annotations keep clear of the texts with a stated place. lines: [annotation_count]. */
 static hl_status place_annotations(const hl_ink *ink, hl_overlay_place *place, hl_line_of_text *lines,
                                    hl_error *error) {
   const hl_overlay *overlay = place->overlay;
@@ -137,7 +140,8 @@ static void draw_annotation(const hl_ink *ink, const hl_overlay_place *place, co
   hl_ink_text(ink, line);
 }
 
-/* Finds the place of the panel's letter: at the upper left, beside an inset that lies there. */
+/* Finds the place of the panel's letter: at the upper left, or beside an inset if the inset lies at the upper
+ * left. */
 static hl_line_of_text place_letter(const hl_ink *ink, hl_overlay_place *place) {
   hl_line_of_text line = {.text = place->overlay->letter,
                           .x = place->picture.left + place->margin,
@@ -155,7 +159,8 @@ static hl_line_of_text place_letter(const hl_ink *ink, hl_overlay_place *place) 
 
 /* ---- parts with corners ---- */
 
-/* A part that is drawn at its usual place, in a corner, and moved from there. */
+/* A part of the overlay that is placed in a corner: the part is drawn at its usual place and moved from there
+ * to the place that was found. */
 typedef struct corner_part {
   const char *name;
   draw_function draw;
@@ -176,8 +181,8 @@ static bool is_lower(hl_corner corner) {
   return corner == HL_CORNER_LOWER_LEFT || corner == HL_CORNER_LOWER_RIGHT;
 }
 
-/* Searches for the place of a part: the corner that is asked for, whatever lies there, or all along the
- * edges. box: the part at its usual place. unit: as in hl_search. */
+/* Searches for the place of a part: the stated corner, whatever lies there, or, if no corner is stated, the
+ * best place along the picture's edges. box: the part at its usual place. unit: as in hl_search. */
 static hl_search find_place(const hl_ink *ink, const hl_overlay_place *place, const hl_cover *cover,
                             const corner_part *part, hl_rectangle box, double unit) {
   const hl_taken nothing = {.picture = place->picture};
@@ -196,7 +201,7 @@ static hl_search find_place(const hl_ink *ink, const hl_overlay_place *place, co
   return search;
 }
 
-/* The unit by which the areas are counted that parts cover: a twentieth of a part. */
+/* Returns the unit in which covered areas are counted: a twentieth of the part's own area. */
 static double unit_of(hl_rectangle box) { return fmax(box.width * box.height / 20, 1e-3); }
 
 /* Gives a part the place that a search has found. box: the part at its usual place. */
@@ -208,7 +213,7 @@ static void give_place(corner_part *part, hl_rectangle box, const hl_search *sea
   part->covered = search->covered * search->unit;
 }
 
-/* The height that a part as wide as a box may have at one side of the picture. */
+/* Returns the greatest height of a part at one side of the picture, if the part is as wide as a given box. */
 static double height_at(const hl_ink *ink, const hl_overlay_place *place, hl_rectangle box, bool other_side) {
   const double around = place->margin - rim * ink->size;
   if (other_side) box = hl_rectangle_in_corner(box, place->picture, true, false);
@@ -218,12 +223,12 @@ static double height_at(const hl_ink *ink, const hl_overlay_place *place, hl_rec
   return hl_free_height(&place->taken, column) - 2 * rim * ink->size;
 }
 
-/* The shapes of legends, the usual one first: the greatest widths of their titles and rows, and the greatest
- * heights of their strips; in units of the letters' size. */
+/* The shapes that a legend may have, the usual shape first. widths: the greatest widths of titles and rows;
+ * strips: the greatest heights of strips; in units of the letters' size. */
 static const double widths[] = {1e3, 12, 9, 7}, strips[] = {9, 5.5};
 enum { WIDTHS = sizeof widths / sizeof *widths, STRIPS = sizeof strips / sizeof *strips };
 
-/* The n-th shape of a legend of a height. */
+/* Returns the n-th shape of a legend with a given height. */
 static hl_legend_shape shape_of(double height, int n, const hl_ink *ink) {
   return (hl_legend_shape){.height = height,
                            .width = widths[n % WIDTHS] * ink->size,
@@ -231,8 +236,8 @@ static hl_legend_shape shape_of(double height, int n, const hl_ink *ink) {
 }
 
 /* Finds the best of the shapes of the legend, all of one height, and its place: the shape that leaves out
- * the least rows, then the one that covers the least, then the first one. whole: the legend with all the
- * height of the picture. */
+ * the fewest rows; among these shapes, the shape that covers the least area; among these, the first shape.
+ * whole: the box of the legend if it may use the whole height of the picture. */
 static hl_status shape_legend(const hl_ink *ink, hl_overlay_place *place, const hl_cover *cover,
                               corner_part *part, hl_rectangle whole, double height, hl_error *error) {
   hl_legend_shape best_shape = {0};
@@ -261,8 +266,8 @@ static hl_status shape_legend(const hl_ink *ink, hl_overlay_place *place, const 
   return status;
 }
 
-/* Places the legend. It is as high as there is room at its usual side of the picture, or else at the other
- * side: also where it is whole at the other side alone. */
+/* Places the legend. The legend gets the height of the free room at its usual side of the picture. The
+ * opposite side is taken if only that side has room for a place, or for the whole legend. */
 static hl_status place_legend(const hl_ink *ink, hl_overlay_place *place, const hl_cover *cover,
                               corner_part *part, hl_error *error) {
   const bool across = part->asked != HL_CORNER_FREE && is_right(part->asked) != is_right(part->usual);
@@ -304,8 +309,8 @@ static hl_status place_part(const hl_ink *ink, hl_overlay_place *place, const hl
 
 enum { PARTS = 3, LEGEND = 2 };
 
-/* Places all parts in one order, first the parts with a given corner. legend_first: whether the legend comes
- * before the others. */
+/* Places all parts in one order: first the parts whose corners are stated. legend_first: whether the legend
+ * is placed before the other parts. */
 static hl_status place_in_order(const hl_ink *ink, hl_overlay_place *place, const hl_cover *cover,
                                 corner_part parts[PARTS], bool legend_first, hl_error *error) {
   hl_status status = HL_OK;
@@ -318,15 +323,16 @@ static hl_status place_in_order(const hl_ink *ink, hl_overlay_place *place, cons
   return status;
 }
 
-/* What speaks against the places of all parts: the area that they cover, and parts that are left out. */
+/* Returns the cost of the places of all parts: the covered area, and a high cost for each part that is left
+ * out. */
 static double cost_of(const corner_part parts[PARTS]) {
   double cost = 0;
   for (int n = 0; n < PARTS; n++) cost += parts[n].wanted && !parts[n].is_placed ? 1e12 : parts[n].covered;
   return cost;
 }
 
-/* Places the parts in that order of two in which they cover less. A legend that comes first has more places
- * to choose from, and one that comes last is lower. */
+/* Tries two orders of placing the parts, and keeps the order in which the parts cover less. A legend that
+ * is placed first has more places to choose from; a legend that is placed last is lower. */
 static hl_status place_parts(const hl_ink *ink, hl_overlay_place *place, const hl_cover *cover,
                              corner_part parts[PARTS], hl_error *error) {
   hl_overlay_place first_place = *place;
@@ -377,7 +383,7 @@ static hl_status draw_part(const hl_ink *ink, const hl_overlay_place *place, con
   return status;
 }
 
-/* Tells the context's log which parts, and how many rows of the legend, are left out, because they find no
+/* Tells the context's log which parts, and how many rows of the legend, are left out because there is no
  * room. */
 static void tell_left_out(const hl_overlay_ground *ground, const corner_part parts[PARTS]) {
   char panel[40] = "";
@@ -472,8 +478,8 @@ hl_status hl_overlay_draw(const hl_ink *ink, const hl_overlay *overlay, const hl
 
 /* ---- a strip of the page ---- */
 
-/* The rows of a legend in columns are at most this wide, where their words allow it, and its strips of
- * colours this high; in units of the letters' size. */
+/* The greatest width of the rows of a legend in columns (a long word may make a row wider), and the
+ * greatest height of the legend's strips of colours; in units of the letters' size. */
 static const double column_width = 16, column_strip = 5;
 
 hl_status hl_overlay_strip(const hl_ink *ink, const hl_overlay *overlay, const hl_scene *scene,
@@ -488,8 +494,8 @@ hl_status hl_overlay_strip(const hl_ink *ink, const hl_overlay *overlay, const h
   hl_rectangle box = {0};
   hl_status status;
   do {
-    /* Higher columns are fewer. The height grows by a line until the columns fit into the strip, or until one
-     * column holds all rows. */
+    /* A legend with higher columns has fewer columns. The columns' height grows line by line until the
+     * columns fit into the strip, or until one column holds all rows. */
     place.legend.height += line;
     status = find_box(ink, &place, hl_overlay_legend, &box, error);
   } while (status == HL_OK && box.left + box.width > strip.left + strip.width - place.margin &&

@@ -26,20 +26,20 @@ typedef struct hl_overlay_place {
 
 typedef struct hl_legend_shape hl_legend_shape;
 
-/* What hl_overlay_draw() draws over. */
+/* The picture and its surroundings over which hl_overlay_draw() draws an overlay. */
 typedef struct hl_overlay_ground {
   hl_context *context;
   const hl_scene *scene;  /* may be null */
-  const hl_image *matter; /* shows where matter lies, of which the overlay keeps clear, and over which it has
-                           * grounds; if null, there is none */
+  const hl_image *matter; /* shows where the picture has matter. The overlay keeps clear of the matter, and
+                           * parts over matter get a ground. If null, the picture has no matter */
   hl_rectangle picture;   /* the rectangle of the picture on the page, points */
   const hl_rectangle *insets; /* [inset_count]; rectangles on the page that will lie over the picture */
   size_t inset_count;
   size_t panel;        /* the panel's number, which messages name; 0 if the page has no other panel */
   bool is_told;        /* whether the context's log is told which parts find no room */
-  bool *legend_covers; /* if not null, nothing is drawn, and this takes whether the legend finds no place, has
-                        * no room for all its rows, or covers a twentieth of itself of what the picture
-                        * shows */
+  bool *legend_covers; /* if not null, nothing is drawn, and *legend_covers is set to whether the legend has
+                        * no place, has no room for all rows, or has a twentieth of its area over the
+                        * picture's matter */
 } hl_overlay_ground;
 
 /* Draws the whole overlay over a picture. */
@@ -52,8 +52,8 @@ hl_status hl_overlay_strip(const hl_ink *ink, const hl_overlay *overlay, const h
                            hl_rectangle strip, bool draws, double *height, hl_error *error);
 
 /* Places a text beside a point on the page: to the right of it (the usual place), to the left, below or
- * above. The first place that keeps clear of other drawings is chosen, or else the usual one. apart: the
- * distance from the point, points. */
+ * above. The first place that keeps clear of other drawings is chosen; if all places are taken, the usual
+ * place. apart: the distance from the point, points. */
 hl_line_of_text hl_overlay_beside(const hl_ink *ink, const hl_taken *taken, hl_line_of_text text,
                                   double apart);
 

@@ -136,8 +136,8 @@ static void mean_of_picture(const hl_image *image, const double ground[3], doubl
           (double)count;
 }
 
-/* Chooses white ink on a dark ground, and black ink on a bright one. The limit is the middle of sRGB's scale,
- * which is 0.214 in linear light. The ground of a picture without a scene is its mean colour. */
+/* Chooses white ink on a dark ground, and black ink on a bright ground. The limit is the middle of sRGB's
+ * scale, which is 0.214 in linear light. The ground of a picture without a scene is its mean colour. */
 static hl_ink ink_for(cairo_t *cairo, const hl_figure *figure, const hl_figure_panel *panel) {
   const double *ground = figure->background;
   double mean[3];

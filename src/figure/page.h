@@ -18,16 +18,17 @@ hl_status hl_page_draw(hl_context *context, const hl_figure *figure, bool is_tol
 /* Writes a figure as PDF, or as SVG, to output->file. */
 hl_status hl_page_write(const hl_figure *figure, bool pdf, hl_output *output, hl_error *error);
 
-/* The height of the strip below the pictures that holds the legend of a panel; millimetres. panel: one that
- * asks for HL_CORNER_BELOW. */
+/* The height of the strip below the pictures that holds the legend of a panel; millimetres. panel: a panel
+ * whose legend has the corner HL_CORNER_BELOW. */
 hl_status hl_page_measure_strip(const hl_figure *figure, const hl_figure_panel *panel, double *height,
                                 hl_error *error);
 
-/* Finds whether the legend of a panel covers what the picture shows, wherever it lies. */
+/* Finds whether the legend of a panel covers matter that the picture shows, at any place that the legend may
+ * have. */
 hl_status hl_page_judge_legend(hl_context *context, const hl_figure *figure, size_t index, bool *covers,
                                hl_error *error);
 
-/* The first panel with a legend below all pictures; null if there is none. */
+/* Returns the first panel that has its legend below all pictures; null if no panel has such a legend. */
 const hl_figure_panel *hl_panel_of_strip(const hl_figure *figure);
 
 /* The names of the drawing libraries that the build lacks, such as "cairo and pango"; null if the build lacks

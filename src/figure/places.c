@@ -1,7 +1,7 @@
-/* figure/places.c - finds the places of the parts of an overlay on a picture: the legend, the scale bar, the
- * arrows and the texts. In: the matter that the picture shows, the boxes of other drawings, and boxes in
- * which a part could lie. Out: the best of these boxes. All parts follow this one rule, and differ only in
- * the boxes that they try. */
+/* figure/places.c - finds the places of the parts of an overlay on a picture: the legend, the scale bar,
+ * the arrows and the texts. In: the matter that the picture shows, the boxes of other drawings, and boxes
+ * in which a part could lie. Out: the best of these boxes. All parts of an overlay are placed by the rule
+ * above, and differ only in the boxes that they try. */
 #include "figure/places.h"
 
 #include <math.h>
@@ -18,7 +18,7 @@ static int pixels_of_cell(int width, int height) {
   return (longest + MOST_CELLS - 1) / MOST_CELLS;
 }
 
-/* An opacity, of 255. It is 0 where the opacity changes no 8-bit code. */
+/* An opacity, of 255. The weight is 0 where the opacity is too small to change an 8-bit colour code. */
 static int64_t code_of(float opacity) { return opacity > 0 ? lround(255 * fmin((double)opacity, 1)) : 0; }
 
 /* Adds the opacities of all pixels to the sums of their cells, and the sums of cells above and to the left.

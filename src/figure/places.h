@@ -56,8 +56,8 @@ double hl_free_height(const hl_taken *taken, hl_rectangle column);
 /* ---- the search ---- */
 
 /* The search for the place of one part. Boxes that are tried count only if they lie within the picture and
- * keep clear of other drawings. The best box covers the least of the picture's matter. If several boxes cover
- * as little, the one nearest to the part's usual place is the best. */
+ * keep clear of other drawings. The best box covers the least of the picture's matter. Among boxes that
+ * cover equally little, the box nearest to the part's usual place is the best. */
 typedef struct hl_search {
   const hl_taken *taken;
   const hl_cover *cover; /* null if the part may cover anything, as a text beside its point may */
@@ -78,8 +78,8 @@ bool hl_search_try(hl_search *search, hl_rectangle box, double far);
 void hl_search_edge(hl_search *search, hl_rectangle usual, hl_rectangle other, double step);
 
 /* Tries boxes along all four edges of the picture, in the same way, all as far from the edges as the usual
- * box. A box higher than half the picture stays at its sides, and one wider than half of it at the upper and
- * the lower edge. */
+ * box. A box higher than half the picture stays at the left or right edge of the picture. A box wider than
+ * half the picture stays at the upper or lower edge. */
 void hl_search_edges(hl_search *search, hl_rectangle usual, double step);
 
 #endif

@@ -2,8 +2,8 @@
  *
  * The strip shows the function's own colours, as a fully lit surface has them. The curve beside the strip
  * shows the opacity: it touches the strip where the opacity is 0, and lies farthest from it at the greatest
- * opacity. Where all values of the strip have the same opacity, there is no curve. A function whose colours
- * were spread by logarithms has a logarithmic strip, on which each of them takes the same length. */
+ * opacity. If all values of the strip have the same opacity, no curve of opacity is drawn. A function whose
+ * colours were spread by logarithms has a logarithmic strip, on which each of them takes the same length. */
 #include "figure/strip.h"
 
 #include <math.h>

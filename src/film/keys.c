@@ -47,8 +47,8 @@ static int read_value(const char *text, const char *end, double value[3], bool *
   return *is_color ? 3 : 0;
 }
 
-/* The end of the value that begins at `text`: the comma before the next FRAME:, or one that nothing follows.
- */
+/* Returns the end of the value that begins at `text`: the comma before the next FRAME:, or a comma at the
+ * end of the text. */
 static const char *end_of_value(const char *text) {
   const char *colon = strchr(text, ':'), *end = colon != NULL ? colon : text + strlen(text);
   const char *comma = memrchr(text, ',', (size_t)(end - text));

@@ -9,7 +9,8 @@
 
 typedef struct movie movie;
 
-/* The extensions of films that can be written. The first one is ".mp4"; null follows the last one. */
+/* The extensions of films that can be written. The first ending in the list is ".mp4"; null follows the last
+ * ending. */
 extern const char *const movie_extensions[];
 
 /* Returns whether the program ffmpeg is in the PATH. */

@@ -10,8 +10,8 @@
  * volume continues the matter behind it; grid->face_low or face_high puts such a face far outside. */
 hl_status hl_iso_cap(hl_pool *pool, const lattice *lattice, iso_triangles *made, hl_error *error);
 
-/* The faces of the box that get caps, as bits. Bit 2 a stands for the lower face of axis a, bit 2 a + 1 for
- * the upper one. */
+/* The faces of the box that get caps, as bits. Bit 2 a stands for the lower face of axis a, and bit 2 a + 1
+ * for the upper face of axis a. */
 uint8_t hl_iso_capped_faces(const grid *grid);
 
 /* The result of hl_iso_capped_faces() if all faces of the box get caps. The surface and its caps then enclose

@@ -2,10 +2,11 @@
  *
  * Walk around a face of the cube, counter-clockwise as seen from outside. On the face, the surface runs from
  * the edge where the walk enters the inside of the surface to the edge where the walk leaves it again. An
- * edge belongs to two faces: if the walk around one of them enters the inside at this edge, the walk around
- * the other one leaves there. So these pairs of edges link the crossed edges to loops, and the loops are cut
- * into triangles. Both cubes beside a face find the same pairs on it, so that the surface has no holes. If
- * exactly two opposite corners of a face are inside, the surface cuts off each of them separately. */
+ * edge belongs to two faces. If the walk around one face enters the inside at this edge, the walk around the
+ * second face leaves the inside at the edge. The pairs of edges therefore link the crossed edges to loops,
+ * and the loops are cut into triangles. The two cubes that share a face find the same pairs of edges on the
+ * face, so that the surface has no holes. If exactly two opposite corners of a face are inside, the surface
+ * cuts off each of them separately. */
 #include "isosurface/cubes.h"
 
 int hl_cube_edge_corner(int edge) {

@@ -2,9 +2,9 @@
  *
  * Let e be an edge, and m and n the unit normals at its ends. Above the middle of the edge, the surface rises
  * by about |e . (n - m)| / 8 (derived: on a circle of radius r the normals' difference along e is |e| / r,
- * and the arc rises by |e|^2 / (8 r) above its chord). An edge is halved in both triangles beside it, so that
- * there are no gaps. Lengths are measured in the world, in units of a voxel's smallest edge. Lengths in index
- * space would be wrong where voxels are long. */
+ * and the arc rises by |e|^2 / (8 r) above its chord). An edge is halved in the two triangles that share it,
+ * so that the surface gets no gaps. Lengths are measured in the world, in units of a voxel's smallest edge.
+ * Lengths in index space would be wrong where voxels are long. */
 #include <stdlib.h>
 
 #include "core/memory.h"

@@ -7,8 +7,9 @@
 /* The colours that the curves of a volume's transfer function give to the vertices of an isosurface. */
 typedef struct iso_coloring {
   const hl_scene_volume *second; /* the volume whose values the colours stand for */
-  affine3 index_to_second;       /* maps the index space of the surface's volume to that of the second one */
-  const double *own_color;       /* [3]; linear RGB; the colour where the volume keeps its own */
+  affine3 index_to_second; /* maps the index space of the surface's volume to the index space of the second
+                              volume */
+  const double *own_color; /* [3]; linear RGB; the colour where the volume keeps its own */
 } iso_coloring;
 
 /* Whether isosurface i of a volume has the colours of another volume's values. */

@@ -9,7 +9,7 @@
 #include "core/memory.h"
 #include "core/vector.h"
 
-/* An edge of a triangle: both of its vertices, the lesser one in the upper half. */
+/* An edge of a triangle: the numbers of its two vertices, the lesser number in the upper half of the bits. */
 typedef struct edge {
   uint64_t vertices;
   int direction; /* 1 if the triangle goes from the lesser vertex to the greater one, else -1 */

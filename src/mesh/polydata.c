@@ -135,7 +135,8 @@ static hl_status make_colors(const polydata *data, const cell_values *values, fl
 typedef struct conversion {
   const polydata *data;
   mesh_parts *parts;
-  float (*colors)[4]; /* the colours of the points, or else of the cells; null if there are none */
+  float (*colors)[4]; /* the colours of the points or, if points have no colours, of the cells; null if cells
+                         have no colours either */
   bool of_points;
   size_t first_cell[CELL_KINDS]; /* for each kind of cells, its first cell's index among the cells of all
                                   * kinds */

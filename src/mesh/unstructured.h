@@ -1,7 +1,7 @@
 /* mesh/unstructured.h - converts the visible cells of VTK's unstructured grids to cells of PolyData.
  *
  * Vertices, lines and faces keep their kind. If a cell encloses a volume, the faces that it shares with no
- * other cell are kept. Quadratic cells are treated as linear ones: only their corners are used. */
+ * other cell are kept. Quadratic cells are treated as linear cells: only their corners are used. */
 #ifndef HL_MESH_UNSTRUCTURED_H
 #define HL_MESH_UNSTRUCTURED_H
 

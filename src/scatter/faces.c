@@ -9,12 +9,14 @@
  * place of v (derived). Lines along the face are another case. Beside the matter, the light v along such a
  * line comes from the sky, or is 0. Within the matter, the light u along the line is scattered there. Each
  * line stands for all directions that are nearly along the face. At the face, one half of these directions
- * brings v and the other half u; a little deeper all of them bring u. So in the middle v has the weight 1/4.
- * For this the node of less matter must hold v + (u - v) / 2 (e - f) / (e + f).
+ * brings v and the other half u; a little deeper all of them bring u. On average over the depths between, v
+ * therefore has the weight 1/4. For this weight, the node of less matter must hold v + (u - v) / 2 (e - f) /
+ * (e + f).
  *
- * So an empty node beside matter holds the light at the matter's face. It continues the light of the matter,
- * and light that is even stays even. If a node has several neighbours with more matter, it gets the mean of
- * the changes for all of them. The weight of a neighbour is the difference of matter. */
+ * An empty node beside matter therefore holds the light at the matter's face. The light beside the matter
+ * continues the light within the matter, and even light stays even. If a node has several neighbours with
+ * more matter, it gets the mean of the changes for all of them. The weight of a neighbour is the difference
+ * of matter. */
 #include "scatter/parts.h"
 
 typedef struct faces {

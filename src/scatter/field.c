@@ -188,9 +188,9 @@ static float mean_albedo(const channel *of, size_t count) {
 }
 
 /* Subtracts the fraction (1 - w) of the sky's unscattered light from the grid's light (parts.h), where w is
- * the albedo of the matter at a node. The evenly scattering medium absorbs as much light as the real one
- * (similarity, scatter.h). So the albedo w is 1 - (extinction - scattering) / own. Empty nodes beside matter
- * have the albedo of all matter. */
+ * the albedo of the matter at a node. The evenly scattering medium absorbs as much light as the real medium
+ * (similarity, scatter.h). The albedo w of the evenly scattering medium is therefore 1 - (extinction -
+ * scattering) / own. Empty nodes beside matter have the albedo of all matter. */
 static void leave_sky(const channel *of, const scatter_work *work, size_t count) {
   float elsewhere = mean_albedo(of, count);
   for (size_t n = 0; n < count; n++) {

@@ -23,8 +23,8 @@ enum {
 /* Matter and light at the nodes of the grid. Each array is [channels][nodes], unless its comment says
  * otherwise. */
 typedef struct scatter_arrays {
-  float *extinction; /* extinction, per frame unit, of the evenly scattering medium (scatter.h) that replaces
-                      * the real one */
+  float *extinction; /* extinction, per frame unit, of the evenly scattering medium (scatter.h) that
+                      * replaces the real medium */
   float *scattering; /* scattering of the evenly scattering medium, per frame unit */
   float *own;        /* extinction of the real medium, per frame unit. If all media scatter evenly, this is
                       * the same array as `extinction` */

@@ -95,7 +95,8 @@ void connection_changed(void *user_data, struct MHD_Connection *connection, void
     *place = NULL;
   }
   pthread_mutex_unlock(&table->lock);
-  /* This thread accepts connections, so that its sleep keeps others out. */
+  /* The sleeping thread is the thread that accepts connections, so that no new connections are accepted
+   * during the sleep. */
   if (crowded) nanosleep(&moment, NULL);
 }
 

@@ -73,7 +73,7 @@ static hl_status output_end(film_output *out, hl_status status, hl_error *error)
   return status;
 }
 
-/* Adds one frame to the film, or as a PNG to the archive. */
+/* Adds one frame to the film file, or, as a PNG, to the archive of pictures. */
 static hl_status add_frame(server *s, server_page *page, const hl_scene *scene, film_output *out,
                            hl_error *error) {
   hl_context *context = s->options.context;

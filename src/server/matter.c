@@ -31,7 +31,7 @@ static float mean_opacity(const hl_image *image, int left, int right, int top, i
 }
 
 /* Sets the opacity of each pixel of `small` to the mean of the pixels of `image` there. side: the number of
- * pixels of `image` along the side of one of these pixels. */
+ * pixels of `image` along one side of a pixel of `small`. */
 static void average_opacities(const hl_image *image, int side, hl_image *small) {
   const int width = hl_image_width(image), height = hl_image_height(image);
   float *pixel = hl_image_pixels(small);

@@ -65,7 +65,7 @@ typedef enum frame_stage {
   STAGE_PICTURE = 0,
   STAGE_LABELS = 1,
   STAGE_SKY = 2,
-  STAGE_VOXELS = 3 /* finer voxels of what the picture sees are read */
+  STAGE_VOXELS = 3 /* finer voxels of the matter that the picture shows are being read */
 } frame_stage;
 
 /* What the newest picture at rest of a page shows. */
@@ -104,8 +104,8 @@ typedef struct server_page {
   page_matter matter;             /* guarded by server.pages_lock */
 } server_page;
 
-/* An open scene as it was read so far. Volumes of several resolutions are read from coarse to fine; each time
- * the whole state is replaced. */
+/* The state of an open scene: the scene with the resolutions that have been read so far. Volumes of several
+ * resolutions are read from coarse to fine; each time the whole state is replaced. */
 typedef struct opened_state opened_state;
 
 struct opened_state {
@@ -205,9 +205,10 @@ typedef struct frame_request {
                      * frame of the scene as it is */
   int coarse;       /* 1 if the frame uses the volumes that were read so far; 0 if the frame waits for the
                      * finest resolutions, and fails if they cannot be read */
-  int seen;         /* 1 if the picture shows what it sees of volumes at the resolutions that it deserves; a
-                     * picture that waits for the finest resolutions does so, too. Where `coarse` is 1 and
-                     * finer voxels cannot be read, the picture is of coarser ones, and the answer says so */
+  int seen;         /* 1 if the picture shows the volumes' visible voxels at the resolutions that suit the
+                     * picture's pixels; a picture that waits for the finest resolutions does so, too. If
+                     * `coarse` is 1 and finer voxels cannot be read, the picture shows coarser voxels, and
+                     * the answer says so */
   long long base;   /* 0 if `text` is a whole scene. Any other number is the number of a frame of the page;
                      * `text` is then a difference from that frame's scene */
   const char *text; /* the scene */
@@ -362,9 +363,9 @@ int opened_count(server *s);
 void opened_end(server *s);
 
 /* seen.c */
-/* Reads what a picture of a scene sees of its volumes, at the resolutions that the picture deserves, or finds
- * it among the voxels that are kept. opened: the number of the open scene. *seen: owned by the caller; null
- * if the scene's own volumes are fine enough, or are still read from coarse to fine. */
+/* Finds the voxels of a scene's volumes that a picture sees, at the resolutions that suit the picture's
+ * pixels: among the kept voxels, or by reading files. opened: the number of the open scene. *seen: owned by
+ * the caller; null if the scene's own volumes are fine enough, or are still read from coarse to fine. */
 hl_status seen_read(server *s, long long opened, hl_scene *scene, hl_scene **seen, hl_error *error);
 /* Replaces a scene by one that has the volumes of `seen`, which seen_read() has found for a scene of the same
  * view. */
@@ -382,9 +383,9 @@ bool folder_can_open(const char *name); /* tells by a name's ending whether the 
  * The caller owns file->confined. path: set to the absolute path; file->name and file->folder point into it.
  * Returns false if the file does not lie there, after links were followed, or cannot be opened. */
 bool folder_find(const server *s, const char *inside, char path[PATH_BYTES], server_file *file);
-/* Opens a file or folder below the server's folder, with the flags of open(). Returns its descriptor, or -1
- * if none lies there after links were followed. Nobody can lead the name out of the folder by a link that is
- * put into it meanwhile. */
+/* Opens a file or folder below the server's folder, with the flags of open(). Returns the file's
+ * descriptor, or -1 if the file does not lie below the folder after links were followed. Nobody can lead
+ * the name out of the folder by a link that is put into it meanwhile. */
 int folder_open(const server *s, const char *inside, int flags);
 
 /* ---- sessions.c ---- */

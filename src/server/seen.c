@@ -1,9 +1,10 @@
-/* server/seen.c - reads what pictures at rest see of volumes of several resolutions, and keeps the voxels
- * that were read last.
+/* server/seen.c - reads the voxels that pictures at rest see of volumes of several resolutions, and keeps
+ * the voxels that were read last.
  *
  * An open scene has its volumes at one resolution each, which all frames share. A picture that is zoomed in
- * deserves finer voxels, but only where it sees them. They belong to its view: another view needs others. The
- * light, the look and the cuts of the scene may change meanwhile. */
+ * needs finer voxels, but only in the part of the volume that the picture sees. The finer voxels belong to
+ * one view, because another view sees other voxels. The kept voxels stay valid when the light, the look or
+ * the cuts of the scene change. */
 #define _GNU_SOURCE
 #include <stdio.h>
 #include <stdlib.h>
@@ -100,7 +101,8 @@ void seen_forget(server *s, long long opened) {
   pthread_mutex_unlock(&s->seen_lock);
 }
 
-/* Returns whether an open scene is still read from coarse to fine. Its frames show what is there. */
+/* Returns whether an open scene is still read from coarse to fine. While a scene is still read from coarse to
+ * fine, frames show the resolutions that were read so far. */
 static bool is_refining(server *s, long long number) {
   server_opened *opened = opened_enter(s, number);
   const bool refining = opened == NULL || atomic_load(&opened->refining);

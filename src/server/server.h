@@ -47,7 +47,7 @@ typedef struct server_file {
   const char *folder;   /* the folder's absolute path, by which the scene names files; null if the file was
                          * dropped on the page; its scene can then be saved beside it */
   const char *series;   /* the DICOM series that is read (hl_volume_selection.series); null stands for the
-                         * largest one */
+                         * largest series */
 } server_file;
 
 typedef struct server_options {
@@ -58,13 +58,13 @@ typedef struct server_options {
                        * unit */
   const char *folder; /* absolute path; pages may open files below it; if null, pages may open no files */
   hl_status (*open)(void *files_data, const server_file *file, hl_scene **scene, hl_error *error);
-  /* Reads volumes whose files have finer resolutions than were read (hl_volume_selection.aim), at the next
-   * finer one. *finer: the scene with these volumes; null if there is none to read. If the function is null,
-   * no scene has finer resolutions. */
+  /* Reads, for each volume whose file has finer resolutions than the resolution that was read
+   * (hl_volume_selection.aim), the next finer resolution. *finer: the scene with these volumes; null if no
+   * volume has a finer resolution. If the function is null, no scene has finer resolutions. */
   hl_status (*refine)(void *files_data, const hl_scene *scene, hl_scene **finer, hl_error *error);
-  /* Reads what the picture of a scene sees of its volumes, at the resolutions that the picture deserves.
-   * *seen: the scene with these volumes and their levels; null if no volume has finer voxels for the picture.
-   * If the function is null, no scene has. */
+  /* Reads the voxels of a scene's volumes that the scene's picture sees, at the resolutions that suit the
+   * picture's pixels. *seen: the scene with these volumes and their levels; null if no volume has finer
+   * voxels for the picture. If the function is null, no scene has. */
   hl_status (*read_seen)(void *files_data, const hl_scene *scene, hl_scene **seen, hl_error *error);
   void *files_data;                        /* data for `open`, `refine` and `read_seen` */
   uint64_t most_upload_bytes;              /* the greatest number of bytes of a dropped file; 0 if there is no

@@ -18,8 +18,8 @@ static corner corner_in_view(const view *view, vec3 point) {
   return (corner){view->perspective ? p.x : 1, p.y, p.z};
 }
 
-/* The distance of a corner from a side of the frame, above 0 inside. Side 0 is the plane of the eye. Sides 1
- * and 2 are the left and the right side, sides 3 and 4 the upper and the lower one. */
+/* The distance of a corner from a side of the frame, above 0 inside. Side 0 is the plane of the eye. Sides
+ * 1 and 2 are the left and the right side; sides 3 and 4 are the upper and the lower side. */
 static double inside(const view *view, int side, corner c) {
   switch (side) {
     case 0: return c.w - NEAREST;

@@ -88,8 +88,8 @@ LANES_INLINE eight_doubles discriminants(const eight_rays *rays, eight_doubles u
   return along * along - dots(b, b) * (dots(a, a) - rays->radius * rays->radius);
 }
 
-/* The pixels of the tile that each sphere touches. Also the spheres that are small and seen from outside, one
- * bit each. */
+/* The pixels of the tile that each sphere touches. `small` and `seen` tell which spheres are small and
+ * which spheres are seen from outside. */
 typedef struct eight_boxes {
   eight_doubles x0, y0, x1, y1;
   eight_longs small, seen;

@@ -20,9 +20,10 @@ typedef struct sphere_rays {
 
 sphere_rays hl_sphere_rays(const view *view, const float sphere[4]);
 
-/* Finds the point where a ray enters a sphere, or if `leaving` is set, the point where it leaves the sphere.
- * (u, v): the ray's position in the picture, in pixels. If the ray misses the sphere, both places are the
- * point of the sphere nearest to the ray. Returns false if the point lies behind a perspective view's eye. */
+/* Finds the point where a ray enters a sphere or, if `leaving` is set, the point where the ray leaves the
+ * sphere. (u, v): the ray's position in the picture, in pixels. If the ray misses the sphere, both places
+ * are the point of the sphere nearest to the ray. Returns false if the point lies behind a perspective
+ * view's eye. */
 bool hl_meet_sphere(const sphere_rays *rays, double u, double v, bool leaving, vec3 *point);
 
 #endif
