@@ -144,12 +144,13 @@ static hl_line_of_text try_caption(const hl_ink *ink, const char *caption, point
                            .align_y = below ? 0 : 1};
 }
 
-/* Places a caption beside a mark: below or above its anchor, to the right or to the left, of a ruler also
- * beside other points of its line. The first free place is chosen for the caption. If no place is free, the
- * caption stands at its usual place. */
+/* Places a caption beside a mark: below or above the mark's anchor, and to the right or to the left of it.
+ * The caption of a ruler may also stand beside other points of the ruler's line. The first free place is
+ * chosen for the caption. If no place is free, the caption stands at its usual place. */
 static hl_line_of_text lay_caption(const hl_ink *ink, const hl_overlay_place *place, const char *caption,
                                    const hl_mark *mark, const point_on_page first[3], point_on_page anchor) {
-  static const double along[] = {0, -0.25, 0.25, -0.45, 0.45}; /* parts of the ruler's length */
+  static const double along[] = {0, -0.25, 0.25, -0.45,
+                                 0.45}; /* distances from the anchor, as fractions of the ruler's length */
   enum { MOST_FAR = 4 };
   const bool ruler = mark->kind == HL_MARK_RULER, below = rises(mark, first);
   const int points = ruler ? (int)(sizeof along / sizeof *along) : 1, turns = ruler ? 2 : 4;
@@ -205,7 +206,7 @@ static bool draw_path(const hl_ink *ink, const hl_map *map, const hl_mark *mark,
 hl_status hl_overlay_marks(const hl_ink *ink, const hl_overlay_place *place, hl_error *error) {
   const hl_scene_description *scene = place->scene;
   const hl_rectangle picture = place->picture;
-  hl_overlay_place own = *place; /* the captions take places, too */
+  hl_overlay_place own = *place; /* a copy of the place, to which the places of the captions are added */
   if (scene->mark_count == 0)
     return hl_fail(error, HL_ERROR_ARGUMENT,
                    "marks: the scene has none: measure by --ruler X,Y,Z:X,Y,Z or in `halflight view`, or "

@@ -2,7 +2,7 @@
  *
  * In: the figure, checked. Out: a picture, or the bytes of a file. The unit of length is always the point.
  * Pictures are drawn into their rectangles as 8-bit sRGB. A picture whose pixels are as large as the page's
- * is not resampled. Cairo allocates its surfaces outside of the context's memory. */
+ * pixels is not resampled. Cairo allocates its surfaces outside of the context's memory. */
 #include "figure/page.h"
 
 #include <cairo-pdf.h>
@@ -44,7 +44,8 @@ static void to_cairo(unsigned char *row, int width) {
   }
 }
 
-/* A picture without a scene lies over the page's background where it lets light through. */
+/* Makes a cairo surface of a panel's picture. If the panel has no scene, transparent parts of its picture
+ * show the page's background. */
 static hl_status make_surface(hl_context *context, const hl_figure *figure, const hl_figure_panel *panel,
                               cairo_surface_t **surface, hl_error *error) {
   const int width = hl_image_width(panel->image), height = hl_image_height(panel->image);
@@ -109,7 +110,7 @@ static hl_status draw_picture(hl_context *context, cairo_t *cairo, const hl_figu
   cairo_translate(cairo, place.left, place.top);
   if (!exact) cairo_scale(cairo, place.width / width, place.height / height);
   cairo_set_source_surface(cairo, surface, 0, 0);
-  /* beyond the picture's edges, the pixels at the edges repeat, so that the edges stay opaque */
+  /* the pixels at the picture's edges repeat beyond the edges, so that resampling leaves the edges opaque */
   if (pixels && !exact) cairo_pattern_set_extend(cairo_get_source(cairo), CAIRO_EXTEND_PAD);
   cairo_pattern_set_filter(cairo_get_source(cairo), exact ? CAIRO_FILTER_NEAREST : CAIRO_FILTER_GOOD);
   cairo_rectangle(cairo, 0, 0, width, height);
@@ -124,7 +125,7 @@ static double luma(const double linear[3]) { /* the luma of a colour by BT.709 *
   return 0.2126 * linear[0] + 0.7152 * linear[1] + 0.0722 * linear[2];
 }
 
-/* The mean colour of a picture, linear, before a ground. */
+/* Finds the mean colour of a picture over a ground, in linear RGB. */
 static void mean_of_picture(const hl_image *image, const double ground[3], double mean[3]) {
   const size_t count = (size_t)hl_image_width(image) * (size_t)hl_image_height(image);
   const float *pixels = hl_image_pixels_const(image);
@@ -170,8 +171,8 @@ static void draw_frame(const hl_ink *ink, hl_rectangle place) {
   cairo_stroke(ink->cairo);
 }
 
-/* Draws the overlay of a panel, beside the panels that will be drawn over it. legend_covers: as in
- * hl_overlay_ground. */
+/* Draws the overlay of a panel. The overlay keeps clear of the panels that will be drawn over this panel.
+ * legend_covers: as in hl_overlay_ground. */
 static hl_status draw_overlay(hl_context *context, const hl_figure *figure, size_t index, const hl_ink *ink,
                               bool is_told, bool *legend_covers, hl_error *error) {
   const hl_figure_panel *panel = &figure->panels[index];
@@ -220,7 +221,7 @@ hl_status hl_page_measure_strip(const hl_figure *figure, const hl_figure_panel *
   return status;
 }
 
-/* Draws the legend that lies below all panels, if there is one. */
+/* Draws the legend that lies below all panels, if a panel has such a legend. */
 static hl_status draw_strip(const hl_figure *figure, cairo_t *cairo, hl_error *error) {
   static const hl_figure_panel paper = {0};
   const hl_figure_panel *panel = hl_panel_of_strip(figure);

@@ -18,8 +18,8 @@ hl_status hl_page_draw(hl_context *context, const hl_figure *figure, bool is_tol
 /* Writes a figure as PDF, or as SVG, to output->file. */
 hl_status hl_page_write(const hl_figure *figure, bool pdf, hl_output *output, hl_error *error);
 
-/* The height of the strip below the pictures that holds the legend of a panel; millimetres. panel: a panel
- * whose legend has the corner HL_CORNER_BELOW. */
+/* Finds the height of the strip below the pictures that holds the legend of a panel, in millimetres. panel:
+ * a panel whose legend has the corner HL_CORNER_BELOW. */
 hl_status hl_page_measure_strip(const hl_figure *figure, const hl_figure_panel *panel, double *height,
                                 hl_error *error);
 

@@ -1,7 +1,7 @@
 /* figure/places.c - finds the places of the parts of an overlay on a picture: the legend, the scale bar,
  * the arrows and the texts. In: the matter that the picture shows, the boxes of other drawings, and boxes
- * in which a part could lie. Out: the best of these boxes. All parts of an overlay are placed by the rule
- * above, and differ only in the boxes that they try. */
+ * in which a part could lie. Out: the best of these boxes. All parts of an overlay are placed by one rule
+ * (hl_search in places.h), and differ only in the boxes that they try. */
 #include "figure/places.h"
 
 #include <math.h>
@@ -10,7 +10,7 @@
 
 /* ---- the matter in the picture ---- */
 
-enum { MOST_CELLS = 512 }; /* along a side of the grid */
+enum { MOST_CELLS = 512 }; /* the greatest number of cells along a side of the grid */
 
 /* The number of pixels along the side of a cell. */
 static int pixels_of_cell(int width, int height) {
@@ -18,10 +18,12 @@ static int pixels_of_cell(int width, int height) {
   return (longest + MOST_CELLS - 1) / MOST_CELLS;
 }
 
-/* An opacity, of 255. The weight is 0 where the opacity is too small to change an 8-bit colour code. */
+/* Converts an opacity to a whole number from 0 to 255. The number is 0 if the opacity is too small to change
+ * an 8-bit colour. */
 static int64_t code_of(float opacity) { return opacity > 0 ? lround(255 * fmin((double)opacity, 1)) : 0; }
 
-/* Adds the opacities of all pixels to the sums of their cells, and the sums of cells above and to the left.
+/* Fills the cover's sums: adds the opacity of each pixel to the sum of its cell, and then adds to each cell
+ * the sums of all cells above it and to its left.
  */
 static void add_pixels(const hl_image *image, hl_cover *cover) {
   const int width = hl_image_width(image), height = hl_image_height(image);
@@ -56,8 +58,9 @@ void hl_cover_release(hl_cover *cover) {
   cover->sums = NULL;
 }
 
-/* The cells from `low` to before `high` that a stretch of the page touches. from, to: the stretch, as parts
- * of the picture's side. pixels: the number of pixels along this side. */
+/* Finds the cells, from number `low` up to but not including `high`, that a stretch of a side of the
+ * picture touches. from, to: the ends of the stretch, as fractions of the side. pixels: the number of
+ * pixels along the side. */
 static void find_cells(double from, double to, int pixels, int side, int count, int *low, int *high) {
   static const double least = 1e-6; /* a touch by a smaller part of a cell is due to rounding */
   *low = (int)fmin(fmax(floor(from * pixels / side + least), 0), count);
@@ -110,7 +113,7 @@ static bool is_taken(const hl_taken *taken, hl_rectangle box) {
   return false;
 }
 
-/* The lower end of the free stretch of a column that begins at `top`. */
+/* Returns the lower end of the stretch of a column that begins at `top` and meets nothing taken. */
 static double end_of_stretch(const hl_taken *taken, hl_rectangle column, double top) {
   double end = column.top + column.height;
   column.height = end - top;
@@ -148,7 +151,7 @@ bool hl_search_try(hl_search *search, hl_rectangle box, double far) {
   return true;
 }
 
-/* Tries a box on an edge of the picture. at: where the box begins along the edge. */
+/* Tries a box at an edge of the picture. at: the coordinate along the edge at which the box begins. */
 static void try_at(hl_search *search, hl_rectangle box, bool along_x, double at, hl_rectangle usual) {
   if (along_x) box.left = at;
   else box.top = at;

@@ -9,11 +9,12 @@
 
 /* ---- the matter in the picture ---- */
 
-/* How opaque the picture is, in the cells of a grid over it. */
+/* The opacity of the picture, summed over the cells of a grid that covers the picture. */
 typedef struct hl_cover {
   hl_context *context;
-  int64_t *sums; /* owned; [(rows + 1) * (columns + 1)]; for each corner of cells the sum of the opacities, of
-                  * 255, of all pixels above it and to its left; null if the picture shows nothing */
+  int64_t *sums; /* owned; [(rows + 1) * (columns + 1)]; for each corner of cells, the sum of the opacities
+                  * (0 to 255) of all pixels above the corner and to its left; null if the picture shows
+                  * nothing */
   int columns, rows;
   int side;          /* the number of pixels along the side of a cell */
   int width, height; /* the number of the picture's pixels */
@@ -34,8 +35,9 @@ bool hl_rectangles_meet(hl_rectangle a, hl_rectangle b);
 bool hl_rectangle_lies_in(hl_rectangle box, hl_rectangle picture);
 /* A rectangle with a rim around it. */
 hl_rectangle hl_rectangle_widened(hl_rectangle box, double rim);
-/* The rectangle mirrored at the middle of the picture. across: its distance from the left edge becomes its
- * distance from the right edge. down: the same for the upper and the lower edge. */
+/* The rectangle mirrored at the middle of the picture. across: whether the rectangle's distance from the
+ * left edge becomes its distance from the right edge. down: whether its distance from the upper edge
+ * becomes its distance from the lower edge. */
 hl_rectangle hl_rectangle_in_corner(hl_rectangle box, hl_rectangle picture, bool across, bool down);
 
 /* ---- the places that other drawings take ---- */
@@ -60,13 +62,13 @@ double hl_free_height(const hl_taken *taken, hl_rectangle column);
  * cover equally little, the box nearest to the part's usual place is the best. */
 typedef struct hl_search {
   const hl_taken *taken;
-  const hl_cover *cover; /* null if the part may cover anything, as a text beside its point may */
+  const hl_cover *cover; /* null if the part may cover matter, as the text beside a point may */
   double rim;            /* the distance that the part keeps from other drawings, points */
   double unit;           /* the area by which covered areas are counted, points squared, above 0 */
   bool found;            /* whether any box counts */
   hl_rectangle box;      /* the best box */
   double covered;        /* the area that the box covers, with its rim, in units */
-  double far;            /* its distance from the usual place */
+  double far;            /* the distance of the best box from the usual place */
 } hl_search;
 
 /* Tries a box. far: its distance from the usual place. Returns whether it is the best box so far. */

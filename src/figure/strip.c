@@ -3,7 +3,7 @@
  * The strip shows the function's own colours, as a fully lit surface has them. The curve beside the strip
  * shows the opacity: it touches the strip where the opacity is 0, and lies farthest from it at the greatest
  * opacity. If all values of the strip have the same opacity, no curve of opacity is drawn. A function whose
- * colours were spread by logarithms has a logarithmic strip, on which each of them takes the same length. */
+ * colours were spread by logarithms has a logarithmic strip, on which each colour takes the same length. */
 #include "figure/strip.h"
 
 #include <math.h>
@@ -45,13 +45,13 @@ hl_strip_scale hl_strip_scale_of(const hl_transfer_function *function, const dou
                           .even = is_even_between(function, range[0], range[1])};
 }
 
-/* The place of a value along the strip: 0 at the lower end, 1 at the upper end. */
+/* Returns the place of a value along the strip, from 0 at the lower end to 1 at the upper end. */
 static double part_of(const hl_strip_scale *scale, double value) {
   if (scale->logarithmic) return hl_ln(value / scale->low) / hl_ln(scale->high / scale->low);
   return (value - scale->low) / (scale->high - scale->low);
 }
 
-/* The value at a place along the strip. */
+/* Returns the value at a place along the strip, from 0 at the lower end to 1 at the upper end. */
 static double value_at(const hl_strip_scale *scale, double part) {
   if (scale->logarithmic) return scale->low * hl_pow(scale->high / scale->low, part);
   return scale->low + part * (scale->high - scale->low);
@@ -134,8 +134,8 @@ static void draw_curve(const hl_ink *ink, const hl_transfer_function *function, 
 
 /* ---- the numbers ---- */
 
-/* The numbers beside a strip: the multiples of a step, or if `decades` is set, every so manieth power of
- * ten. */
+/* The numbers beside a strip: the multiples of `step` or, if `decades` is set, the powers of ten whose
+ * exponents are multiples of `step`. */
 typedef struct numbers {
   double step;
   bool decades;
@@ -152,14 +152,14 @@ static double round_step(double least) {
 
 static double first_of(double low, double step) { return ceil(low / step - 1e-9); }
 
-/* Whether multiples of a step, from `low` to `high`, are two at least. */
+/* Returns whether at least two multiples of a step lie between `low` and `high`. */
 static bool has_two(double low, double high, double step) {
   return (first_of(low, step) + 1) * step <= high + 1e-9 * step;
 }
 
-/* Returns the numbers beside a strip that has room for `ticks` of them. The strip has two numbers at least,
- * although they may be crowded, because a single number tells no scale. A logarithmic strip without two
- * powers of ten has multiples of a step. */
+/* Returns the numbers beside a strip that has room for `ticks` numbers. The strip gets at least two
+ * numbers, even if they are crowded, because a single number tells no scale. A logarithmic strip without
+ * two powers of ten has multiples of a step. */
 static numbers choose_numbers(const hl_strip_scale *scale, double ticks) {
   if (scale->logarithmic) {
     const double low = hl_log10(scale->low), high = hl_log10(scale->high);

@@ -12,15 +12,17 @@ typedef struct hl_strip_scale {
   double low, high; /* low < high; above 0 if `logarithmic` */
   bool logarithmic; /* whether equal ways along the strip are equal ratios of values, not equal differences */
   bool even;        /* whether all values from low to high have the same opacity, so that there is no curve */
-  double own[2];    /* the values between which the strip has the colour own_color: the matter has its own
-                     * colour there; if both are equal, there are none */
+  double own[2];    /* the two values between which the matter keeps its own colour, so that the strip shows
+                     * own_color; equal if there is no such range of values */
   double own_color[3]; /* linear RGB */
 } hl_strip_scale;
 
-/* Whether all values have the same opacity, as in a slice, and colours alone tell them apart. */
+/* Returns whether all values have the same opacity, as in a slice, so that only colours distinguish the
+ * values. */
 bool hl_strip_is_even(const hl_transfer_function *function);
 
-/* The scale on which a function's colours are spread evenly, with these values at its ends. */
+/* Returns the scale, linear or logarithmic, on which a function's colours are spread evenly. range: the
+ * values at the ends of the scale. */
 hl_strip_scale hl_strip_scale_of(const hl_transfer_function *function, const double range[2]);
 
 /* The width of a strip with its curve and its numbers; points. height: the strip's height, points. */

@@ -1,7 +1,8 @@
 /* film/film.c - makes the scenes of a film's frames.
  *
- * The scene's text is parsed once. For each frame, the keys' values are written into a copy of it. The
- * library reads and checks this copy like any other scene. Then the camera is turned. */
+ * The scene's text is parsed once. For each frame, the keys' values are written into a copy of the parsed
+ * text. The library reads and checks this copy like any other scene. The camera of the read scene is then
+ * turned. */
 #define _GNU_SOURCE
 #include "film.h"
 #include "elementary/elementary.h"
@@ -89,8 +90,9 @@ static bool find_table(const char *name, size_t letters, hl_setting_kind *kind) 
   return false;
 }
 
-/* Finds the setting that the first `length` bytes of a path name. In "volumes.0.scattering.albedo.0" it is
- * the one with the key "scattering/albedo" in the table of volumes. Returns null if they name no setting. */
+/* Finds the setting that the first `length` bytes of a path name. In "volumes.0.scattering.albedo.0" the
+ * setting is the row with the key "scattering/albedo" in the table of volumes. Returns null if the bytes
+ * name no setting. */
 static const hl_setting *setting_of(const char *path, size_t length) {
   hl_setting_kind kind = HL_SETTINGS_SCENE;
   char key[128] = "";
@@ -112,8 +114,8 @@ static bool has_type(const hl_setting *setting, hl_setting_type type) {
   return setting != NULL && setting->type == type;
 }
 
-/* Returns whether a scene takes only whole numbers at a key's path, whose last part is `name`. The text of
- * the scene does not tell it, because it has 7 for a size of 7.0 degrees, too. */
+/* Returns whether a scene takes only whole numbers at a key's path, whose last part is `name`. The number
+ * in the scene's text cannot answer this question, because the text may have 7 for a size of 7.0 degrees. */
 static bool is_whole(const film_key *key, const char *name) {
   /* The names that are no settings: parts of a volume's file, and numbers of shapes. */
   static const char *const others[] = {"component", "time", "channel", "level", "octaves",
@@ -132,7 +134,8 @@ static json_t *value_at(const film_key *key, int frame, const char *name) {
   return is_whole(key, name) ? json_integer(llround(value[0])) : json_real(value[0]);
 }
 
-/* Returns whether a setting is a colour, or where `color` is false any three numbers. */
+/* Returns whether a setting is a colour. If `color` is false, returns whether a setting is a colour, a point
+ * or a direction. */
 static bool has_three(const hl_setting *setting, bool color) {
   return has_type(setting, HL_SETTING_COLOR) ||
          (!color && (has_type(setting, HL_SETTING_POINT) || has_type(setting, HL_SETTING_DIRECTION)));
@@ -149,8 +152,8 @@ static json_t *part_with_defaults(const char *path, size_t length) {
   return is_list || setting_of(path, strlen(path)) == NULL ? NULL : json_object();
 }
 
-/* Steps into a part of the scene that is not the last one of the path, and adds it if its object leaves it
- * out. length: the number of bytes of the path up to the end of `name`. */
+/* Steps into a part of the scene that a path names before its last name. A part that its object leaves out
+ * is added. length: the number of bytes of the path up to the end of `name`. */
 static json_t *step_or_add(json_t *at, const char *name, const char *path, size_t length) {
   json_t *part = step_into(at, name);
   if (part != NULL || !json_is_object(at)) return part;

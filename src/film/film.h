@@ -29,7 +29,7 @@ typedef struct film_options {
    * does not turn; FILM_WHOLE_TURN stands for all frames of the film */
   int turntable;
   /* number of frames of the film. If it is 0, the film has the frames of the turntable, or, without a
-   * turntable, the frames up to the last one that has a key */
+   * turntable, the frames up to the last frame that has a key */
   int frames;
 } film_options;
 

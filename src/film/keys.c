@@ -20,7 +20,8 @@ __attribute__((format(printf, 2, 3))) static hl_status refuse(hl_error *error, c
   return HL_ERROR_ARGUMENT;
 }
 
-/* Reads a number, or three with commas between. Returns how many there are: 1 or 3; 0 if the text is neither.
+/* Reads one number, or three numbers with commas between. Returns the count of numbers, 1 or 3; 0 if the
+ * text has another form.
  */
 static int read_numbers(const char *text, const char *end, double value[3]) {
   char *after = NULL;
@@ -34,8 +35,8 @@ static int read_numbers(const char *text, const char *end, double value[3]) {
   return after == end && count != 2 ? count : 0;
 }
 
-/* Reads numbers, or a colour as #rrggbb or a CSS name. Returns the number of its components: 1 or 3; 0 if the
- * text is neither. */
+/* Reads numbers, or a colour as #rrggbb or a CSS name. Returns the number of components, 1 or 3; 0 if the
+ * text has another form. */
 static int read_value(const char *text, const char *end, double value[3], bool *is_color) {
   char color[64];
   const int count = read_numbers(text, end, value);
@@ -47,8 +48,8 @@ static int read_value(const char *text, const char *end, double value[3], bool *
   return *is_color ? 3 : 0;
 }
 
-/* Returns the end of the value that begins at `text`: the comma before the next FRAME:, or a comma at the
- * end of the text. */
+/* Returns the end of the value that begins at `text`: the comma before the next FRAME:, or, if no FRAME:
+ * follows, a comma that ends the text or the end of the text itself. */
 static const char *end_of_value(const char *text) {
   const char *colon = strchr(text, ':'), *end = colon != NULL ? colon : text + strlen(text);
   const char *comma = memrchr(text, ',', (size_t)(end - text));
@@ -71,7 +72,8 @@ static bool read_frame(const char *text, double frames_per_second, int *frame, c
   return true;
 }
 
-/* Reads "FRAME:VALUE" at *at, and moves *at behind it. The first point of a key sets its components. */
+/* Reads "FRAME:VALUE" at *at, and moves *at behind this text. The first point of a key sets the key's number
+ * of components. */
 static hl_status read_point(const char **at, double frames_per_second, film_key *key, int *frame,
                             double *values, hl_error *error) {
   const char *end;
@@ -136,7 +138,8 @@ void film_key_release(film_key *key) {
   *key = (film_key){0};
 }
 
-/* The part of the way between points p - 1 and p that a frame between them has come. */
+/* Returns the fraction of the change from point p - 1 to point p that is reached at a frame between these
+ * points. */
 static double part_at(const film_key *key, size_t p, int frame) {
   double span = key->frames[p] - key->frames[p - 1], part = (frame - key->frames[p - 1]) / span;
   /* Hermite's cubic from 0 to 1, whose slope is 0 at both ends */
@@ -145,9 +148,9 @@ static double part_at(const film_key *key, size_t p, int frame) {
 
 static double dot(const double a[3], const double b[3]) { return a[0] * b[0] + a[1] * b[1] + a[2] * b[2]; }
 
-/* Finds the unit vector at right angles to `from` towards which a direction turns on its way to `to`. Where
- * all ways are the same length, it is any such vector. Returns false if there is no way to turn. from: a unit
- * vector. */
+/* Finds the unit vector at right angles to `from` towards which a direction turns on its way to `to`. If
+ * the directions are opposite, so that all ways are equally long, any such vector is returned. Returns
+ * false if no such vector can be found. from: a unit vector. */
 static bool find_side(const double from[3], const double to[3], double side[3]) {
   double other[3] = {to[0], to[1], to[2]};
   for (int attempt = 0; attempt < 2; attempt++) {
@@ -163,9 +166,9 @@ static bool find_side(const double from[3], const double to[3], double side[3]) 
   return false;
 }
 
-/* Finds a direction on the great circle from one direction to another. Its length is between their lengths.
- * Returns false if the directions are the same, or if one of them has no length. The result must then be on
- * the line between them. */
+/* Finds a direction on the great circle from direction a to direction b. The result's length lies between
+ * the lengths of a and b. Returns false if the directions are the same, or if one of them has no length.
+ * The result must then be on the line between them. */
 static bool turn_between(const double a[3], const double b[3], double part, double between[3]) {
   const double lengths[2] = {sqrt(dot(a, a)), sqrt(dot(b, b))};
   double from[3], to[3], side[3];

@@ -8,9 +8,9 @@
 enum { FILM_MOST_FRAMES = 1000000, FILM_MOST_POINTS = 1000 };
 
 /* A number, or three numbers of a point, a direction or a colour, that change from frame to frame. Between
- * two given frames they change linearly, or smoothly (slowly near both). Between two keys, a direction
- * turns the shortest way from the first key's direction to the second key's direction. Values are constant
- * before the first given frame and after the last. */
+ * two given frames, the numbers change linearly, or smoothly: slowly near each of the two frames. Between
+ * two keys, a direction turns the shortest way from the first key's direction to the second key's
+ * direction. Values are constant before the first given frame and after the last. */
 typedef struct film_key {
   /* owned; the path of the number that changes: "camera.azimuth", or keys and numbers of elements as in
    * "lights.0.intensity" */

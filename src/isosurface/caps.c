@@ -94,7 +94,7 @@ static void place_row(void *data, size_t row, int worker) {
 /* ---- cut by the field ---- */
 
 /* Adds a vertex between a vertex inside and a vertex outside: OVERLAP beyond the place where the field has
- * the surface's value. This place is found by bisection. */
+ * the surface's value. The place where the field has the surface's value is found by bisection. */
 static uint32_t cross_field(capping *cap, uint32_t in, uint32_t out) {
   enum { STEPS = 14 };
   const float *a = cap->patch.positions[in], *b = cap->patch.positions[out];

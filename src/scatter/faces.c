@@ -9,9 +9,8 @@
  * place of v (derived). Lines along the face are another case. Beside the matter, the light v along such a
  * line comes from the sky, or is 0. Within the matter, the light u along the line is scattered there. Each
  * line stands for all directions that are nearly along the face. At the face, one half of these directions
- * brings v and the other half u; a little deeper all of them bring u. On average over the depths between, v
- * therefore has the weight 1/4. For this weight, the node of less matter must hold v + (u - v) / 2 (e - f) /
- * (e + f).
+ * brings v and the other half u; a little deeper all of them bring u. Half-way between these two depths, v
+ * has the weight 1/4. For this weight, the node of less matter must hold v + (u - v) / 2 (e - f) / (e + f).
  *
  * An empty node beside matter therefore holds the light at the matter's face. The light beside the matter
  * continues the light within the matter, and even light stays even. If a node has several neighbours with

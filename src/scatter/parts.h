@@ -45,9 +45,9 @@ typedef struct scatter_inflow {
 /* The step, in nodes along x, y and z, from a node to the next node of a line. */
 const int *hl_scatter_step(int line);
 
-/* Two functions about a line's two directions. hl_scatter_way() gives the unit vector of one of them: the
- * direction of the line, or its opposite. hl_scatter_line_weight() gives the weight of both directions
- * together in the mean over all directions. */
+/* Two functions about a line's two directions. hl_scatter_way() returns the unit vector of one of these
+ * directions: the direction of the line, or its opposite. hl_scatter_line_weight() gives the weight of both
+ * directions together in the mean over all directions. */
 vec3 hl_scatter_way(int line, bool onwards);
 float hl_scatter_line_weight(int line);
 
@@ -104,9 +104,9 @@ void hl_scatter_fill_direct(const scatter_scene *scene, const scatter_nodes *nod
 void hl_scatter_fill_walls(const scatter_scene *scene, const scatter_nodes *nodes, const surface_tree *tree,
                            const scatter_walls *walls);
 
-/* Sets the optical depth between a node and the next node of a line, which are `length` apart. It is the
- * depth of the medium and of the meshes between the two. Also raises the depths of both nodes' boxes by a
- * part of the meshes' depth. */
+/* Sets the optical depth between a node and the next node of a line, which are `length` apart. This depth
+ * is the sum of the depths of the medium and of the meshes between the two nodes. Also raises the depths of
+ * both nodes' boxes by a part of the meshes' depth. */
 void hl_scatter_add_wall(const scatter_walls *walls, int line, size_t node, size_t next,
                          const float *extinction, float length);
 

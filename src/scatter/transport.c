@@ -8,10 +8,10 @@
  *
  *     t_i (u_i - S_i) = (u_{i+1} - u_i) / d_{i+1/2} - (u_i - u_{i-1}) / d_{i-1/2}
  *
- * and the light I enters at the ends; only a sky's light does. These equations are solved by elimination,
- * which starts at one end. The form used here has no differences and no division by d, which is 0 in empty
- * space (derived; after Rybicki and Hummer, "An accelerated lambda iteration method for multilevel radiative
- * transfer", 1991, appendix A):
+ * At the ends of a line, the light I enters; only the sky's light enters the grid. These equations are solved
+ * by elimination, which starts at one end. The form used here has no differences and no division by d, which
+ * is 0 in empty space (derived; after Rybicki and Hummer, "An accelerated lambda iteration method for
+ * multilevel radiative transfer", 1991, appendix A):
  *
  *     f_i = t_i + f_{i-1} g_{i-1},  y_i = t_i S_i + y_{i-1} g_{i-1},  g_i = 1 / (1 + f_i d_{i+1/2}),  f = 1
  *     and y = I before the first, u_i = (u_{i+1} + y_i d_{i+1/2}) g_i,  at the last node u = (y + I) / (1 +
@@ -23,7 +23,7 @@
  * 1975). The scheme conserves energy. If many mean free paths lie between neighbouring nodes, it becomes the
  * diffusion equation.
  *
- * From node i to the next one, the light that travels onwards exceeds the mean of both ways by v_{i+1/2} =
+ * From node i to the next node, the light that travels onwards exceeds the mean of both ways by v_{i+1/2} =
  * y_i - f_i u_i (derived: the first of these equations for (u_i - u_{i+1}) / d). The sum of v times the
  * line's direction is the light's flux.
  *
@@ -97,8 +97,8 @@ static line_row row_of(const scatter_nodes *nodes, int line, size_t index) {
   return row;
 }
 
-/* Finds the number g (see the head of the file) at all nodes, for lines of one direction. At the last node of
- * each line, 1 / (1 + f) takes its place. */
+/* Finds the number g (see the head of the file) at all nodes, for lines of one direction. At the last node
+ * of each line, 1 / (1 + f) is stored in place of g. */
 static void begin_line(void *data, size_t line, int worker) {
   (void)worker;
   const lines_job *job = data;

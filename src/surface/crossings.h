@@ -1,8 +1,8 @@
 /* surface/crossings.h - cuts fragments of a pixel into parts where their surfaces cross within the pixel.
  *
  * Each fragment is composited at one height. But if two surfaces cross within a pixel, their order differs
- * from sample to sample. So such fragments are cut into parts. The line on which the surfaces cross then
- * looks as smooth as the edges of surfaces. */
+ * from sample to sample. Fragments that cross within a pixel are therefore cut into parts. The line on which
+ * the surfaces cross then looks as smooth as the edges of surfaces. */
 #ifndef HL_SURFACE_CROSSINGS_H
 #define HL_SURFACE_CROSSINGS_H
 

@@ -7,10 +7,10 @@
  *
  * Opacity. Fragments of one pixel may cover the same samples or different samples. They are composited one
  * after the other. So the opacity of a fragment is relative to the light that the fragments before it let
- * pass. It is the fraction of this light that the fragment absorbs, averaged over the pixel's samples.
- * Derived: let t[i] be the transmittance of sample i before the fragment, and a the fragment's own opacity.
- * The fraction is the sum of t[i] a over the fragment's samples, divided by the sum of t[i] over all samples.
- * With such opacities, triangles that share an edge leave no seam. */
+ * pass. The opacity is the fraction of this light that the fragment absorbs, averaged over the pixel's
+ * samples. Derived: let t[i] be the transmittance of sample i before the fragment, and a the fragment's own
+ * opacity. The fraction is the sum of t[i] a over the fragment's samples, divided by the sum of t[i] over all
+ * samples. With such opacities, triangles that share an edge leave no seam. */
 #ifndef HL_SURFACE_FRAGMENT_H
 #define HL_SURFACE_FRAGMENT_H
 

@@ -16,7 +16,7 @@ typedef struct fragments {
 } fragments;
 
 /* Counts approximately the memory that hl_fragments_create() takes. The number of fragments is known only
- * when they are made. It is estimated as one fragment for each primitive plus two for each pixel. */
+ * when they are made. The estimate is one fragment for each primitive plus two fragments for each pixel. */
 void hl_fragments_count(const surfaces *all, const view *view, int threads, hl_layout *layout);
 
 hl_status hl_fragments_create(const fragments_source *source, fragments *made, hl_error *error);

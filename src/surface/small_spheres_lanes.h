@@ -1,7 +1,6 @@
 /* surface/small_spheres_lanes.h - finds the fragments of small opaque spheres that are seen from outside,
- * eight at a time. Numbers are computed in doubles. The operations are the same as in seen.c,
- * sphere_coverage.c, surface_plane.c and tile_fragments.c, and have the same order, so that all results have
- * the same bytes. */
+ * eight at a time. All numbers are doubles. The operations are the same as in seen.c, sphere_coverage.c,
+ * surface_plane.c and tile_fragments.c, and have the same order, so that all results have the same bytes. */
 #ifndef HL_SURFACE_SMALL_SPHERES_LANES_H
 #define HL_SURFACE_SMALL_SPHERES_LANES_H
 

@@ -41,7 +41,7 @@ LANES_INLINE lanes_range range_of_row(const lanes_boxes *boxes, const float row[
 }
 
 /* Stores a range of tiles or sheets: the first and the last integer between `first` and `last`, limited to
- * the view. If there is no such integer, the stored first one is greater than the last one. */
+ * the view. If there is no such integer, the stored first number is greater than the stored last number. */
 LANES_INLINE void store_range(const brick_view *view, lanes first, lanes last, int axis,
                               brick_ranges *ranges) {
   float least = (float)view->first[axis], greatest = (float)view->last[axis];

@@ -22,8 +22,8 @@ static int last_tile(double high, int tiles) {
   return high < 0 ? -1 : high >= (double)tiles * TILE ? tiles - 1 : (int)(high / TILE);
 }
 
-/* The rectangle of the tiles that are touched by bounds enlarged by a margin. It is empty if the view does
- * not see the bounds. */
+/* The rectangle of the tiles that are touched by bounds enlarged by a margin. The rectangle is empty if the
+ * view does not see the bounds. */
 static tile_rectangle tiles_of(const footprint_bounds *bounds, const occupancy *o) {
   tile_rectangle r = {.x = first_tile(bounds->low[0] - o->spare), .y = first_tile(bounds->low[1] - o->spare)};
   int x1 = last_tile(bounds->high[0] + o->spare, o->tiles_x),
@@ -33,8 +33,8 @@ static tile_rectangle tiles_of(const footprint_bounds *bounds, const occupancy *
   return r;
 }
 
-/* The rectangle of tiles that a grid's relevant bricks touch. It is found from the box around all relevant
- * bricks, whose bounds contain the bounds of each brick. */
+/* The rectangle of tiles that a grid's relevant bricks touch. The rectangle is found from the box around
+ * all relevant bricks, whose bounds contain the bounds of each brick. */
 static tile_rectangle find_rectangle(const grid *grid, const footprint_map *map, const occupancy *o) {
   double low[3], high[3], centre[3], half[3];
   footprint_bounds bounds;

@@ -109,8 +109,8 @@ static inline int hl_occupancy_has(const occupancy *occupancy, size_t patch, int
   return (int)(bits[sheet / 64] >> (sheet % 64) & 1);
 }
 
-/* Returns whether a slab may touch a tile. This is the case if the sheet at the slab's end or the sheet at
- * its beginning touches the tile. */
+/* Returns whether a slab may touch a tile. A slab may touch a tile if the sheet at the slab's end or the
+ * sheet at the slab's beginning touches the tile. */
 static inline bool hl_occupancy_touches(const occupancy *occupancy, size_t tile, int sheet) {
   const uint64_t *after = occupancy->by_sheet + (size_t)sheet * (size_t)occupancy->tile_words;
   const uint64_t *before = after - occupancy->tile_words;
