@@ -39,9 +39,9 @@ static double volume_of(const hl_mesh_description *d, const uint32_t corner[3]) 
 
 /* Finds the parts of a mesh, and adds up the hashes of their edges and their volumes. Returns whether the
  * whole mesh is closed: each edge runs as often one way as the other, and the triangles enclose a volume
- * above 0. Derived: the hashes of an edge's two directions add up to 0. So the sum over a closed part is 0,
- * and any other sum means that there is a boundary edge. With a boundary edge, a sum of 0 has the probability
- * 2^-64. */
+ * above 0. Derived: the hashes of an edge's two directions add up to 0. The sum over a closed part is
+ * therefore 0, and any other sum means that the part has a boundary edge. With a boundary edge, a sum of 0
+ * has the probability 2^-64. */
 static bool find_parts(part_search *search) {
   const hl_mesh_description *d = search->mesh;
   uint64_t sum = 0;

@@ -87,7 +87,8 @@ hl_status hl_mesh_reserve_triangles(mesh_parts *parts, size_t count, hl_error *e
 /* Adds a triangle. Makes room for the triangle in the array `triangles`, but not in `face_colors`. */
 hl_status hl_mesh_add_triangle(mesh_parts *parts, uint32_t a, uint32_t b, uint32_t c, hl_error *error);
 
-/* Notes that the triangles from `first` to the last one are a polygon: a fan around its first corner. */
+/* Notes that the triangles from `first` to the last triangle are a polygon: a fan around the polygon's first
+ * corner. */
 hl_status hl_mesh_note_polygon(mesh_parts *parts, size_t first, hl_error *error);
 
 /* Replaces the fans of noted polygons that are not convex by triangles that cover exactly the polygon. All

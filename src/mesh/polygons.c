@@ -56,7 +56,7 @@ static hl_status make_room(hl_context *context, outline *o, size_t count, hl_err
   return hl_fail_memory(error, o->room * 32, "a polygon");
 }
 
-/* Twice the area of a triangle. It is positive if the corners run counter-clockwise. */
+/* Twice the area of a triangle. The area is positive if the corners run counter-clockwise. */
 static double area(const double a[2], const double b[2], const double c[2]) {
   return (b[0] - a[0]) * (c[1] - a[1]) - (b[1] - a[1]) * (c[0] - a[0]);
 }

@@ -1,7 +1,7 @@
 /* mesh/tubes.c - makes tubes of lines: closed meshes of twelve sides.
  *
- * Two pieces of a tube meet in the plane that halves their angle. In this plane both have the same outline,
- * because one piece is the mirror image of the other. So bends have no gaps. */
+ * Two pieces of a tube meet in the plane that halves their angle. In this plane the two pieces have the same
+ * outline, because one piece is the mirror image of the other. So bends have no gaps. */
 #include <math.h>
 
 #include "core/memory.h"

@@ -1,6 +1,6 @@
 /* server/server.h - declares the viewer's server, by which pages in browsers show and change scenes.
  *
- * It answers only on 127.0.0.1, under a path that begins with a random token:
+ * The server answers only on 127.0.0.1, under a path that begins with a random token:
  *
  * - GET TOKEN/: the page, and the files it consists of (page/, embedded in the program)
  * - GET TOKEN/start.json?opened=N: the open scene, its volumes' ranges and histograms, presets, colormaps
@@ -19,16 +19,19 @@
  *   it had opened
  * - GET TOKEN/folder.json?at=: the files and folders that can be opened in a folder, at or below the folder
  *   in which the viewer was started
- * - POST TOKEN/open?file=PATH&series=NAME: opens a file there, and of a folder with several DICOM series one;
- *   PATH may be absolute; upload?name=NAME: opens the file in the body. The answer
- *   is the start.json of the file. Its number, as &opened=N, says to which volumes a scene refers
- * - POST TOKEN/session?file=PATH: a session that a page has saved there, or 204 if the file is none
- * - POST TOKEN/join?opened=N&with=M&title=TITLE: a scene file's text in, with the volumes of N; out
- *   comes the start.json of this scene together with the scene M, which is closed
+ * - POST TOKEN/open?file=PATH&series=NAME: opens a file of the viewer's folder; series: the series to open in
+ * a folder with several DICOM series; PATH may be absolute. The answer is the start.json of the file. The
+ *   number in start.json, given as &opened=N, says to which volumes the scene of a later request refers
+ * - POST TOKEN/upload?name=NAME: opens the file in the body; the answer is as for open
+ * - POST TOKEN/session?file=PATH: a session that a page has saved in the viewer's folder; 204 if the file is
+ * no session
+ * - POST TOKEN/join?opened=N&with=M&title=TITLE: in, the text of a scene file with the volumes of scene N;
+ *   out, the start.json of this scene joined with the open scene M; scene M is closed
  * - GET TOKEN/opening.json: the progress of reading a file
  * - GET TOKEN/state.json: the server's state: pages, open scenes, bytes, connections
  *
- * Frames with &coarse=1 show such volumes as they were read so far; others wait until all is read.
+ * Frames with &coarse=1 show volumes of several resolutions at the resolutions that were read so far. Other
+ * frames wait until all resolutions are read.
  *
  * A scene names volumes and images of an open scene; no other file is read for it. A file that a page opens
  * may name only files below its own folder; a dropped file lies in a folder of its own. A page's frames are
@@ -64,7 +67,7 @@ typedef struct server_options {
   hl_status (*refine)(void *files_data, const hl_scene *scene, hl_scene **finer, hl_error *error);
   /* Reads the voxels of a scene's volumes that the scene's picture sees, at the resolutions that suit the
    * picture's pixels. *seen: the scene with these volumes and their levels; null if no volume has finer
-   * voxels for the picture. If the function is null, no scene has. */
+   * voxels for the picture. If the function is null, no scene has finer voxels. */
   hl_status (*read_seen)(void *files_data, const hl_scene *scene, hl_scene **seen, hl_error *error);
   void *files_data;                        /* data for `open`, `refine` and `read_seen` */
   uint64_t most_upload_bytes;              /* the greatest number of bytes of a dropped file; 0 if there is no

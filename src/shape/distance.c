@@ -172,8 +172,8 @@ static hl_interval list_bounds(const hl_shape_list *list, size_t first, size_t e
     }
     live[index] = 1;
     if (shape->operation == HL_SHAPE_ADD && all.low >= own.high + shape->blend)
-      mark(first, index, live, 0); /* the shapes before this one are all farther away, so that they do not
-                                    * count */
+      mark(first, index, live, 0); /* all shapes before the present shape are farther away, so that they do
+                                    * not count */
     bool turned = shape->operation == HL_SHAPE_SUBTRACT;
     all = (hl_interval){join(shape, all.low, turned ? own.high : own.low),
                         join(shape, all.high, turned ? own.low : own.high)};

@@ -79,7 +79,7 @@ typedef struct hl_shape {
                           * stays as given */
   int quantum[3];        /* for an orbital: the quantum numbers n, l and m */
   hl_hypertexture texture;
-  size_t end;       /* index of the first shape after this one and its members */
+  size_t end;       /* index of the first shape after this shape and its members */
   affine3 to_local; /* the map from the parent's frame to the shape's own frame; hl_shapes_place() sets it,
                      * and sets `edge` */
   double edge;      /* length of HL_SHAPE_EDGE voxels in the shape's own frame */

@@ -1,7 +1,7 @@
 /* surface/surfaces.h - describes the triangles and spheres of all meshes of a scene, in frame space.
  *
- * In: the scene's meshes. Out: the surfaces that fragments.c rasterises and the sweep shades. They are kept
- * between frames as long as the same meshes stand in the same places. */
+ * In: the scene's meshes. Out: the surfaces that fragments.c rasterises and the sweep shades. Surfaces are
+ * kept between frames as long as the same meshes stand in the same places. */
 #ifndef HL_SURFACE_SURFACES_H
 #define HL_SURFACE_SURFACES_H
 
