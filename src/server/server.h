@@ -20,11 +20,11 @@
  * - GET TOKEN/folder.json?at=: the files and folders that can be opened in a folder, at or below the folder
  *   in which the viewer was started
  * - POST TOKEN/open?file=PATH&series=NAME: opens a file of the viewer's folder; series: the series to open in
- * a folder with several DICOM series; PATH may be absolute. The answer is the start.json of the file. The
+ *   a folder with several DICOM series; PATH may be absolute. The answer is the start.json of the file. The
  *   number in start.json, given as &opened=N, says to which volumes the scene of a later request refers
  * - POST TOKEN/upload?name=NAME: opens the file in the body; the answer is as for open
  * - POST TOKEN/session?file=PATH: a session that a page has saved in the viewer's folder; 204 if the file is
- * no session
+ *   no session
  * - POST TOKEN/join?opened=N&with=M&title=TITLE: in, the text of a scene file with the volumes of scene N;
  *   out, the start.json of this scene joined with the open scene M; scene M is closed
  * - GET TOKEN/opening.json: the progress of reading a file

@@ -6,9 +6,9 @@
 // - slice({ volume, of, width, height, depth, origin, across, down, through, blend, between }): the values of a plane of samples of a volume. volume: the index
 //   of an open volume; of: "voxels", the file's voxels; "mask", the label map that masks the volume; "picture", the voxels that the picture shows, which are
 //   smoothed if the volume is smoothed. The samples are a grid of width x height samples in `depth` layers; origin: [i, j, k], the first sample of the first row
-// of the first layer, in voxels; across, down, through: [i, j, k], the steps to the next sample, row and layer. blend: how the layers are combined: "maximum",
-// "minimum" or "mean"; between: the interpolation between voxels, "nearest" or "linear". Resolves to { values, width, height }: values is a Float32Array or a
-// Float64Array, depending on which holds the voxels' values exactly, row after row; NaN: the sample lies outside the volume.
+//   of the first layer, in voxels; across, down, through: [i, j, k], the steps to the next sample, row and layer. blend: how the layers are combined: "maximum",
+//   "minimum" or "mean"; between: the interpolation between voxels, "nearest" or "linear". Resolves to { values, width, height }: values is a Float32Array or a
+//   Float64Array, depending on which holds the voxels' values exactly, row after row; NaN: the sample lies outside the volume.
 // - depth(scene): the depth that the middle pixel of the scene's picture (at most 64 x 64 pixels) shows: { depth, opacity, object }. depth: the length along
 //   the ray, from the eye or, for an orthographic camera, from the plane through the camera's position, to the point where the opacity first reaches 0.01; null:
 //   the opacity stays below 0.01. object: as in hl_layers. The result is null if the request was cancelled.
