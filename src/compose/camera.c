@@ -1,6 +1,7 @@
 /* compose/camera.c - applies the options of the camera's place: "size", "view", "up", "azimuth", "elevation",
  * "roll", "zoom", "fovy" and "ortho". */
 #include <math.h>
+#include <stdio.h>
 #include <string.h>
 
 #include "compose/composer.h"
@@ -166,8 +167,40 @@ static bool turn_view(const hl_asked *asked, hl_view *view) {
          view->roll_deg != before.roll_deg;
 }
 
-/* Places the camera. The camera frames the volumes before it is turned, so that all frames of a turn have the
- * same target and distance. */
+/* Writes the option that cuts away the other side: "y=:0.5" for "y=0.5", and the reverse. For planes that are
+ * written in another way, writes a general word. */
+static void write_other_side(const char *typed, char *text, size_t size) {
+  const bool is_short = strchr("xyz", typed[0]) != NULL && typed[0] != '\0' && typed[1] == '=';
+  if (!is_short) snprintf(text, size, "with the opposite normal");
+  else if (typed[2] == ':') snprintf(text, size, "%c=%.60s", typed[0], typed + 3);
+  else snprintf(text, size, "%c=:%.60s", typed[0], typed + 2);
+}
+
+/* Logs that the faces of all planes that cut a bare volume look away from the eye, where options have chosen
+ * the view. */
+static void tell_of_hidden_faces(const hl_composer *composer, const hl_scene_description *description) {
+  const hl_asked *asked = composer->asked, *planes = &asked[HL_ASK_CUT_PLANE];
+  const hl_camera *camera = &description->camera;
+  const size_t count = hl_count_cuts(asked);
+  if (!hl_cuts_bare_volume(composer, description) || asked[HL_ASK_SLICE].given || !planes->given ||
+      (size_t)planes->count != count || asked[HL_ASK_CLIP].given || turns_to_cuts(composer, description))
+    return;
+  const hl_scene_volume *volume = &description->volumes[0];
+  if (volume->cut_count < count) return;
+  for (size_t n = volume->cut_count - count; n < volume->cut_count; n++) {
+    double to_eye[3];
+    const bool parallel = camera->type == HL_CAMERA_ORTHOGRAPHIC;
+    subtract(camera->position, parallel ? camera->target : volume->cuts[n].point, to_eye);
+    if (dot(volume->cuts[n].normal, to_eye) > 0) return;
+  }
+  char other[80];
+  write_other_side(planes->texts[0], other, sizeof other);
+  hl_log(composer->context, HL_LOG_INFO,
+         "the faces of the cut look away from the eye: --cut-plane %s cuts away the other side", other);
+}
+
+/* Places the camera. It frames the volumes before it is turned, so that all frames of a turn have the same
+ * target and distance. */
 static hl_status place(const hl_composer *composer, bool framed, size_t added,
                        hl_scene_description *description) {
   const hl_asked *asked = composer->asked;
@@ -183,6 +216,7 @@ static hl_status place(const hl_composer *composer, bool framed, size_t added,
   if (framed) status = hl_camera_frame_view(description, &view, zoom, &description->camera, composer->error);
   if (status == HL_ERROR_MEMORY) return status;
   if (status == HL_OK && turn_view(asked, &view)) status = hl_camera_turn(&view, &description->camera);
+  if (status == HL_OK) tell_of_hidden_faces(composer, description);
   if (status == HL_OK) return HL_OK;
   return hl_fail(
       composer->error, HL_ERROR_ARGUMENT,

@@ -14,3 +14,9 @@ for cut in plane=0.5,0.5:1,0,0 plane=0,0,0:0,0,0 plane=0,0,2:1,0,0 box=x=0.5:,x=
   halflight render ball_16x16x16_uint8.raw --cut-${cut%%=*} ${cut#*=} 2>message || code=$?
   echo $code
 done
+# A view that an option chooses may look at the uncut side: a line names the option for the other side.
+halflight make torus --size 16 --quiet -o side.nrrd
+for options in "--cut-plane y=0.5 --view front" "--cut-plane y=:0.5 --view front" "--cut-plane y=:0.5 --view back --ortho" \
+    "--cut-plane 0.5,0.5,0.5:0,1,0 --view front" "--cut-plane y=0.5" "--cut-plane y=0.5 --cut-plane x=0.5 --view right --azimuth 80"; do
+  echo "$options: $(halflight render side.nrrd $options --size 16x16 -o side.png 2>&1 | grep -o 'away from the eye.*')"
+done
