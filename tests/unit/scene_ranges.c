@@ -186,6 +186,45 @@ static void clear_surroundings_stay_clear(void **state) {
   hl_context_destroy(context);
 }
 
+/* A function that shows both sides of clear values, over a range on one side of them: values before the range
+ * are clear, and opacity rises from its inner end on. Over a range with the clear values in it both sides
+ * stay. */
+static void one_side_of_a_signed_field(void **state) {
+  (void)state;
+  static float values[COUNT];
+  for (unsigned n = 0; n < COUNT; n++) values[n] = (float)mixed(n) / (COUNT - 1) * 20 - 10 - 7;
+  hl_opacity_point opacity[] = {{-8, 0.75}, {-4, 0.5}, {-1, 0}, {1, 0}, {4, 0.5}, {8, 0.75}};
+  hl_color_point color[] = {{-8, {0, 0, 1}}, {8, {1, 0, 0}}};
+  const hl_transfer_function from = {
+      .unit_distance = 1, .opacity = opacity, .opacity_count = 6, .color = color, .color_count = 2};
+  static const struct {
+    double range[2], clear[2], seen[2];
+  } cases[] = {
+      {{2.5, 7}, {-10, 2.5}, {3, 10}},
+      {{-7, -2.5}, {-2.5, 10}, {-10, -3}},
+      {{-7, 7}, {-0.5, 0.5}, {2, 10}},
+      {{-7, 7}, {-0.5, 0.5}, {-10, -2}},
+  };
+  hl_context *context = make_context();
+  hl_volume *volume = volume_of(context, HL_VOXEL_F32, values, 1);
+  for (size_t n = 0; n < 2 * sizeof cases / sizeof *cases; n++) {
+    const hl_spread_use use = n % 2 == 0 ? HL_SPREAD_ALONE : HL_SPREAD_COLORMAP;
+    const double *clear = cases[n / 2].clear, *seen = cases[n / 2].seen;
+    hl_transfer_function to;
+    assert_int_equal(hl_transfer_function_spread_over(context, volume, &from, cases[n / 2].range,
+                                                      HL_RANGE_LINEAR, use, &to, NULL),
+                     HL_OK);
+    for (int part = 0; part <= 20; part++) {
+      assert_true(opacity_at(&to, clear[0] + part * (clear[1] - clear[0]) / 20) == 0);
+      assert_true(opacity_at(&to, seen[0] + part * (seen[1] - seen[0]) / 20) > 0);
+    }
+    hl_transfer_function_release(context, &to);
+  }
+  hl_volume_release(volume);
+  assert_int_equal(hl_context_memory_held(context), 0);
+  hl_context_destroy(context);
+}
+
 /* Of a volume with one value, all ranges are allowed. */
 static void range_of_one_value(void **state) {
   (void)state;
@@ -254,8 +293,9 @@ int main(void) {
   const struct CMUnitTest tests[] = {
       cmocka_unit_test(percentiles_of_a_ramp),         cmocka_unit_test(only_finite_voxels_count),
       cmocka_unit_test(clear_surroundings_stay_clear), cmocka_unit_test(range_of_one_value),
-      cmocka_unit_test(colormap_by_logarithms),        cmocka_unit_test(points_by_logarithms),
-      cmocka_unit_test(parts_of_a_colormap_meet),      cmocka_unit_test(opacities_of_near_values),
+      cmocka_unit_test(one_side_of_a_signed_field),    cmocka_unit_test(colormap_by_logarithms),
+      cmocka_unit_test(points_by_logarithms),          cmocka_unit_test(parts_of_a_colormap_meet),
+      cmocka_unit_test(opacities_of_near_values),
   };
   return cmocka_run_group_tests_name("scene_ranges", tests, NULL, NULL);
 }

@@ -201,6 +201,39 @@ static void hold_clear_ends(const double all[2], const double range[2], bool map
   if (high && range[1] > visible[1]) visible[1] = fmin(range[1], all[1]);
 }
 
+/* Finds the widest run of clear points between visible ones, in a function that shows the least and the
+ * greatest values. ends: the indices of the run's first and last points. Returns false if there is none. */
+static bool find_gap(const hl_transfer_function *function, size_t ends[2]) {
+  const hl_opacity_point *points = function->opacity;
+  const size_t count = function->opacity_count;
+  double widest = -1;
+  if (count < 3 || points[0].opacity <= 0 || points[count - 1].opacity <= 0) return false;
+  for (size_t n = 0; n < count; n++) {
+    if (points[n].opacity > 0) continue;
+    size_t last = n;
+    while (points[last + 1].opacity <= 0) last++;
+    const double wide = points[last].value - points[n].value;
+    if (wide > widest) ends[0] = n, ends[1] = last, widest = wide;
+    n = last;
+  }
+  return widest >= 0;
+}
+
+/* Keeps one side of a function that shows values on both sides of clear ones, such as the automatic function
+ * of a signed field, if the range lies on this side of the middle of the clear values. Else the clear values
+ * would be moved into the range, and all values before it would be as opaque as the other side. */
+static void keep_side(const double range[2], hl_transfer_function *function) {
+  size_t gap[2] = {0, 0};
+  if (!find_gap(function, gap)) return;
+  const double middle = (function->opacity[gap[0]].value + function->opacity[gap[1]].value) / 2;
+  if (range[0] >= middle) {
+    function->opacity += gap[1];
+    function->opacity_count -= gap[1];
+  } else if (range[1] <= middle) {
+    function->opacity_count = gap[0] + 1;
+  }
+}
+
 hl_status hl_transfer_function_spread_over(hl_context *context, const hl_volume *volume,
                                            const hl_transfer_function *from, const double range[2],
                                            hl_range_scale scale, hl_spread_use use, hl_transfer_function *to,
@@ -212,12 +245,14 @@ hl_status hl_transfer_function_spread_over(hl_context *context, const hl_volume 
     return hl_fail(error, HL_ERROR_ARGUMENT, "hl_transfer_function_spread_over: null argument");
   double old[2], held[2];
   const bool projected = use == HL_SPREAD_PROJECTION;
-  hl_status status = graded_range(volume, from, projected, old, error);
+  hl_transfer_function side = *from; /* borrows the points of *from */
+  if (!projected) keep_side(range, &side);
+  hl_status status = graded_range(volume, &side, projected, old, error);
   if (status != HL_OK) return status;
   memcpy(held, old, sizeof held);
   if (!projected && scale == HL_RANGE_LINEAR && info.range[0] < info.range[1])
     hold_clear_ends(info.range, range, use == HL_SPREAD_COLORMAP, held);
-  return spread_checked(context, from, old, held, range, scale, to, error);
+  return spread_checked(context, &side, old, held, range, scale, to, error);
 }
 
 hl_status hl_transfer_function_colormap_scaled(hl_context *context, const char *name, const double range[2],
