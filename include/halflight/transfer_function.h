@@ -175,9 +175,11 @@ typedef enum hl_spread_use {
  * becomes range[0], and the value at which opacity ends becomes range[1]. The same holds for colours. Evenly
  * spread opacity does not move to an end of the range that chooses no values: an end beyond the volume's
  * values, or with a colormap an end at values that the function keeps clear. Clear values between such an end
- * and the visible values stay clear. If `from` shows values on both sides of clear ones and the range lies on
- * one side, the other side is left out, and values before the range are clear. In a maximum projection the
- * range of the colours becomes range[0] to range[1]. The caller owns the points of *to. */
+ * and the visible values stay clear. If `from` shows values on both sides of clear ones, as for a signed
+ * field, the middle of the clear values keeps its place, and each side is spread over its part of the range.
+ * If the range lies on one side, the other side is left out, and values before the range are clear. In a
+ * maximum projection the range of the colours becomes range[0] to range[1]. The caller owns the points of
+ * *to. */
 HL_API HL_WARN_UNUSED hl_status hl_transfer_function_spread_over(hl_context *context, const hl_volume *volume,
                                                                  const hl_transfer_function *from,
                                                                  const double range[2], hl_range_scale scale,

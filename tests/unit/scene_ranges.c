@@ -199,12 +199,13 @@ static void one_side_of_a_signed_field(void **state) {
       .unit_distance = 1, .opacity = opacity, .opacity_count = 6, .color = color, .color_count = 2};
   static const struct {
     double range[2], clear[2], seen[2];
-  } cases[] = {
-      {{2.5, 7}, {-10, 2.5}, {3, 10}},
-      {{-7, -2.5}, {-2.5, 10}, {-10, -3}},
-      {{-7, 7}, {-0.5, 0.5}, {2, 10}},
-      {{-7, 7}, {-0.5, 0.5}, {-10, -2}},
-  };
+  } cases[] =
+      {
+          {{2.5, 7}, {-10, 2.5}, {3, 10}},   {{-7, -2.5}, {-2.5, 10}, {-10, -3}},
+          {{-7, 7}, {-0.5, 0.5}, {2, 10}},   {{-7, 7}, {-0.5, 0.5}, {-10, -2}},
+          {{-4, 9}, {-0.3, 0.3}, {2, 10}}, /* the background stays in the clear values */
+          {{-4, 9}, {-0.3, 0.3}, {-10, -2}},
+      };
   hl_context *context = make_context();
   hl_volume *volume = volume_of(context, HL_VOXEL_F32, values, 1);
   for (size_t n = 0; n < 2 * sizeof cases / sizeof *cases; n++) {

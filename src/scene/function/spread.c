@@ -57,7 +57,9 @@ static hl_status graded_range(const hl_volume *volume, const hl_transfer_functio
 typedef struct rows {
   const double *from; /* [count][width]; the given points */
   size_t count, width;
-  double *to; /* [made][width]; the new points */
+  double hinge; /* a value that keeps its place, evenly spread: each side is moved by itself; NAN if there is
+                 * none */
+  double *to;   /* [made][width]; the new points */
   size_t made;
 } rows;
 
@@ -99,8 +101,15 @@ static void divide_rows(rows *r, const double old[2]) {
   if (end < 0) add_row(r, last, last, 0, 0);
 }
 
-/* Moves points to the new range of values. r->to: receives the new rows (hl_release). r->made: receives the
- * number of new rows. */
+/* The place to which evenly spread values move. */
+static double moved(double value, double hinge, const double old[2], const double range[2]) {
+  if (isnan(hinge)) return range[0] + (value - old[0]) * ((range[1] - range[0]) / (old[1] - old[0]));
+  const int side = value > hinge;
+  return hinge + (value - hinge) * ((range[side] - hinge) / (old[side] - hinge));
+}
+
+/* Moves points to the new range of values. *to: receives the new rows (hl_release); *made: receives their
+ * number. */
 static hl_status spread_rows(hl_context *context, rows *r, const double old[2], const double range[2],
                              hl_range_scale scale, hl_error *error) {
   if (r->count == 0) return HL_OK;
@@ -108,11 +117,10 @@ static hl_status spread_rows(hl_context *context, rows *r, const double old[2], 
   r->to = hl_allocate(context, most * r->width, sizeof *r->to);
   if (r->to == NULL) return hl_fail_memory(error, most * r->width * sizeof *r->to, "a transfer function");
   if (scale == HL_RANGE_LINEAR) {
-    double factor = (range[1] - range[0]) / (old[1] - old[0]);
     memcpy(r->to, r->from, r->count * r->width * sizeof *r->to);
     r->made = r->count;
     for (size_t n = 0; n < r->made; n++)
-      r->to[n * r->width] = range[0] + (r->to[n * r->width] - old[0]) * factor;
+      r->to[n * r->width] = moved(r->to[n * r->width], r->hinge, old, range);
     return HL_OK;
   }
   divide_rows(r, old);
@@ -138,14 +146,17 @@ hl_range_scale hl_transfer_function_scale(const hl_transfer_function *function) 
 }
 
 /* Moves all points to a new range. old: the values of colours that become the range's ends; held: the values
- * of opacities that become the range's ends. */
+ * of opacities that do; hinge: the value that keeps its place, or NAN. */
 static hl_status spread_all(hl_context *context, const hl_transfer_function *from, const double old[2],
-                            const double held[2], const double range[2], hl_range_scale scale,
+                            const double held[2], double hinge, const double range[2], hl_range_scale scale,
                             hl_transfer_function *to, hl_error *error) {
-  rows opacity = {.from = (const double *)from->opacity, .count = from->opacity_count, .width = 2};
-  rows color = {.from = (const double *)from->color, .count = from->color_count, .width = 4};
-  rows gradient = {
-      .from = (const double *)from->gradient_opacity, .count = from->gradient_opacity_count, .width = 2};
+  rows opacity = {
+      .from = (const double *)from->opacity, .count = from->opacity_count, .width = 2, .hinge = hinge};
+  rows color = {.from = (const double *)from->color, .count = from->color_count, .width = 4, .hinge = hinge};
+  rows gradient = {.from = (const double *)from->gradient_opacity,
+                   .count = from->gradient_opacity_count,
+                   .width = 2,
+                   .hinge = NAN};
   const double none[2] = {0, held[1] - held[0]}, widths[2] = {0, range[1] - range[0]};
   hl_status status = spread_rows(context, &opacity, held, range, scale, error);
   if (status == HL_OK) status = spread_rows(context, &color, old, range, scale, error);
@@ -159,10 +170,10 @@ static hl_status spread_all(hl_context *context, const hl_transfer_function *fro
 _Static_assert(sizeof(hl_opacity_point) == 2 * sizeof(double), "opacity points are rows of two numbers");
 _Static_assert(sizeof(hl_color_point) == 4 * sizeof(double), "colour points are rows of four numbers");
 
-/* Spreads a function after checking the range. old, held: as for spread_all(). */
+/* Spreads a function after checking the range. old, held, hinge: as for spread_all(). */
 static hl_status spread_checked(hl_context *context, const hl_transfer_function *from, const double old[2],
-                                const double held[2], const double range[2], hl_range_scale scale,
-                                hl_transfer_function *to, hl_error *error) {
+                                const double held[2], double hinge, const double range[2],
+                                hl_range_scale scale, hl_transfer_function *to, hl_error *error) {
   if (!(range[0] < range[1]) || !isfinite(range[1] - range[0]))
     return hl_fail(error, HL_ERROR_INPUT, "range %.9g to %.9g is empty: give two values, the lower one first",
                    range[0], range[1]);
@@ -174,7 +185,7 @@ static hl_status spread_checked(hl_context *context, const hl_transfer_function 
                    range[0], range[1], high / 1000, high);
   }
   hl_transfer_function made = {.unit_distance = from->unit_distance};
-  hl_status status = spread_all(context, from, old, held, range, scale, &made, error);
+  hl_status status = spread_all(context, from, old, held, hinge, range, scale, &made, error);
   if (status == HL_OK) *to = made;
   else hl_transfer_function_release(context, &made);
   return status;
@@ -188,7 +199,7 @@ hl_status hl_transfer_function_spread(hl_context *context, const hl_transfer_fun
     return hl_fail(error, HL_ERROR_ARGUMENT, "hl_transfer_function_spread: null argument");
   if (!(old[0] < old[1] && isfinite(old[1] - old[0])))
     return hl_fail(error, HL_ERROR_ARGUMENT, "hl_transfer_function_spread: the old range is empty");
-  return spread_checked(context, from, old, old, range, scale, to, error);
+  return spread_checked(context, from, old, old, NAN, range, scale, to, error);
 }
 
 /* Widens a function's visible range where clear values are to keep their place: the range's end moves to the
@@ -219,19 +230,23 @@ static bool find_gap(const hl_transfer_function *function, size_t ends[2]) {
   return widest >= 0;
 }
 
-/* Keeps one side of a function that shows values on both sides of clear ones, such as the automatic function
- * of a signed field, if the range lies on this side of the middle of the clear values. Else the clear values
- * would be moved into the range, and all values before it would be as opaque as the other side. */
-static void keep_side(const double range[2], hl_transfer_function *function) {
+/* Keeps the clear values between visible ones where they are, as in the automatic function of a signed field:
+ * they are its background, which would else be moved and become opaque. If the range lies on one side of
+ * their middle, only this side of the function is kept. If it has both sides in it, the middle is returned,
+ * as the value that keeps its place. Otherwise returns NAN. */
+static double keep_background(const double range[2], hl_transfer_function *function) {
   size_t gap[2] = {0, 0};
-  if (!find_gap(function, gap)) return;
+  if (!find_gap(function, gap)) return NAN;
   const double middle = (function->opacity[gap[0]].value + function->opacity[gap[1]].value) / 2;
   if (range[0] >= middle) {
     function->opacity += gap[1];
     function->opacity_count -= gap[1];
   } else if (range[1] <= middle) {
     function->opacity_count = gap[0] + 1;
+  } else {
+    return middle;
   }
+  return NAN;
 }
 
 hl_status hl_transfer_function_spread_over(hl_context *context, const hl_volume *volume,
@@ -246,13 +261,14 @@ hl_status hl_transfer_function_spread_over(hl_context *context, const hl_volume 
   double old[2], held[2];
   const bool projected = use == HL_SPREAD_PROJECTION;
   hl_transfer_function side = *from; /* borrows the points of *from */
-  if (!projected) keep_side(range, &side);
+  double hinge = projected ? NAN : keep_background(range, &side);
   hl_status status = graded_range(volume, &side, projected, old, error);
   if (status != HL_OK) return status;
   memcpy(held, old, sizeof held);
+  if (!(old[0] < hinge && hinge < old[1])) hinge = NAN; /* the volume has values of one side alone */
   if (!projected && scale == HL_RANGE_LINEAR && info.range[0] < info.range[1])
     hold_clear_ends(info.range, range, use == HL_SPREAD_COLORMAP, held);
-  return spread_checked(context, &side, old, held, range, scale, to, error);
+  return spread_checked(context, &side, old, held, hinge, range, scale, to, error);
 }
 
 hl_status hl_transfer_function_colormap_scaled(hl_context *context, const char *name, const double range[2],
