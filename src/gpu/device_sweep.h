@@ -140,6 +140,7 @@ typedef struct plan_light {
 /* A sub-light: how samples look up its buffer. The members of sublight_lookup (shadow/shadow_buffer.h). */
 typedef struct plan_sublight {
   float map[3][4];
+  float weight[3]; /* read only if the variant has images on lights */
   int width, height;
 } plan_sublight;
 
@@ -341,6 +342,7 @@ typedef struct plan_variant {
   int phases;    /* the volume has a table of its phase function */
   int sublights; /* some lights have sub-lights */
   int textures;  /* some lights project images */
+  int emissions; /* some lights with sub-lights show images on their surfaces */
   int sky;       /* whether the sky's light is added in this sweep */
   int maximum;   /* whether the picture is a maximum projection */
   int back_to_front;

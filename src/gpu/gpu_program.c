@@ -17,21 +17,21 @@ static const char *const paper_kernels[] = {"pass_below", "pass_wanted", "convol
 static const char *const sublight_kernels[] = {"slab_halves", "run_sublights", "dark_sublights",
                                                "reached_blocks"};
 
-enum { VARIANT_DEFINES = 23 };
+enum { VARIANT_DEFINES = 24 };
 
 static void define_variant(const plan_variant *v, char defines[VARIANT_DEFINES][40]) {
   const struct {
     const char *name;
     int value;
   } all[VARIANT_DEFINES] = {
-      {"STORAGE", v->storage},   {"BSPLINE", v->bspline},  {"EYE_PERSPECTIVE", v->eye_perspective},
-      {"PHONG", v->phong},       {"LIT", v->lit},          {"SHADOWED", v->shadowed},
-      {"OUTSIDE", v->outside},   {"BOXED", v->boxed},      {"BACK_TO_FRONT", v->back_to_front},
-      {"CHANNELS", v->channels}, {"CUTS", v->cuts},        {"BRICKS", v->bricks},
-      {"STEEP", v->steep},       {"MASKED", v->masked},    {"PLANE", v->plane},
-      {"COLORED", v->colored},   {"SOFT", v->soft},        {"SKY", v->sky},
-      {"MAXIMUM", v->maximum},   {"PAPER", v->paper},      {"SUBLIGHTS", v->sublights},
-      {"PHASES", v->phases},     {"TEXTURES", v->textures}};
+      {"STORAGE", v->storage},   {"BSPLINE", v->bspline},   {"EYE_PERSPECTIVE", v->eye_perspective},
+      {"PHONG", v->phong},       {"LIT", v->lit},           {"SHADOWED", v->shadowed},
+      {"OUTSIDE", v->outside},   {"BOXED", v->boxed},       {"BACK_TO_FRONT", v->back_to_front},
+      {"CHANNELS", v->channels}, {"CUTS", v->cuts},         {"BRICKS", v->bricks},
+      {"STEEP", v->steep},       {"MASKED", v->masked},     {"PLANE", v->plane},
+      {"COLORED", v->colored},   {"SOFT", v->soft},         {"SKY", v->sky},
+      {"MAXIMUM", v->maximum},   {"PAPER", v->paper},       {"SUBLIGHTS", v->sublights},
+      {"PHASES", v->phases},     {"TEXTURES", v->textures}, {"EMISSIONS", v->emissions}};
   for (int i = 0; i < VARIANT_DEFINES; i++)
     snprintf(defines[i], sizeof defines[i], "%s=%d", all[i].name, all[i].value);
 }

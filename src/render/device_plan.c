@@ -351,6 +351,7 @@ static plan_variant variant_of(const sweep_task *task, const device_sweep *plan)
                         .phases = shade->phase_once != NULL,
                         .sublights = any_light(task, hl_has_sublights),
                         .textures = hl_project_images(task->plan),
+                        .emissions = any_light(task, hl_weigh_sublights),
                         .sky = task->constants->shade.sky != NULL,
                         .maximum = shade->shown != NULL,
                         .colored = shade->colors.voxels != NULL,

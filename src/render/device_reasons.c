@@ -50,9 +50,16 @@ static bool masks_thick_slabs(const frame_plan *plan) {
   return false;
 }
 
-static bool shows_images(const frame_plan *plan) {
-  for (int i = 0; i < plan->light_count; i++)
-    if (plan->lights[i].shows_image) return true;
+/* Returns whether the shadows of some light are blurred by the image that the light shows on its surface.
+ * Sub-lights are weighed by the image, which a device can do. */
+static bool blurs_by_images(const frame_plan *plan) {
+  for (int i = 0; i < plan->sweeps.count; i++)
+    for (int l = 0; l < plan->sweeps.list[i].geometry->light_count; l++) {
+      const light_shadow *shadow = &plan->sweeps.list[i].lights[l].shadow;
+      if (shadow->setup.emission != NULL &&
+          (shadow->method == &hl_shadow_cascade || shadow->method == &hl_shadow_paper))
+        return true;
+    }
   return false;
 }
 
@@ -75,7 +82,7 @@ static const struct {
     {has_second_volume, "a function of two volumes' values"},
     {masks_thick_slabs, "a mask with sheets more than 1.5 voxels apart"},
     {has_many_sublights, "more than 16 x 16 sub-lights"},
-    {shows_images, "lights that show images on their surfaces"},
+    {blurs_by_images, "blurred shadows of lights that show images on their surfaces"},
 };
 
 const char *hl_reason_for_processors(const frame_plan *plan) {

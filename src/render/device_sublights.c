@@ -132,6 +132,25 @@ static void add_runs(const device_sweep *plan, const int *beyond, int slabs, kno
   passes->first[plan->sheets] = (int32_t)passes->passes.count;
 }
 
+bool hl_weigh_sublights(const light_shadow *shadow) {
+  return hl_has_sublights(shadow) && shadow->setup.emission != NULL;
+}
+
+/* Sets the weights of a light's sub-lights, as the processors do when they begin a sweep. list: the light's
+ * sub-lights. */
+static hl_status find_weights(hl_context *context, const light_shadow *shadow, plan_sublight *list,
+                              hl_error *error) {
+  const size_t count = (size_t)shadow->sublight_count;
+  double mean[HL_CHANNELS];
+  if (!hl_weigh_sublights(shadow)) return HL_OK;
+  float(*weights)[HL_CHANNELS] = hl_allocate(context, count, sizeof *weights);
+  if (weights == NULL) return hl_fail_memory(error, count * sizeof *weights, "sub-lights");
+  hl_light_emission_weights(shadow->setup.source, shadow->setup.settings->light_samples, weights, mean);
+  for (size_t i = 0; i < count; i++) memcpy(list[i].weight, weights[i], sizeof list[i].weight);
+  hl_release(context, weights);
+  return HL_OK;
+}
+
 hl_status hl_device_sublights_begin(hl_context *context, const sweep_plan *of, device_sweep *plan,
                                     plan_rays *rays, device_sublights *sublights, known_passes *passes,
                                     gpu_sweep *sweep, hl_error *error) {
@@ -158,14 +177,17 @@ hl_status hl_device_sublights_begin(hl_context *context, const sweep_plan *of, d
   all->maps = sublights->maps = hl_allocate_zeroed(context, all->runs * all->count, sizeof *sublights->maps);
   if (sublights->list == NULL || sublights->places == NULL || sublights->maps == NULL)
     return hl_fail_memory(error, sheet_count * all->count * sizeof *sublights->places, "sub-lights");
-  for (int i = 0; i < plan->light_count; i++)
-    for (int n = 0; n < plan->lights[i].sublights; n++) {
-      const size_t number = (size_t)(plan->lights[i].first_sublight + n);
-      describe_sublight(&of->lights[i].shadow, n, beyond[i], all->count, &sublights->list[number],
-                        &sublights->places[number], &sublights->maps[number]);
-    }
-  const hl_status status = hl_known_passes_begin(context, sheets->count, PASSES_OF_RUN * lights * sheet_count,
-                                                 passes, sweep, error);
+  hl_status status = HL_OK;
+  for (int i = 0; i < plan->light_count && status == HL_OK; i++) {
+    const size_t first = (size_t)plan->lights[i].first_sublight;
+    for (int n = 0; n < plan->lights[i].sublights; n++)
+      describe_sublight(&of->lights[i].shadow, n, beyond[i], all->count, &sublights->list[first + (size_t)n],
+                        &sublights->places[first + (size_t)n], &sublights->maps[first + (size_t)n]);
+    status = find_weights(context, &of->lights[i].shadow, sublights->list + first, error);
+  }
+  if (status == HL_OK)
+    status = hl_known_passes_begin(context, sheets->count, PASSES_OF_RUN * lights * sheet_count, passes,
+                                   sweep, error);
   if (status == HL_OK) add_runs(plan, beyond, sweep->slabs, passes);
   return status;
 }

@@ -15,6 +15,9 @@ typedef struct device_sublights {
 /* Returns whether sub-lights make a light's shadows. */
 bool hl_has_sublights(const light_shadow *shadow);
 
+/* Returns whether a light's sub-lights are weighed by the image that the light shows on its surface. */
+bool hl_weigh_sublights(const light_shadow *shadow);
+
 /* The number of bytes of a light's sub-lights at one sheet. planes: the number of planes of a sheet. */
 size_t hl_device_sublight_bytes(const light_shadow *shadow, size_t planes);
 

@@ -4,6 +4,7 @@
 #include <string.h>
 
 #include "core/memory.h"
+#include "render/sweep_constants.h"
 
 _Static_assert(PLAN_TEXTURE_LEVELS == (int)TEXTURE_LEVELS, "images of plans are images of lights");
 
@@ -59,9 +60,7 @@ static hl_status make_room(hl_context *context, size_t count, device_textures *t
 
 hl_status hl_device_textures_begin(hl_context *context, const frame_plan *frame_plan, const sweep_plan *plan,
                                    device_textures *textures, gpu_sweep *sweep, hl_error *error) {
-  const frame *frame = &frame_plan->frame;
-  const texture_use use = {frame->content.points, frame->content.point_count, frame->content.middle,
-                           frame->middle_pixel};
+  const texture_use use = hl_texture_use(&frame_plan->frame);
   const size_t count = (size_t)plan->geometry->light_count;
   gpu_textures *all = &sweep->textures;
   size_t floats = 0;

@@ -149,10 +149,8 @@ void hl_sweep_count_memory(sweep *sweep, sweeps_memory *memory) {
 
 static hl_status begin_light(sweep *sweep, int index, shadow_buffer *buffer, shadow_memory *memory,
                              hl_error *error) {
-  const frame *frame = sweep->frame;
   const sheet_content *content = &sweep->content;
-  const texture_use use = {frame->content.points, frame->content.point_count, frame->content.middle,
-                           frame->middle_pixel};
+  const texture_use use = hl_texture_use(sweep->frame);
   const light_shadow *planned = &sweep->plan->lights[index].shadow;
   const shadow_means means = {content->pool, content->reserve, content->hot->shadow};
   sweep_light *light = &sweep->lights[index];

@@ -193,6 +193,11 @@ static void set_up_picture(const frame_plan *plan, const sweep_plan *sweep, swee
   for (int c = 0; c < 3 && first; c++) shade->ambient[c] = (float)plan->ambient[c];
 }
 
+texture_use hl_texture_use(const frame *frame) {
+  return (texture_use){frame->content.points, frame->content.point_count, frame->content.middle,
+                       frame->middle_pixel};
+}
+
 void hl_sweep_constants_find(const frame_plan *plan, const sweep_plan *sweep, sweep_constants *constants) {
   const sheet_stack *sheets = &sweep->geometry->sheets;
   set_up_volumes(plan, constants);

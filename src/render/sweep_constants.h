@@ -24,4 +24,7 @@ void hl_sweep_constants_lay_out(const frame_plan *plan, sweep_constants *constan
  * the shadow buffers and textures of lights. `constants` must not move in memory afterwards. */
 void hl_sweep_constants_find(const frame_plan *plan, const sweep_plan *sweep, sweep_constants *constants);
 
+/* The content of a frame on which the images of lights fall. */
+texture_use hl_texture_use(const frame *frame);
+
 #endif

@@ -207,6 +207,11 @@ MADE = {
     "a projected image, a lamp's hard shadows, colours": scene(shading="phong", light={**LAMP, "texture": SLIDE}, volume={"attenuation_color": [1, 0.5, 0.2]}),
     "a projected image, sub-lights, cuts, a sky": scene(sky=SKY, shadows="soft", shading="phong", opacity=DENSE, light={**LAMP, "texture": SLIDE},
                                                          volume={"cuts": [BALL]}, render=SUBLIGHTS),
+    "hard shadows of a light that shows an image": scene(shading="phong", light={**TILTED, "emission": SHOWN}),
+    "sub-lights of a light that shows an image, colours, surfaces": scene(
+        shadows="soft", shading="phong", opacity=LAYERS, light={**TILTED, "emission": SHOWN},
+        volume={"attenuation_color": [1, 0.5, 0.2], "cuts": [BALL]}, render=SUBLIGHTS),
+    "sub-lights of lights of which one shows an image": scene(shadows="soft", light={**TILTED, "emission": SHOWN}, render=SUBLIGHTS),
     "an even sky": scene(sky=EVEN_SKY),
     "a sky, surfaces": scene(sky=SKY, shading="phong", opacity=DENSE),
     "a sky, soft shadows of surfaces, colours": scene(sky=SKY, shadows="soft", shading="phong", opacity=LAYERS, light=SUN,
@@ -241,6 +246,7 @@ LABELS["volumes"] = [{"file": "labels.nrrd", "labels": [{"value": 1, "color": [0
 MADE["labels"] = LABELS
 MADE["soft shadows beside hard ones"]["lights"].append({"type": "directional", "direction": [-0.5, -0.5, 0.5], "shadows": "hard"})
 MADE["backward scattering under a ball and a tilted light"]["lights"].append(TILTED)
+MADE["sub-lights of lights of which one shows an image"]["lights"].append({**LAMP, "shadows": "soft"})
 MADE["sub-lights beside hard ones"]["lights"] += [{"type": "directional", "direction": [-0.5, -0.5, 0.5], "shadows": "hard"},
                                                    {**LAMP, "shadows": "soft"}]
 LARGE = scene(volume={"file": "large.nrrd"}, render={"sheet_spacing": 4},
@@ -253,7 +259,7 @@ FEW = ("medium", "a field at levels, surfaces", "gradient opacity, cuts, light f
        "soft shadows of surfaces in layers, a mask, cuts, light from behind")
 LEFT = {
     "more than 16 x 16 sub-lights": scene(shadows="soft", light=SUN, render={**SUBLIGHTS, "light_samples": 17}),
-    "lights that show images on their surfaces": scene(shadows="soft", light={**TILTED, "emission": SHOWN}),
+    "blurred shadows of lights that show images on their surfaces": scene(shadows="soft", light={**TILTED, "emission": SHOWN}),
     "meshes or isosurfaces": {**scene(), "meshes": [{"spheres": [[0, -12, 0, 3]]}]},
     "a mask with sheets more than 1.5 voxels apart": scene(volume={"mask": ORGANS}, render={"sheet_spacing": 1.6}),
     "splatting in place of gathering": scene(render={"reconstruction": "splat"}),

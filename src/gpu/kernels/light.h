@@ -166,7 +166,12 @@ DEVICE void mean_of_sublights(GLOBAL const plan_light *light, const light_buffer
                                 taps.row * light->sublight_stride + taps.column;
       GLOBAL const word16 *below = at + light->sublight_stride;
       const float between = between_taps(&taps, (float)at[0], (float)at[1], (float)below[0], (float)below[1]);
-      mean[c] = mean[c] + (taps.inside ? between : (float)SUBLIGHT_ONE);
+      const float passing = taps.inside ? between : (float)SUBLIGHT_ONE;
+#if EMISSIONS
+      mean[c] = fused(passing, sublight->weight[c], mean[c]);
+#else
+      mean[c] = mean[c] + passing;
+#endif
     }
   }
   for (int c = 0; c < CHANNELS; c++)
