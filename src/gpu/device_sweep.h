@@ -8,6 +8,7 @@
 #define HL_GPU_FRAME_PLAN_H
 
 #define PLAN_LIGHTS        16
+#define PLAN_VOLUMES       16
 #define PLAN_KERNEL_POWERS 6
 #define PLAN_SECTORS       6
 #define PLAN_CODES         256
@@ -120,7 +121,7 @@ typedef struct plan_light {
                     * directions of the paper's convolutions; in units of 16 floats */
   float map[3][4]; /* maps frame space to (w, w u, w v), where (u, v) is the position in the buffer */
   float slab_path; /* the member `path` of attenuate_job (shadow/attenuate.h) */
-  plan_box box, content;
+  int number;      /* of the light among the sweep's lights */
   /* Members of lights with sub-lights (gpu/kernels/sublights.h); `sublights` is 0 for other lights. */
   int sublights, first_sublight; /* the number of sub-lights, and the number of the first one among those of
                                   * all lights */
@@ -131,11 +132,17 @@ typedef struct plan_light {
    * sheet][sublight_plane]; of the slabs' copies, in units of 16 floats, [ring][planes of a sheet][3][plane];
    * and of the light's marks. */
   unsigned sublight_planes, halves, sublight_marks;
-  float margin[3]; /* a distance along each axis, in voxels. If a sample is farther than this from the faces
-                    * of the box, light that passes beside the faces does not reach the buffer's pixels around
-                    * the sample */
-  int first_cut, cut_count; /* the range, among the sweep's cuts, of the cuts that count for the light */
+  int first_cut; /* among the sweep's cuts, the first cut of all volumes in the light's view */
 } plan_light;
+
+/* A volume in the view of the eye or of a light. */
+typedef struct plan_bounds {
+  plan_box box, content; /* box: the rays in the volume's box; content: the rays in the box around the bricks
+                          * that show something */
+  float margin[3]; /* only in a light's view: a distance along each axis, in voxels. If a sample is farther
+                    * than this from the faces of the box, light that passes beside the faces does not reach
+                    * the buffer's pixels around the sample */
+} plan_bounds;
 
 /* A sub-light: how samples look up its buffer. The members of sublight_lookup (shadow/shadow_buffer.h). */
 typedef struct plan_sublight {
@@ -215,7 +222,8 @@ typedef struct plan_volume {
   int any_face;   /* whether the eye may see faces at which the box or a cut cuts visible matter */
   int faces_take; /* whether faces that cut visible matter are surfaces for the light, too */
   int cut_shading, cut_count;
-  int face_cuts[6]; /* [axis][low, high] */
+  int light_cut_count; /* the number of the volume's cuts that count for lights: `cut_count`, or 0 */
+  int face_cuts[6];    /* [axis][low, high] */
   /* the material (shade_volume in render/slab.h) */
   float ambient, diffuse, specular, shininess, emission;
   float anisotropy, phase_rows; /* phase_rows: rows_per_log2 of phase_table */
@@ -227,6 +235,13 @@ typedef struct plan_volume {
   plan_mask mask; /* set if the variant has a mask */
   /* members of plane_table (grid/plane_table.h), for a function of value and gradient */
   float column_scale, column_offset, row_scale, row_offset;
+  /* The next members are read only if the variant has several volumes. Whether the volume is shaded as a
+   * surface, is lit, is visible, casts shadows; whether it has the variant's property of the same name: */
+  int phong, lit, visible, casts, boxed, bricks, steep, masked, plane, colored;
+  int first_cut; /* the number of the cuts, in a view, of the volumes before this one */
+  /* The beginnings of the volume's data on the device: voxels, colours and mask in units of 16 bytes; entries
+   * of the directory; bricks; floats of the tables, and of the tables of phase functions. */
+  unsigned voxels_begin, directory_begin, bricks_begin, tables_begin, colors_begin, mask_begin, phases_begin;
 } plan_volume;
 
 /* The field of the sky's light: the members of sky_light (field/sky_field.h) without the cells. */
@@ -246,12 +261,12 @@ typedef struct device_sweep {
   float spacing, path;
   float through[3], towards_eye[3], normal[3];
   float ambient[3], emission;
-  plan_volume volume;
-  plan_sky sky;          /* set if the variant has a sky */
-  plan_box box, content; /* box: the rays in the volume's box; content: the rays in the box around the bricks
-                          * that show something */
+  plan_sky sky; /* set if the variant has a sky */
   plan_light lights[PLAN_LIGHTS];
 } device_sweep;
+
+/* In the device's memory, the volumes follow the sweep, plan_volume[volumes], and then the bounds of the
+ * volumes in all views, plan_bounds[1 + lights][volumes]; the eye's view comes first. */
 
 /* ---- passes over the fields of soft lights' chunks (shadow_cascade/cascade.h) ---- */
 
@@ -325,6 +340,8 @@ typedef struct plan_blur {
 /* The variant for which kernels are compiled. A member is the value of the macro that has the same name in
  * capitals. */
 typedef struct plan_variant {
+  int volumes; /* number of volumes. If there are several, a property of the variant means that some volume
+                * has it */
   int storage; /* 0: u8, 1: u16, 2: f32 */
   int bricks;  /* whether the volume is a field in bricks, of f32 */
   int bspline; /* 1: the kernel is the cubic B-spline; else it is any polynomial of degree 5 */

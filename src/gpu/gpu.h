@@ -72,8 +72,21 @@ typedef struct gpu_volume {
 /* The number of bytes of a row of the device's voxels. */
 size_t hl_gpu_row_bytes(const gpu_volume *volume);
 
-bool hl_gpu_prepare(hl_gpu *gpu, const gpu_volume *volume);
-/* Forgets the volume on the device: the next volume counts as a different volume, whatever its versions
+/* Where a volume's data begin on the device, behind the data of the volumes before it. */
+typedef struct gpu_place {
+  size_t voxels, colors, mask; /* in bytes, multiples of 16 */
+  size_t directory;            /* number of entries */
+  size_t bricks;               /* number of bricks */
+  size_t tables;               /* number of floats */
+} gpu_place;
+
+/* The places of several volumes. volumes: [count]. places: [count + 1]; the last place is the end of all
+ * data. */
+void hl_gpu_find_places(const gpu_volume *volumes, int count, gpu_place *places);
+
+/* Copies the volumes of a frame to the device. volumes: [count]; at most PLAN_VOLUMES. */
+bool hl_gpu_prepare(hl_gpu *gpu, const gpu_volume *volumes, int count);
+/* Forgets the volumes on the device: the next volumes count as different volumes, whatever their versions
  * are. */
 void hl_gpu_forget(hl_gpu *gpu);
 
@@ -108,7 +121,8 @@ typedef struct gpu_sublights {
                                       * of marks */
 } gpu_sublights;
 
-/* The table of the volume's phase function; borrowed. */
+/* The table of a volume's phase function; borrowed. The tables of the volumes that have one follow each other
+ * on the device, in the order of the volumes. */
 typedef struct gpu_phases {
   const float *rows[PLAN_LIGHTS]; /* [PLAN_PHASE_COLUMNS] for each light; null for lights without a row */
   const float *caps;              /* [PLAN_PHASE_CAPS][PLAN_PHASE_COLUMNS][2]; null if they are not read */
@@ -131,15 +145,18 @@ typedef struct gpu_textures {
 typedef struct gpu_sweep gpu_sweep;
 struct gpu_sweep {
   const device_sweep *plan;
+  const plan_volume *volumes; /* [variant.volumes] */
+  const plan_bounds *bounds;  /* [1 + lights][variant.volumes] */
   plan_variant variant;
-  const plan_rays *rays; /* [2 + 2 lights][sheets] (gpu/kernels/sweep.h) */
-  const plan_cut *cuts;  /* [cut_count]; the cuts of all views, the eye's first; null if there is none */
+  const plan_rays *rays; /* [ray_sets][sheets] (gpu/kernels/sweep.h) */
+  size_t ray_sets;
+  const plan_cut *cuts; /* [cut_count]; the cuts of all views, the eye's first; null if there is none */
   size_t cut_count;
   const int32_t *shown_from; /* [tiles][16 blocks]; the first visible slab of each block, if slabs are
                               * composited from back to front; null stands for slab 1 for all blocks */
   gpu_sky sky;
   gpu_sublights sublights;
-  gpu_phases phases;
+  gpu_phases phases[PLAN_VOLUMES]; /* [variant.volumes] */
   gpu_textures textures;
   const float *shown_values; /* [PLAN_TABLE_ROWS][4]; the table of shown values of a maximum projection; null
                               * for other pictures */

@@ -17,7 +17,7 @@ static const char *const paper_kernels[] = {"pass_below", "pass_wanted", "convol
 static const char *const sublight_kernels[] = {"slab_halves", "run_sublights", "dark_sublights",
                                                "reached_blocks"};
 
-enum { VARIANT_DEFINES = 24 };
+enum { VARIANT_DEFINES = 25 };
 
 static void define_variant(const plan_variant *v, char defines[VARIANT_DEFINES][40]) {
   const struct {
@@ -31,7 +31,8 @@ static void define_variant(const plan_variant *v, char defines[VARIANT_DEFINES][
       {"STEEP", v->steep},       {"MASKED", v->masked},     {"PLANE", v->plane},
       {"COLORED", v->colored},   {"SOFT", v->soft},         {"SKY", v->sky},
       {"MAXIMUM", v->maximum},   {"PAPER", v->paper},       {"SUBLIGHTS", v->sublights},
-      {"PHASES", v->phases},     {"TEXTURES", v->textures}, {"EMISSIONS", v->emissions}};
+      {"PHASES", v->phases},     {"TEXTURES", v->textures}, {"EMISSIONS", v->emissions},
+      {"VOLUMES", v->volumes}};
   for (int i = 0; i < VARIANT_DEFINES; i++)
     snprintf(defines[i], sizeof defines[i], "%s=%d", all[i].name, all[i].value);
 }

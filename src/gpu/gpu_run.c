@@ -12,23 +12,28 @@ static bool fill(hl_gpu *gpu, const gpu_program *program, enum buffer_use use, s
   return fours == 0 || hl_gpu_launch(gpu, program, KERNEL_FILL, 0, hl_gpu_groups(fours), arguments, 3);
 }
 
-/* Finds the distances of bricks, by three passes, one along each axis. */
-static bool find_distances(hl_gpu *gpu, const gpu_program *program) {
-  size_t bricks = 1;
+/* Finds the distances of the bricks of one volume, by three passes, one along each axis. first: the number of
+ * the volume's first brick. */
+static bool find_own_distances(hl_gpu *gpu, const gpu_program *program, const int32_t count[3],
+                               unsigned first) {
+  const size_t bricks = (size_t)count[0] * (size_t)count[1] * (size_t)count[2];
   bool done = true;
-  for (int axis = 0; axis < 3; axis++) bricks *= (size_t)gpu->brick_count[axis];
-  for (int axis = 0; axis < 3 && done && !gpu->has_distances; axis++) {
+  for (int axis = 0; axis < 3 && done; axis++) {
     enum buffer_use from = axis == 1 ? BUFFER_DISTANCES_MADE : BUFFER_DISTANCES,
                     to = axis == 1 ? BUFFER_DISTANCES : BUFFER_DISTANCES_MADE;
-    const gpu_argument arguments[] = {hl_gpu_memory(gpu, from),
-                                      hl_gpu_memory(gpu, to),
-                                      hl_gpu_number(gpu->brick_count[0]),
-                                      hl_gpu_number(gpu->brick_count[1]),
-                                      hl_gpu_number(gpu->brick_count[2]),
-                                      hl_gpu_number(axis),
-                                      hl_gpu_number(axis == 0)};
-    done = hl_gpu_launch(gpu, program, KERNEL_DISTANCES, 0, hl_gpu_groups(bricks), arguments, 7);
+    const gpu_argument arguments[] = {
+        hl_gpu_memory(gpu, from), hl_gpu_memory(gpu, to), hl_gpu_number(count[0]),  hl_gpu_number(count[1]),
+        hl_gpu_number(count[2]),  hl_gpu_number(axis),    hl_gpu_number(axis == 0), {.value = first}};
+    done = hl_gpu_launch(gpu, program, KERNEL_DISTANCES, 0, hl_gpu_groups(bricks), arguments, 8);
   }
+  return done;
+}
+
+static bool find_distances(hl_gpu *gpu, const gpu_sweep *sweep, const gpu_program *program) {
+  bool done = true;
+  if (gpu->has_distances) return true;
+  for (int v = 0; v < gpu->volume_count && done; v++)
+    done = find_own_distances(gpu, program, gpu->brick_count[v], sweep->volumes[v].bricks_begin);
   gpu->has_distances = done;
   return done;
 }
@@ -97,16 +102,21 @@ static bool reset_sublights(hl_gpu *gpu, const gpu_sweep *sweep, const gpu_progr
          fill(gpu, program, BUFFER_SUBLIGHT_MARKS, mark_floats(sweep), 0);
 }
 
-/* Brings the table of the phase function to the device: a row for each light, then the caps. */
+/* Brings the tables of phase functions to the device: for each volume that has one, a row for each light,
+ * then the caps. */
 static bool upload_phases(hl_gpu *gpu, const gpu_sweep *sweep) {
-  const gpu_phases *phases = &sweep->phases;
   const size_t row = PLAN_PHASE_COLUMNS * sizeof(float), lights = (size_t)sweep->plan->light_count,
-               caps = 2 * PLAN_PHASE_CAPS * row;
-  bool done = hl_gpu_reserve(gpu, BUFFER_PHASES, sweep->variant.phases ? lights * row + caps : 0);
-  for (size_t i = 0; i < lights && done; i++)
-    if (phases->rows[i] != NULL) done = hl_gpu_upload(gpu, BUFFER_PHASES, i * row, phases->rows[i], row);
-  if (done && phases->caps != NULL)
-    done = hl_gpu_upload(gpu, BUFFER_PHASES, lights * row, phases->caps, caps);
+               caps = 2 * PLAN_PHASE_CAPS * row, volumes = (size_t)sweep->variant.volumes;
+  bool done = hl_gpu_reserve(gpu, BUFFER_PHASES, sweep->variant.phases ? volumes * (lights * row + caps) : 0);
+  for (size_t v = 0; v < volumes && done && sweep->variant.phases; v++) {
+    const gpu_phases *phases = &sweep->phases[v];
+    const size_t begin = sweep->volumes[v].phases_begin * sizeof(float);
+    for (size_t i = 0; i < lights && done; i++)
+      if (phases->rows[i] != NULL)
+        done = hl_gpu_upload(gpu, BUFFER_PHASES, begin + i * row, phases->rows[i], row);
+    if (done && phases->caps != NULL)
+      done = hl_gpu_upload(gpu, BUFFER_PHASES, begin + lights * row, phases->caps, caps);
+  }
   return done;
 }
 
@@ -136,20 +146,36 @@ static bool prepare_sky(hl_gpu *gpu, const gpu_sky *sky) {
   return true;
 }
 
+/* Brings the sweep's numbers to the device, and behind them the volumes and their bounds. */
+static bool upload_plan(hl_gpu *gpu, const gpu_sweep *sweep) {
+  const size_t volumes = (size_t)sweep->variant.volumes,
+               bounds = (1 + (size_t)sweep->plan->light_count) * volumes * sizeof *sweep->bounds,
+               of_volumes = volumes * sizeof *sweep->volumes, own = sizeof *sweep->plan;
+  return hl_gpu_reserve(gpu, BUFFER_PLAN, own + of_volumes + bounds) &&
+         hl_gpu_upload(gpu, BUFFER_PLAN, 0, sweep->plan, own) &&
+         hl_gpu_upload(gpu, BUFFER_PLAN, own, sweep->volumes, of_volumes) &&
+         hl_gpu_upload(gpu, BUFFER_PLAN, own + of_volumes, sweep->bounds, bounds);
+}
+
+/* The number of floats of a slot: four, or two for each volume (gpu/kernels/sweep.h). */
+static size_t slot_floats(const gpu_sweep *sweep) {
+  return sweep->variant.volumes > 2 ? 2 * (size_t)sweep->variant.volumes : 4;
+}
+
 static bool make_room(hl_gpu *gpu, const gpu_sweep *sweep) {
   const device_sweep *plan = sweep->plan;
-  const size_t views = 2 + 2 * (size_t)plan->light_count, tiles = (size_t)plan->tiles,
+  const size_t tiles = (size_t)plan->tiles,
                slots = sweep->variant.maximum ? 0 : 2 * tiles * 256 * (size_t)sweep->slabs;
-  bool done = hl_gpu_reserve_and_upload(gpu, BUFFER_PLAN, plan, sizeof *plan) &&
+  bool done = upload_plan(gpu, sweep) &&
               hl_gpu_reserve_and_upload(gpu, BUFFER_RAYS, sweep->rays,
-                                        views * (size_t)plan->sheets * sizeof *sweep->rays) &&
+                                        sweep->ray_sets * (size_t)plan->sheets * sizeof *sweep->rays) &&
               hl_gpu_reserve(gpu, BUFFER_PIXELS, tiles * 1024 * sizeof(float)) &&
               hl_gpu_reserve(gpu, BUFFER_PLANES, sweep->plane_floats * sizeof(float)) &&
               hl_gpu_reserve(gpu, BUFFER_LIGHT, light_floats(sweep) * sizeof(float)) &&
               hl_gpu_reserve(gpu, BUFFER_CHANGED, (size_t)plan->light_tiles * 256 * sizeof(int32_t)) &&
               hl_gpu_reserve(gpu, BUFFER_SHOWN_FROM, tiles * 16 * sizeof(int32_t)) &&
               hl_gpu_reserve(gpu, BUFFER_COUNTS, counters_of(sweep) * sizeof(uint32_t)) &&
-              hl_gpu_reserve(gpu, BUFFER_SLOTS, slots * 4 * sizeof(float)) &&
+              hl_gpu_reserve(gpu, BUFFER_SLOTS, slots * slot_floats(sweep) * sizeof(float)) &&
               hl_gpu_reserve(gpu, BUFFER_LIST, slots * sizeof(uint32_t)) &&
               hl_gpu_reserve(gpu, BUFFER_MASKS, 2 * tiles * 256 * sizeof(uint32_t)) &&
               hl_gpu_reserve(gpu, BUFFER_CUTS, sweep->cut_count * sizeof *sweep->cuts) &&
@@ -285,7 +311,7 @@ static bool launch_runs(hl_gpu *gpu, const gpu_sweep *sweep, const gpu_program *
 /* ---- the trial ---- */
 
 bool hl_gpu_try(hl_gpu *gpu, const float *numbers, uint32_t count, float *results, uint32_t result_count) {
-  const plan_variant plainest = {.bspline = 1, .lit = 1, .channels = 1};
+  const plan_variant plainest = {.volumes = 1, .bspline = 1, .lit = 1, .channels = 1};
   const gpu_program *program = hl_gpu_program_of(gpu, &plainest);
   const gpu_argument arguments[] = {
       hl_gpu_memory(gpu, BUFFER_RAYS), hl_gpu_memory(gpu, BUFFER_PIXELS), {.value = count}};
@@ -300,7 +326,7 @@ bool hl_gpu_try(hl_gpu *gpu, const float *numbers, uint32_t count, float *result
 bool hl_gpu_run(hl_gpu *gpu, const gpu_sweep *sweep) {
   const gpu_program *program = hl_gpu_program_of(gpu, &sweep->variant);
   gpu->launches = 0;
-  return program != NULL && make_room(gpu, sweep) && find_distances(gpu, program) &&
+  return program != NULL && make_room(gpu, sweep) && find_distances(gpu, sweep, program) &&
          gpu->device.driver->mark(&gpu->device, 0) && reset(gpu, sweep, program) &&
          launch_runs(gpu, sweep, program) && gpu->device.driver->mark(&gpu->device, 1);
 }

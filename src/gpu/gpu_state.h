@@ -83,11 +83,13 @@ struct hl_gpu {
   gpu_device device;
   const char *cache_folder;
   gpu_buffer buffers[BUFFERS];
-  uint64_t version, tables_version, sky_version; /* versions of the voxels, of the tables and of the sky's
-                                                  * cells on the device; 0 if there are none */
+  int volume_count;                                             /* number of volumes on the device */
+  uint64_t version[PLAN_VOLUMES], tables_version[PLAN_VOLUMES]; /* versions of the volumes' voxels and tables
+                                                                 * on the device; 0 if there are none */
+  uint64_t sky_version; /* version of the sky's cells on the device; 0 if there are none */
   known_program programs[MOST_VARIANTS];
   int program_count, launches;
-  int32_t brick_count[3];
+  int32_t brick_count[PLAN_VOLUMES][3];
   bool has_distances; /* whether the distances of bricks have been found; if not, BUFFER_DISTANCES tells which
                        * bricks are relevant */
 };

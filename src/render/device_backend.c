@@ -73,8 +73,9 @@ static hl_status prepare(hl_renderer *renderer, const frame_plan *plan, const fr
   if (reason == NULL) open_device(renderer);
   if (reason == NULL && renderer->device.gpu == NULL) reason = renderer->device.problem;
   if (reason != NULL) return hl_fail(error, HL_ERROR_UNSUPPORTED, "%s", reason);
-  const gpu_volume volume = hl_volume_for_device(plan);
-  if (hl_gpu_prepare(renderer->device.gpu, &volume)) return HL_OK;
+  gpu_volume volumes[PLAN_VOLUMES];
+  hl_volumes_for_device(plan, volumes);
+  if (hl_gpu_prepare(renderer->device.gpu, volumes, plan->volumes.count)) return HL_OK;
   give_up(renderer, hl_gpu_problem(renderer->device.gpu));
   return hl_fail(error, HL_ERROR_UNSUPPORTED, "%s", renderer->device.problem);
 }

@@ -75,9 +75,9 @@ static void plan_brightness(const shade_light *shade, plan_light *light) {
   light->sector_least = shade->sector.least;
 }
 
-/* The rows and caps of the volume's phase table that a sweep reads. */
-static gpu_phases phases_of(const sweep_constants *constants, int lights) {
-  const phase_table *table = constants->volumes[0].phase_once;
+/* The rows and caps of a volume's phase table that a sweep reads. */
+static gpu_phases phases_of(const sweep_constants *constants, int volume, int lights) {
+  const phase_table *table = constants->volumes[volume].phase_once;
   gpu_phases phases = {0};
   if (table == NULL) return phases;
   bool caps = constants->shade.sky != NULL;
@@ -104,9 +104,8 @@ static int first_reached(const sheet_stack *sheets, const light_shadow *shadow) 
   return slab;
 }
 
-static void plan_box_rays(const view *view, const sweep_task *task, plan_box *box) {
+static void plan_box_rays(const view *view, const sweep_task *task, const grid *grid, plan_box *box) {
   const sheet_stack *sheets = &task->plan->geometry->sheets;
-  const grid *grid = &task->frame_plan->volumes.grids[0];
   box_rays rays;
   hl_box_rays(view, sheets->normal, sheets->first, grid->frame_to_index, grid->box_low, grid->box_high,
               &rays);
@@ -114,9 +113,8 @@ static void plan_box_rays(const view *view, const sweep_task *task, plan_box *bo
 }
 
 /* Finds the box around everything visible. It is one voxel larger on each side, because of rounding. */
-static void plan_content(const view *view, const sweep_task *task, plan_box *box) {
+static void plan_content(const view *view, const sweep_task *task, const grid *grid, plan_box *box) {
   const sheet_stack *sheets = &task->plan->geometry->sheets;
-  const grid *grid = &task->frame_plan->volumes.grids[0];
   double low[3], high[3];
   box_rays rays;
   if (!hl_relevant_bounds(grid, GRID_MARGIN, low, high)) return;
@@ -136,7 +134,7 @@ static void plan_content(const view *view, const sweep_task *task, plan_box *box
  * distance. The light's way through the slab is as long as its path. The margin is a little larger because of
  * rounding. The pixels of a near light grow with distance, so for such a light all samples count as near a
  * face. */
-static float margin_along(const sweep_task *task, int index, double way, vec3 row) {
+static float margin_along(const sweep_task *task, const grid *grid, int index, double way, vec3 row) {
   const sheet_stack *sheets = &task->plan->geometry->sheets;
   const light_source *source = task->plan->lights[index].source;
   double rows[3][4];
@@ -147,24 +145,47 @@ static float margin_along(const sweep_task *task, int index, double way, vec3 ro
   const vec3 u = {rows[1][0], rows[1][1], rows[1][2]}, v = {rows[2][0], rows[2][1], rows[2][2]};
   vec3 along_u = vec3_cross(v, sheets->normal), along_v = vec3_cross(sheets->normal, u);
   double rise = vec3_dot(u, along_u), pixels = fabs(vec3_dot(row, along_u)) + fabs(vec3_dot(row, along_v));
-  double least = 0.01 * hl_smallest_edge(&task->frame_plan->volumes.grids[0]) * vec3_length(row);
+  double least = 0.01 * hl_smallest_edge(grid) * vec3_length(row);
   if (!source->parallel || !(fabs(rise) > 1e-9 * (vec3_length(along_u) + vec3_length(along_v)))) return 1e30f;
   return (float)(2.05 * pixels / fabs(rise) + 1.05 * fabs(vec3_dot(row, source->direction)) * way + least);
 }
 
-static void plan_margin(const sweep_task *task, int index, plan_light *light) {
-  const mat3 *to_index = &task->frame_plan->volumes.grids[0].frame_to_index.linear;
+/* Describes a volume in the view of a light. */
+static void plan_bounds_of_light(const sweep_task *task, const grid *grid, int index, plan_bounds *bounds) {
+  const view *view = &task->plan->lights[index].shadow.plan.view;
+  plan_box_rays(view, task, grid, &bounds->box);
+  plan_content(view, task, grid, &bounds->content);
   for (int axis = 0; axis < 3; axis++)
-    light->margin[axis] = margin_along(task, index, (double)light->path, to_index->row[axis]);
+    bounds->margin[axis] = margin_along(task, grid, index, (double)task->constants->lights[index].path,
+                                        grid->frame_to_index.linear.row[axis]);
+}
+
+static hl_status plan_all_bounds(hl_context *context, const sweep_task *task, planned_sweep *planned,
+                                 hl_error *error) {
+  const plan_volumes *volumes = &task->frame_plan->volumes;
+  const int lights = task->plan->geometry->light_count;
+  const size_t count = (1 + (size_t)lights) * (size_t)volumes->count;
+  plan_bounds *bounds = planned->bounds = hl_allocate_zeroed(context, count, sizeof *bounds);
+  if (bounds == NULL) return hl_fail_memory(error, count * sizeof *bounds, "the bounds of volumes");
+  for (int v = 0; v < volumes->count; v++) {
+    const grid *grid = &volumes->grids[v];
+    plan_box_rays(&task->frame_plan->frame.eye, task, grid, &bounds[v].box);
+    plan_content(&task->frame_plan->frame.eye, task, grid, &bounds[v].content);
+    for (int i = 0; i < lights; i++)
+      if (task->plan->lights[i].shadow.method != NULL)
+        plan_bounds_of_light(task, grid, i, &bounds[(1 + i) * volumes->count + v]);
+  }
+  planned->sweep.bounds = bounds;
+  return HL_OK;
 }
 
 /* ---- the cuts ---- */
 
-/* Describes the volume's cuts for one view. light: the light to which the view belongs; -1: the eye's view.
- */
-static void plan_cuts_of_view(const sweep_task *task, const view *view, int light, plan_cut *cuts) {
-  const grid *grid = &task->frame_plan->volumes.grids[0];
-  const shade_volume *shade = &task->constants->volumes[0];
+/* Describes a volume's cuts for one view. light: the light to which the view belongs; -1: the eye's view. */
+static void plan_cuts_of_view(const sweep_task *task, int volume, const view *view, int light,
+                              plan_cut *cuts) {
+  const grid *grid = &task->frame_plan->volumes.grids[volume];
+  const shade_volume *shade = &task->constants->volumes[volume];
   for (int i = 0; i < shade->cut_count; i++) {
     const affine3 to_shape = affine3_multiply(grid->cuts[i].to_shape, grid->frame_to_index);
     plan_cut *cut = &cuts[i];
@@ -179,28 +200,35 @@ static void plan_cuts_of_view(const sweep_task *task, const view *view, int ligh
     for (int axis = 0; axis < 3; axis++) {
       cut->scale[axis] = 1.0f / (in_view.size[axis] * shade->voxel);
       if (light < 0) continue;
-      cut->margin[axis] = margin_along(task, light, (double)task->constants->lights[light].path,
+      cut->margin[axis] = margin_along(task, grid, light, (double)task->constants->lights[light].path,
                                        to_shape.linear.row[axis]);
     }
   }
 }
 
+/* Describes the cuts of all volumes for one view. */
+static void plan_all_cuts_of_view(const sweep_task *task, const planned_sweep *planned, const view *view,
+                                  int light, plan_cut *cuts) {
+  for (int v = 0; v < task->frame_plan->volumes.count; v++)
+    plan_cuts_of_view(task, v, view, light, cuts + planned->volumes[v].first_cut);
+}
+
 static hl_status plan_cuts(hl_context *context, const sweep_task *task, planned_sweep *planned,
                            hl_error *error) {
-  const shade_volume *shade = &task->constants->volumes[0];
-  const int lights = task->plan->geometry->light_count, own = shade->cut_count;
+  const int lights = task->plan->geometry->light_count;
+  int own = 0;
+  for (int v = 0; v < task->frame_plan->volumes.count; v++) own += task->constants->volumes[v].cut_count;
   const size_t count = (1 + (size_t)lights) * (size_t)own;
   if (own == 0) return HL_OK;
   planned->cuts = hl_allocate_zeroed(context, count, sizeof *planned->cuts);
   if (planned->cuts == NULL) return hl_fail_memory(error, count * sizeof *planned->cuts, "the cuts");
-  plan_cuts_of_view(task, &task->frame_plan->frame.eye, -1, planned->cuts);
+  plan_all_cuts_of_view(task, planned, &task->frame_plan->frame.eye, -1, planned->cuts);
   for (int i = 0; i < lights; i++) {
     const light_shadow *shadow = &task->plan->lights[i].shadow;
     plan_light *light = &planned->plan.lights[i];
     light->first_cut = (1 + i) * own;
-    light->cut_count = shade->light_cut_count;
     if (shadow->method != NULL)
-      plan_cuts_of_view(task, &shadow->plan.view, i, planned->cuts + light->first_cut);
+      plan_all_cuts_of_view(task, planned, &shadow->plan.view, i, planned->cuts + light->first_cut);
   }
   planned->sweep.cuts = planned->cuts;
   planned->sweep.cut_count = count;
@@ -248,9 +276,6 @@ static void plan_buffer(const sweep_task *task, int index, int ring, size_t *flo
   memcpy(light->map, map.rows, sizeof light->map);
   light->slab_path = task->constants->attenuate[index].path;
   memcpy(light->through, task->constants->attenuate[index].through, sizeof light->through);
-  plan_box_rays(view, task, &light->box);
-  plan_content(view, task, &light->content);
-  plan_margin(task, index, light);
   *tiles += light->tiles;
   *floats += ((size_t)ring * planes_of_sheet(task, shadow) * buffer.plane + 15) / 16 * 16;
 }
@@ -259,6 +284,12 @@ static void plan_buffer(const sweep_task *task, int index, int ring, size_t *flo
  * greatest number of bytes that the picture's slots of a run of slabs take. */
 static const size_t PLANES_BYTES = (size_t)1 << 30, SLOTS_BYTES = (size_t)1 << 30;
 enum { SLABS_OF_RUN = 32 /* one bit for each slab */, SLOT_BYTES = 40 };
+
+/* The bytes of a slot for each pixel and slab. Slots of more than two volumes hold two floats for each. */
+static size_t slot_bytes(const sweep_task *task) {
+  const size_t volumes = (size_t)task->frame_plan->volumes.count;
+  return SLOT_BYTES + (volumes > 2 ? 2 * (volumes - 2) * 2 * sizeof(float) : 0);
+}
 
 static size_t bytes_of_sheet(const sweep_task *task) {
   size_t bytes = 0;
@@ -276,7 +307,7 @@ static int slabs_of_run(const sweep_task *task) {
   const int wanted = task->frame_plan->settings.slabs_at_once;
   int slabs = wanted > 0 ? wanted : SLABS_OF_RUN;
   const size_t sheet = bytes_of_sheet(task),
-               slots = task->frame_plan->picture.tiles * TILE_PIXELS * SLOT_BYTES;
+               slots = task->frame_plan->picture.tiles * TILE_PIXELS * slot_bytes(task);
   if (slabs > SLABS_OF_RUN) slabs = SLABS_OF_RUN;
   if (slabs > LIT_SLABS && any_light(task, hl_has_sublights)) slabs = LIT_SLABS;
   while (slabs > 1 && (size_t)slabs * slots > SLOTS_BYTES) slabs--;
@@ -303,22 +334,26 @@ static void plan_view(const view *view, const sheet_stack *sheets, affine3 from_
                  from_frame, sheet, &rays[sheet]);
 }
 
+/* Describes the rays of all views: first the rays in the first volume's index space and in frame space, for
+ * each view, then the rays in the index spaces of the other volumes, for each volume and view. */
 static hl_status plan_all_rays(hl_context *context, const sweep_task *task, planned_sweep *planned,
                                hl_error *error) {
   const sheet_stack *sheets = &task->plan->geometry->sheets;
-  const int lights = task->plan->geometry->light_count;
-  const size_t count = (2 + 2 * (size_t)lights) * (size_t)sheets->count;
-  const affine3 to_index = task->frame_plan->volumes.grids[0].frame_to_index;
-  plan_rays *rays = planned->rays = hl_allocate_zeroed(context, count, sizeof *planned->rays);
-  if (rays == NULL) return hl_fail_memory(error, count * sizeof *planned->rays, "the rays");
-  plan_view(&task->frame_plan->frame.eye, sheets, to_index, false, rays);
-  plan_view(&task->frame_plan->frame.eye, sheets, affine3_identity(), true, rays + sheets->count);
-  for (int i = 0; i < lights; i++) {
-    const light_shadow *shadow = &task->plan->lights[i].shadow;
-    if (shadow->method == NULL) continue;
-    plan_rays *of_light = rays + (2 + 2 * i) * sheets->count;
-    plan_view(&shadow->plan.view, sheets, to_index, false, of_light);
-    plan_view(&shadow->plan.view, sheets, affine3_identity(), false, of_light + sheets->count);
+  const plan_volumes *volumes = &task->frame_plan->volumes;
+  const size_t views = 1 + (size_t)task->plan->geometry->light_count,
+               sets = views * (1 + (size_t)volumes->count), length = (size_t)sheets->count;
+  plan_rays *rays = planned->rays = hl_allocate_zeroed(context, sets * length, sizeof *planned->rays);
+  if (rays == NULL) return hl_fail_memory(error, sets * length * sizeof *planned->rays, "the rays");
+  planned->sweep.rays = rays;
+  planned->sweep.ray_sets = sets;
+  for (size_t i = 0; i < views; i++) {
+    const light_shadow *shadow = i == 0 ? NULL : &task->plan->lights[i - 1].shadow;
+    if (shadow != NULL && shadow->method == NULL) continue;
+    const view *view = i == 0 ? &task->frame_plan->frame.eye : &shadow->plan.view;
+    plan_view(view, sheets, volumes->grids[0].frame_to_index, false, rays + 2 * i * length);
+    plan_view(view, sheets, affine3_identity(), i == 0, rays + (2 * i + 1) * length);
+    for (size_t v = 1; v < (size_t)volumes->count; v++)
+      plan_view(view, sheets, volumes->grids[v].frame_to_index, false, rays + ((1 + v) * views + i) * length);
   }
   return HL_OK;
 }
@@ -333,33 +368,53 @@ static bool keeps_outside(const sweep_task *task) {
   return false;
 }
 
+/* Sets a variant's members that are properties of volumes, which some volume has. */
+static void add_volume(const sweep_constants *constants, int index, plan_variant *variant) {
+  const shade_volume *shade = &constants->volumes[index];
+  const grid *grid = shade->grid;
+  variant->storage = hl_device_storage(grid);
+  variant->bricks |= grid->bricks != NULL;
+  variant->phong |= shade->phong;
+  variant->lit |= shade->lit;
+  variant->boxed |= grid->cut;
+  variant->cuts |= shade->cut_count > 0;
+  variant->phases |= shade->phase_once != NULL;
+  variant->maximum |= shade->shown != NULL;
+  variant->colored |= shade->colors.voxels != NULL;
+  variant->steep |= shade->classifier->steepness != NULL;
+  variant->plane |= shade->classifier->plane.sums != NULL;
+  variant->masked |= shade->classifier->mask.factors != NULL;
+}
+
 static plan_variant variant_of(const sweep_task *task, const device_sweep *plan) {
-  const shade_volume *shade = &task->constants->volumes[0];
-  const grid *grid = &task->frame_plan->volumes.grids[0];
-  return (plan_variant){.storage = hl_device_storage(grid),
-                        .bricks = grid->bricks != NULL,
-                        .bspline = task->frame_plan->volumes.kernel->degree == HL_BSPLINE_DEGREE,
-                        .eye_perspective = task->frame_plan->frame.eye.perspective,
-                        .phong = shade->phong,
-                        .lit = shade->lit,
-                        .shadowed = plan->light_tiles > 0,
-                        .outside = keeps_outside(task),
-                        .boxed = grid->cut,
-                        .cuts = shade->cut_count > 0,
-                        .soft = has_soft_lights(task),
-                        .paper = any_light(task, hl_is_convolved),
-                        .phases = shade->phase_once != NULL,
-                        .sublights = any_light(task, hl_has_sublights),
-                        .textures = hl_project_images(task->plan),
-                        .emissions = any_light(task, hl_weigh_sublights),
-                        .sky = task->constants->shade.sky != NULL,
-                        .maximum = shade->shown != NULL,
-                        .colored = shade->colors.voxels != NULL,
-                        .steep = shade->classifier->steepness != NULL,
-                        .plane = shade->classifier->plane.sums != NULL,
-                        .masked = shade->classifier->mask.factors != NULL,
-                        .back_to_front = task->plan->geometry->back_to_front,
-                        .channels = task->frame_plan->channels};
+  const plan_volumes *volumes = &task->frame_plan->volumes;
+  plan_variant variant = {.volumes = volumes->count,
+                          .bspline = volumes->kernel->degree == HL_BSPLINE_DEGREE,
+                          .eye_perspective = task->frame_plan->frame.eye.perspective,
+                          .shadowed = plan->light_tiles > 0,
+                          .outside = keeps_outside(task),
+                          .soft = has_soft_lights(task),
+                          .paper = any_light(task, hl_is_convolved),
+                          .sublights = any_light(task, hl_has_sublights),
+                          .textures = hl_project_images(task->plan),
+                          .emissions = any_light(task, hl_weigh_sublights),
+                          .sky = task->constants->shade.sky != NULL,
+                          .back_to_front = task->plan->geometry->back_to_front,
+                          .channels = task->frame_plan->channels};
+  for (int v = 0; v < volumes->count; v++) add_volume(task->constants, v, &variant);
+  return variant;
+}
+
+/* Describes the tables of phase functions that a sweep reads. */
+static void plan_phases(const sweep_task *task, planned_sweep *planned) {
+  const int lights = task->plan->geometry->light_count;
+  size_t floats = 0;
+  for (int v = 0; v < task->frame_plan->volumes.count; v++) {
+    planned->sweep.phases[v] = phases_of(task->constants, v, lights);
+    if (task->constants->volumes[v].phase_once == NULL) continue;
+    planned->volumes[v].phases_begin = (unsigned)floats;
+    floats += ((size_t)lights + 2 * PLAN_PHASE_CAPS) * PLAN_PHASE_COLUMNS;
+  }
 }
 
 static hl_status find_constants(hl_context *context, const frame_plan *frame_plan, const sweep_plan *plan,
@@ -398,26 +453,26 @@ hl_status hl_plan_sweep(const sweep_means *means, const frame_plan *frame_plan, 
   memcpy(plan->normal, job->normal, sizeof plan->normal);
   memcpy(plan->ambient, job->ambient, sizeof plan->ambient);
   plan->emission = job->emission;
-  hl_device_volume_describe(frame_plan, shade, &plan->volume);
+  hl_device_volumes_describe(frame_plan, shade, planned->volumes);
   if (job->sky != NULL) plan_sky_light(job->sky, &plan->sky);
-  plan_box_rays(&task->frame_plan->frame.eye, task, &plan->box);
-  plan_content(&task->frame_plan->frame.eye, task, &plan->content);
   size_t floats = 0;
   for (int i = 0; i < plan->light_count; i++) {
+    plan->lights[i].number = i;
     plan_brightness(&task->constants->lights[i], &plan->lights[i]);
     if (task->plan->lights[i].shadow.method != NULL)
       plan_buffer(task, i, plan->ring, &floats, &plan->light_tiles, &plan->lights[i]);
   }
   planned->sweep = (gpu_sweep){.plan = plan,
+                               .volumes = planned->volumes,
                                .variant = variant_of(task, plan),
                                .shown_from = shown_from,
                                .sky = cells_of_sky(job->sky),
-                               .phases = phases_of(&planned->constants, plan->light_count),
                                .shown_values = shade->shown == NULL ? NULL : &shade->shown[0][0],
                                .plane_floats = floats,
                                .slabs = slabs};
-  status = plan_all_rays(context, task, planned, error);
-  planned->sweep.rays = planned->rays;
+  plan_phases(task, planned);
+  status = plan_all_bounds(context, task, planned, error);
+  if (status == HL_OK) status = plan_all_rays(context, task, planned, error);
   if (status == HL_OK && planned->sweep.variant.soft)
     status = hl_device_cascades_begin(means, frame_plan, of, planned->rays, &planned->cascades,
                                       &planned->sweep, error);
@@ -433,6 +488,7 @@ hl_status hl_plan_sweep(const sweep_means *means, const frame_plan *frame_plan, 
 
 void hl_plan_release(hl_context *context, planned_sweep *planned) {
   hl_release(context, planned->memory);
+  hl_release(context, planned->bounds);
   hl_release(context, planned->rays);
   hl_release(context, planned->cuts);
   hl_device_cascades_release(&planned->cascades);
@@ -440,6 +496,7 @@ void hl_plan_release(hl_context *context, planned_sweep *planned) {
   hl_device_sublights_release(context, &planned->sublights);
   hl_device_textures_release(context, &planned->textures);
   planned->memory = NULL;
+  planned->bounds = NULL;
   planned->rays = NULL;
   planned->cuts = NULL;
 }

@@ -17,9 +17,11 @@ typedef struct planned_sweep {
   sweep_constants constants;
   void *memory; /* owned; the block of memory with the arrays of the constants */
   device_sweep plan;
+  plan_volume volumes[PLAN_VOLUMES];
+  plan_bounds *bounds; /* owned */
   gpu_sweep sweep;
   plan_rays *rays; /* owned */
-  plan_cut *cuts;  /* owned; null if the volume has no cuts */
+  plan_cut *cuts;  /* owned; null if no volume has cuts */
   device_cascades cascades;
   known_passes passes;
   device_sublights sublights;

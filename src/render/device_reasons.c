@@ -1,32 +1,63 @@
 /* render/device_reasons.c - see device_reasons.h. */
 #include "render/device_reasons.h"
 
+#include "render/device_volume.h"
 #include "volume/store/pages.h"
-
-static const frame_volume *volume_of(const frame_plan *plan) { return &plan->volumes.list[0]; }
 
 static bool has_no_volume(const frame_plan *plan) {
   return plan->volumes.count == 0 || plan->frame.content.point_count == 0;
 }
-static bool has_volumes(const frame_plan *plan) { return plan->volumes.count > 1; }
-static bool is_hidden(const frame_plan *plan) { return !volume_of(plan)->visible; }
+static bool has_many_volumes(const frame_plan *plan) { return plan->volumes.count > PLAN_VOLUMES; }
+
+/* Returns whether the volumes' voxels have several types. Kernels are compiled for one type. */
+static bool has_mixed_voxels(const frame_plan *plan) {
+  for (int v = 1; v < plan->volumes.count; v++)
+    if (hl_device_storage(&plan->volumes.grids[v]) != hl_device_storage(&plan->volumes.grids[0])) return true;
+  return false;
+}
+static bool projects_volumes(const frame_plan *plan) {
+  return plan->volumes.count > 1 && plan->volumes.shown != NULL;
+}
+/* Returns whether a frame of several volumes has a mask. Where a mask hides matter of one volume, the
+ * processors may still place the matter of another volume by it, which depends on the pixels of a block. */
+static bool masks_one_of_several(const frame_plan *plan) {
+  for (int v = 0; v < plan->volumes.count && plan->volumes.count > 1; v++)
+    if (plan->volumes.list[v].classifier->mask.factors != NULL) return true;
+  return false;
+}
+static bool hides_all(const frame_plan *plan) {
+  for (int v = 0; v < plan->volumes.count; v++)
+    if (plan->volumes.list[v].visible) return false;
+  return true;
+}
+
+/* Returns whether some volume has a property. */
+static bool any_volume(const frame_plan *plan, bool (*has)(const grid *grid, const frame_volume *volume)) {
+  for (int v = 0; v < plan->volumes.count; v++)
+    if (has(&plan->volumes.grids[v], &plan->volumes.list[v])) return true;
+  return false;
+}
 static bool has_layers(const frame_plan *plan) { return plan->picture.layers != NULL; }
 static bool is_shared(const frame_plan *plan) { return plan->picture.share.parts > 1; }
 static bool has_surfaces(const frame_plan *plan) { return plan->frame.surfaces != NULL; }
 static bool scatters(const frame_plan *plan) { return plan->fields.scatters; }
 static bool splats(const frame_plan *plan) { return plan->volumes.splat; }
-static bool is_over_ranks(const frame_plan *plan) {
-  return plan->volumes.grids[0].pages != NULL && plan->volumes.grids[0].pages->blocks != NULL;
+static bool has_blocks_of_ranks(const grid *grid, const frame_volume *volume) {
+  (void)volume;
+  return grid->pages != NULL && grid->pages->blocks != NULL;
 }
-static bool is_thin(const frame_plan *plan) {
-  const int32_t *dimension = plan->volumes.grids[0].dimension;
-  if (plan->volumes.grids[0].bricks != NULL) return false;
-  return dimension[0] < 4 || dimension[1] < 4 || dimension[2] < 4;
+static bool is_over_ranks(const frame_plan *plan) { return any_volume(plan, has_blocks_of_ranks); }
+static bool has_few_slices(const grid *grid, const frame_volume *volume) {
+  const int32_t *dimension = grid->dimension;
+  (void)volume;
+  return grid->bricks == NULL && (dimension[0] < 4 || dimension[1] < 4 || dimension[2] < 4);
 }
-static bool has_second_volume(const frame_plan *plan) {
-  const plane_table *plane = &volume_of(plan)->classifier->plane;
-  return plane->sums != NULL && plane->axis != HL_SECOND_GRADIENT;
+static bool is_thin(const frame_plan *plan) { return any_volume(plan, has_few_slices); }
+static bool reads_second_volume(const grid *grid, const frame_volume *volume) {
+  (void)grid;
+  return volume->classifier->plane.sums != NULL && volume->classifier->plane.axis != HL_SECOND_GRADIENT;
 }
+static bool has_second_volume(const frame_plan *plan) { return any_volume(plan, reads_second_volume); }
 /* Sums of more numbers of 16 bits are rounded. Their mean may exceed 1, and the processors limit it only
  * where some pixel of a block is near a face. */
 enum { MOST_SUBLIGHTS = 16 };
@@ -38,15 +69,16 @@ static bool has_many_sublights(const frame_plan *plan) {
   return false;
 }
 
-static bool is_masked(const frame_plan *plan) { return volume_of(plan)->classifier->mask.factors != NULL; }
-
 /* Returns whether slabs are so thick that they may lead from visible matter into a brick that a mask hides. A
  * device skips slabs whose ends lie in such bricks. Around these bricks the mask is 0 for three voxels
  * (grid/relevant.c), and no ray's way through a slab is longer than twice its thickness. */
 static bool masks_thick_slabs(const frame_plan *plan) {
-  const double most = 1.5 * hl_smallest_edge(&plan->volumes.grids[0]);
-  for (int i = 0; i < plan->sweeps.count; i++)
-    if (is_masked(plan) && plan->sweeps.list[i].geometry->sheets.spacing > most) return true;
+  for (int v = 0; v < plan->volumes.count; v++) {
+    const double most = 1.5 * hl_smallest_edge(&plan->volumes.grids[v]);
+    if (plan->volumes.list[v].classifier->mask.factors == NULL) continue;
+    for (int i = 0; i < plan->sweeps.count; i++)
+      if (plan->sweeps.list[i].geometry->sheets.spacing > most) return true;
+  }
   return false;
 }
 
@@ -73,8 +105,11 @@ static const struct {
     {has_layers, "layers"},
     {is_shared, "a part of a shared picture"},
     {has_surfaces, "meshes or isosurfaces"},
-    {has_volumes, "several volumes"},
-    {is_hidden, "a volume that only casts shadows"},
+    {has_many_volumes, "more than 16 volumes"},
+    {has_mixed_voxels, "several volumes with different types of voxels"},
+    {masks_one_of_several, "several volumes of which one has a mask"},
+    {projects_volumes, "a maximum projection of several volumes"},
+    {hides_all, "it shows no volume"},
     {scatters, "multiple scattering"},
     {splats, "splatting in place of gathering"},
     {is_over_ranks, "voxels of several processes"},

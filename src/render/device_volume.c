@@ -47,9 +47,9 @@ static gpu_mask mask_for_device(const mask_lattice *lattice) {
                               [MASK_COLORS] = lattice->colors == NULL ? 0 : points * HL_COLOR_BYTES}};
 }
 
-gpu_volume hl_volume_for_device(const frame_plan *plan) {
-  const frame_volume *volume = &plan->volumes.list[0];
-  const grid *grid = &plan->volumes.grids[0];
+static gpu_volume volume_for_device(const frame_plan *plan, int number) {
+  const frame_volume *volume = &plan->volumes.list[number];
+  const grid *grid = &plan->volumes.grids[number];
   const classifier *classifier = volume->classifier;
   gpu_volume made = {.version = volume->version,
                      .tables_version = volume->tables_version,
@@ -87,6 +87,10 @@ gpu_volume hl_volume_for_device(const frame_plan *plan) {
     made.brick_width = ((size_t)1 << grid->bricks->shift) + BRICK_MARGIN;
   }
   return made;
+}
+
+void hl_volumes_for_device(const frame_plan *plan, gpu_volume *volumes) {
+  for (int v = 0; v < plan->volumes.count; v++) volumes[v] = volume_for_device(plan, v);
 }
 
 static void plan_mask_of(const shade_volume *shade, plan_mask *planned) {
@@ -145,6 +149,7 @@ static void plan_matter(const shade_volume *shade, plan_volume *volume) {
   volume->several_surfaces = classifier->several_surfaces;
   volume->only_beginning = classifier->only_beginning;
   volume->cut_count = shade->cut_count;
+  volume->light_cut_count = shade->light_cut_count;
   volume->any_face = shade->any_face ||
                      (shade->cut_count > 0 && shade->cut_shading != HL_CUT_SHADING_GRADIENT);
   volume->faces_take = shade->cut_shading == HL_CUT_SHADING_FACE &&
@@ -177,11 +182,45 @@ static void plan_material(const shade_volume *shade, const frame_volume *of, pla
   }
 }
 
-void hl_device_volume_describe(const frame_plan *plan, const shade_volume *shade, plan_volume *volume) {
-  const gpu_volume on_device = hl_volume_for_device(plan);
-  plan_matter(shade, volume);
-  plan_colors(shade, volume);
-  plan_mask_of(shade, &volume->mask);
-  plan_material(shade, &plan->volumes.list[0], volume);
-  volume->row_bytes = (unsigned)hl_gpu_row_bytes(&on_device);
+/* Sets the members that tell the volume's properties, which kernels for several volumes read. */
+static void plan_properties(const shade_volume *shade, const frame_volume *of, plan_volume *volume) {
+  volume->phong = shade->phong;
+  volume->lit = shade->lit;
+  volume->visible = shade->visible;
+  volume->casts = of->casts_shadow;
+  volume->boxed = shade->grid->cut;
+  volume->bricks = shade->grid->bricks != NULL;
+  volume->steep = shade->classifier->steepness != NULL;
+  volume->masked = shade->classifier->mask.factors != NULL;
+  volume->plane = shade->classifier->plane.sums != NULL;
+  volume->colored = shade->colors.voxels != NULL;
+}
+
+static void plan_place(const gpu_place *place, plan_volume *volume) {
+  volume->voxels_begin = (unsigned)(place->voxels / 16);
+  volume->colors_begin = (unsigned)(place->colors / 16);
+  volume->mask_begin = (unsigned)(place->mask / 16);
+  volume->directory_begin = (unsigned)place->directory;
+  volume->bricks_begin = (unsigned)place->bricks;
+  volume->tables_begin = (unsigned)place->tables;
+}
+
+void hl_device_volumes_describe(const frame_plan *plan, const shade_volume *shades, plan_volume *volumes) {
+  gpu_volume on_device[PLAN_VOLUMES];
+  gpu_place places[PLAN_VOLUMES + 1];
+  int cuts = 0;
+  hl_volumes_for_device(plan, on_device);
+  hl_gpu_find_places(on_device, plan->volumes.count, places);
+  for (int v = 0; v < plan->volumes.count; v++) {
+    plan_volume *volume = &volumes[v];
+    plan_matter(&shades[v], volume);
+    plan_colors(&shades[v], volume);
+    plan_mask_of(&shades[v], &volume->mask);
+    plan_material(&shades[v], &plan->volumes.list[v], volume);
+    plan_properties(&shades[v], &plan->volumes.list[v], volume);
+    plan_place(&places[v], volume);
+    volume->row_bytes = (unsigned)hl_gpu_row_bytes(&on_device[v]);
+    volume->first_cut = cuts;
+    cuts += shades[v].cut_count;
+  }
 }

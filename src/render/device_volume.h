@@ -7,13 +7,13 @@
 #include "plan/frame_plan.h"
 #include "render/slab.h"
 
-/* The volume that the frame shows. */
-gpu_volume hl_volume_for_device(const frame_plan *plan);
+/* Describes the volumes of a frame. volumes: [plan->volumes.count], at most PLAN_VOLUMES. */
+void hl_volumes_for_device(const frame_plan *plan, gpu_volume *volumes);
 
 /* The type of a grid's voxels on a device (`storage` of plan_variant). */
 int hl_device_storage(const grid *grid);
 
-/* Describes the volume's matter and material. */
-void hl_device_volume_describe(const frame_plan *plan, const shade_volume *shade, plan_volume *volume);
+/* Describes the matter and material of all volumes. shades, volumes: [plan->volumes.count]. */
+void hl_device_volumes_describe(const frame_plan *plan, const shade_volume *shades, plan_volume *volumes);
 
 #endif

@@ -114,7 +114,7 @@ LANES_INLINE ways_in_box find_ways(const block_slab *slab, block_density *densit
     d->light_first = own.first;
     d->light_last = own.last;
     if (count == 1) return own;
-    sum = (ways_in_box){sum.first + own.first, sum.last + own.last};
+    sum = (ways_in_box){sum.first + lanes_keep(d->here, own.first), sum.last + lanes_keep(d->here, own.last)};
   }
   return (ways_in_box){lanes_min(sum.first, all.first), lanes_min(sum.last, all.last)};
 }

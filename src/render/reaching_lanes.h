@@ -230,30 +230,39 @@ LANES_INLINE own_surface find_own_surface(const block_density *d, const way_begi
   return own;
 }
 
+/* The extinction of the volumes in a slab whose surfaces may be seen. */
+LANES_INLINE lanes extinction_of_surfaces(const block_density *densities, int count) {
+  lanes sum = lanes_set(0);
+  for (int i = 0; i < count; i++)
+    if (densities[i].there && densities[i].patch->volume->visible && densities[i].patch->volume->phong)
+      sum = sum + densities[i].extinction;
+  return sum;
+}
+
 /* The mean of find_own_surface() over a slab's volumes, weighted by extinction. If a volume has no matter at
  * the slab's first sheet but another volume has, it is the other volume that has absorbed the light. */
 LANES_INLINE own_surface find_own_surfaces(const block_density *densities, int count, lanes3 towards,
                                            lanes way, lanes light, lanes outside) {
   own_surface sum = {lanes_set(0), lanes_set(0)};
-  lanes weight = lanes_set(0);
   lanes_int any = lanes_set_int(0);
   if (count == 1) {
     const way_begin begin = find_begin(densities, towards, way);
     return find_own_surface(densities, &begin, light, outside);
   }
+  const lanes total = extinction_of_surfaces(densities, count),
+              inverse = 1.0f / lanes_max(total, lanes_set(1e-30f));
   for (int i = 0; i < count; i++)
-    if (densities[i].there) any |= find_begin(&densities[i], towards, way).there;
+    if (densities[i].there) any |= densities[i].here & find_begin(&densities[i], towards, way).there;
   for (int i = 0; i < count; i++) {
     const block_density *d = &densities[i];
     if (!d->there || !d->patch->volume->visible || !d->patch->volume->phong) continue;
     const way_begin begin = find_begin(d, towards, way);
     own_surface own = find_own_surface(d, &begin, light, outside);
-    sum.kept = lanes_fma(lanes_keep(begin.there | ~any, own.kept), d->extinction, sum.kept);
-    sum.passing = lanes_fma(own.passing, d->extinction, sum.passing);
-    weight = weight + d->extinction;
+    lanes weight = lanes_select(d->extinction == total, lanes_set(1.0f), d->extinction * inverse);
+    sum.kept = lanes_fma(lanes_keep(begin.there | ~any, own.kept), weight, sum.kept);
+    sum.passing = lanes_fma(own.passing, weight, sum.passing);
   }
-  lanes inverse = 1.0f / lanes_max(weight, lanes_set(1e-30f));
-  return (own_surface){sum.kept * inverse, sum.passing * inverse};
+  return sum;
 }
 
 /* The light at the outside of the surfaces in a slab (shadow/attenuate.h). way: the light's way from the
@@ -285,7 +294,8 @@ LANES_INLINE color_lanes passing_to_surfaces(const light_place *place, const blo
       own = find_own_surfaces(densities, count, towards, way, passing.c[0], outside.c[0]);
     if (several) {
       lanes passed = passing.c[c] * own.passing;
-      outside.c[c] = lanes_fma(outside.c[c] - passed, own.kept, passed);
+      lanes_int whole = (own.kept == 1.0f) & (own.passing == 1.0f);
+      outside.c[c] = lanes_select(whole, outside.c[c], lanes_fma(outside.c[c] - passed, own.kept, passed));
     }
     outside.c[c] = lanes_min(outside.c[c], lanes_set(1.0f));
   }

@@ -142,7 +142,7 @@ typedef struct shade_job {
 
 /* Bytes of scratch memory for a patch. It holds a block, and up to sixteen slabs into which samples are
  * packed (pack_lanes.h). */
-enum { SHADE_SCRATCH_BYTES = 17 * 1920 };
+enum { SHADE_SCRATCH_BYTES = 17 * 1984 };
 
 /* One slab in one tile. The slab ends at the current sheet. */
 typedef struct tile_slab {

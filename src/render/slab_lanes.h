@@ -59,7 +59,9 @@ typedef struct block_way {
 
 typedef struct block_density {
   const shade_patch *patch;
-  int there; /* the pixels in which the volume may be visible */
+  int there;      /* whether the volume may be visible in some of the pixels */
+  lanes_int here; /* if several volumes share the slab: the lanes in which the volume may be visible. What
+                   * the volume does in other lanes depends on pixels beside them, so it must not count */
   block_way way;
   lanes before, after; /* table coordinates of the densities at the two ends of the slab's covered part */
   way_sums sums;       /* sums of extinction over the table, from one of these two coordinates to the other */
@@ -200,6 +202,10 @@ LANES_INLINE lanes place_of_part(block_density *densities, int count, const bloc
     sum = lanes_fma(d->extinction, place, sum);
   }
   lanes place = sum / lanes_max(slab->total, lanes_set(1e-30f));
+  for (int i = 0; i < count; i++) /* a volume that has the whole extinction is seen at its own place */
+    if (densities[i].there && densities[i].patch->volume->visible)
+      place = lanes_select(densities[i].extinction == slab->total,
+                           lanes_fma(slab->part.length, densities[i].seen, slab->part.begin), place);
   return lanes_bits(slab->joined) == 0 ? place : place_of_joined(densities, count, slab, u, place);
 }
 
@@ -416,23 +422,48 @@ LANES_INLINE void slab_of_block(const shade_job *job, const tile_slab *tile, int
   slab->starts = 1;
 }
 
-/* Finds the part of the slab that the boxes of visible volumes cover together. */
+/* Finds the part of the slab that the boxes of visible volumes cover together, in each lane by the volumes
+ * that may be visible there. If one box covers the whole part, the part has exactly this box's length, so
+ * that a volume that is visible alone looks as if there were no other. */
 LANES_INLINE void join_parts(const block_density *densities, int count, block_slab *slab) {
-  lanes begin = lanes_set(1.0f), end = lanes_set(0);
+  lanes begin = lanes_set(1.0f), end = lanes_set(0), length;
   for (int i = 0; i < count; i++) {
     const covered_span *part = &densities[i].way.part;
     if (!densities[i].there || !densities[i].patch->volume->visible) continue;
-    lanes_int some = part->length > 0.0f;
+    lanes_int some = densities[i].here;
     begin = lanes_min(begin, lanes_select(some, part->begin, lanes_set(1.0f)));
     end = lanes_max(end, lanes_keep(some, part->begin + part->length));
   }
+  length = end - begin;
+  for (int i = 0; i < count; i++) {
+    const covered_span *part = &densities[i].way.part;
+    if (!densities[i].there || !densities[i].patch->volume->visible) continue;
+    lanes_int whole = densities[i].here & (part->begin == begin) & (part->begin + part->length == end);
+    length = lanes_select(whole, part->length, length);
+  }
   lanes_int some = end > begin;
   slab->part.begin = lanes_keep(some, begin);
-  slab->part.length = lanes_select(some, end - begin, lanes_set(1.0f));
+  slab->part.length = lanes_select(some, length, lanes_set(1.0f));
   slab->joined = lanes_set_int(0);
   for (int i = 0; i < count; i++)
     if (densities[i].there && densities[i].patch->enter != NULL)
-      slab->joined |= densities[i].way.part.length < slab->part.length;
+      slab->joined |= densities[i].here & (densities[i].way.part.length < slab->part.length);
+}
+
+/* Finds the lanes in which a volume may be visible: the lanes whose rays cross its box within the slab, and
+ * meet visible matter. */
+LANES_INLINE lanes_int visible_on_way(const block_density *d) {
+  const classifier *classifier = d->patch->volume->classifier;
+  return (d->way.part.length > 0.0f) & may_be_visible(classifier,
+                                                      coordinate_of_density(classifier, d->way.first),
+                                                      coordinate_of_density(classifier, d->way.last));
+}
+
+/* Takes away the matter of a volume in lanes in which it is not visible. */
+LANES_INLINE void keep_visible(block_density *d) {
+  d->sums.extinction = lanes_keep(d->here, d->sums.extinction);
+  d->sums.integral = lanes_keep(d->here, d->sums.integral);
+  d->sums.moment = lanes_keep(d->here, d->sums.moment);
 }
 
 /* Does step 13 for several volumes in one slab. Each volume's extinction is found over the part of the slab
@@ -440,16 +471,21 @@ LANES_INLINE void join_parts(const block_density *densities, int count, block_sl
  * found over the part that all boxes cover together. So a volume that is divided into several boxes looks the
  * same as the undivided volume. */
 LANES_INLINE void classify_joined(block_density *densities, int count, block_slab *slab) {
+  for (int i = 0; i < count; i++)
+    if (densities[i].there) densities[i].here = visible_on_way(&densities[i]);
   join_parts(densities, count, slab);
   int joined = lanes_bits(slab->joined) != 0;
   for (int i = 0; i < count; i++) {
     block_density *d = &densities[i];
     if (!d->there) continue;
     classify_way(d, d->way.part);
+    keep_visible(d);
     d->extinction = d->sums.extinction * d->way.part.length;
     if (!joined) continue;
     d->centre = lanes_fma(d->way.part.length, centre_of_way(d), d->way.part.begin);
-    classify_way(d, slab->part);
+    classify_way(d, (covered_span){lanes_select(slab->joined, slab->part.begin, d->way.part.begin),
+                                   lanes_select(slab->joined, slab->part.length, d->way.part.length)});
+    keep_visible(d);
   }
 }
 

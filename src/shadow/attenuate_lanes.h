@@ -196,11 +196,31 @@ LANES_INLINE kept_light kept_by_values(const attenuate_job *job, const attenuate
   return kept;
 }
 
-/* Adds one volume's fractions k and k' of attenuate.h to the means over all volumes. weight: the volume's
- * weight in the means, its optical depth. */
-LANES_INLINE void add_kept(kept_light *sum, kept_light kept, lanes weight) {
-  sum->before = lanes_fma(kept.before, weight, sum->before);
-  sum->within = lanes_fma(kept.within, weight, sum->within);
+/* The means over several volumes of the fractions k and k' of attenuate.h, weighted by the volumes'
+ * extinctions. */
+typedef struct kept_mean {
+  kept_light sum;
+  lanes total;       /* the sum of all extinctions */
+  kept_light newest; /* in each lane, the fractions of the last volume with any extinction there */
+  lanes extinction;  /* the extinction of this volume */
+} kept_mean;
+
+LANES_INLINE void add_kept(kept_mean *mean, kept_light kept, lanes extinction) {
+  const lanes_int some = extinction > 0.0f;
+  mean->sum.before = lanes_fma(kept.before, extinction, mean->sum.before);
+  mean->sum.within = lanes_fma(kept.within, extinction, mean->sum.within);
+  mean->total = mean->total + extinction;
+  mean->newest.before = lanes_select(some, kept.before, mean->newest.before);
+  mean->newest.within = lanes_select(some, kept.within, mean->newest.within);
+  mean->extinction = lanes_select(some, extinction, mean->extinction);
+}
+
+/* The means of all volumes. A volume that has the whole extinction gives its own fractions exactly. */
+LANES_INLINE kept_light mean_of_kept(const kept_mean *mean) {
+  const lanes inverse = 1.0f / lanes_max(mean->total, lanes_set(1e-30f));
+  const lanes_int alone = mean->extinction == mean->total;
+  return (kept_light){lanes_select(alone, mean->newest.before, mean->sum.before * inverse),
+                      lanes_select(alone, mean->newest.within, mean->sum.within * inverse)};
 }
 
 typedef struct attenuated_block {
@@ -226,8 +246,9 @@ LANES_INLINE lanes pass_outside(float *at, size_t stride, lanes before, lanes af
 LANES_INLINE attenuated_block attenuate_block(const attenuate_job *job, int volume_count, int channels,
                                               int tile_x, int tile_y, int block) {
   const int x = block % 4 * BLOCK, y = block / 4 * BLOCK, corner[2] = {tile_x * TILE + x, tile_y * TILE + y};
-  lanes depth[HL_CHANNELS] = {lanes_set(0), lanes_set(0), lanes_set(0)}, total = lanes_set(0);
+  lanes depth[HL_CHANNELS] = {lanes_set(0), lanes_set(0), lanes_set(0)};
   kept_light kept = {lanes_set(0), lanes_set(0)};
+  kept_mean mean = {kept, lanes_set(0), kept, lanes_set(0)};
   lanes path = path_through_sheet(&job->rays, job->path, block_u(corner[0]), block_v(corner[1]));
   /* the pixels in which a factor hides a volume's matter. Surfaces end in these pixels, although the values
    * are not low */
@@ -263,16 +284,13 @@ LANES_INLINE attenuated_block attenuate_block(const attenuate_job *job, int volu
     }
     own.before = lanes_keep(extinction > 0.0f, own.before);
     if (volume_count == 1) kept = own;
-    else add_kept(&kept, own, extinction), total = total + extinction;
+    else add_kept(&mean, own, extinction);
   }
   lanes any = channels == 1 ? depth[0] : depth[0] + depth[1] + depth[2];
   const lanes_int affected = (any > 0.0f) | hidden;
   const int taken = lanes_bits(any > 0.0f) != 0;
   if (lanes_bits(affected) == 0) return (attenuated_block){0, 0, 1};
-  if (volume_count > 1 && job->outside[0] != NULL) {
-    lanes inverse = 1.0f / lanes_max(total, lanes_set(1e-30f));
-    kept = (kept_light){kept.before * inverse, kept.within * inverse};
-  }
+  if (volume_count > 1 && job->outside[0] != NULL) kept = mean_of_kept(&mean);
   lanes greatest = lanes_set(0);
   for (int c = 0; c < channels; c++) {
     float *at = job->transmittance[c] + (size_t)y * job->stride + x;

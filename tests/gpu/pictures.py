@@ -80,6 +80,26 @@ PLANE = {"unit_distance": 1, "second": "gradient", "boxes": [
     {"value": [0.3, 1], "second": [0.03, 0.2], "edge": [0.1, 0.02], "color": [0.8, 0.5, 0.2], "opacity": 0.9}]}
 
 
+GLASS = {"unit_distance": 1, "opacity": [[0.2, 0], [0.7, 0.2]], "color": [[0, 0.2, 0.5, 0.9], [1, 0.9, 0.9, 1]]}
+MOVED = {"file": "cloud.nrrd", "transform": {"translate": [7, 4, -5]}, "shading": "none", "transfer_function": GLASS}
+TURNED = {"file": "cloud.nrrd", "transform": {"scale": 0.7, "rotate": {"axis": [1, 2, 0.5], "angle_deg": 40}, "translate": [-9, 3, 2]}, "shading": "none",
+          "transfer_function": {**GLASS, "opacity": [[0.3, 0], [0.35, 0.9]]}}
+
+
+def beside(made, *more):
+    """The scene with more volumes beside and within its own."""
+    made["volumes"] += more
+    return made
+
+
+def halved(made):
+    """The scene with its volume in two halves, whose boxes meet within slabs."""
+    whole = made["volumes"].pop()
+    made["volumes"] += [{**whole, "clip": {"min": [0, 0, 0], "max": [14.3, 31, 31]}},
+                        {**whole, "clip": {"min": [14.3, 0, 0], "max": [31, 31, 31]}}]
+    return made
+
+
 def projected(render=None, **more):
     """A maximum projection."""
     return scene(render={"compositing": "maximum", "sheet_spacing": 0.5, **(render or {})}, **more)
@@ -241,6 +261,31 @@ MADE = {
     "near light, colours, flat view": scene(light={"type": "point", "position": [40, 50, -50]}, camera=FLAT,
                                             volume={"attenuation_color": [1, 0.5, 0.2]}),
 }
+MADE.update({
+    "two media": beside(scene(opacity=AROUND), MOVED),
+    "two media, light from behind, runs of 3": beside(scene(opacity=AROUND, direction=(0.2, -0.3, -0.9), render={"slabs_at_once": 3}), MOVED),
+    "two volumes of surfaces": beside(scene(opacity=DENSE, shading="phong"), {**MOVED, "shading": "phong"}),
+    "surfaces in a medium, near light, colours": beside(
+        scene(opacity=LAYERS, shading="phong", volume={"attenuation_color": [1, 0.5, 0.2]}, light={"type": "point", "position": [40, 50, -50]}), MOVED),
+    "three volumes, of which one only casts shadows and one receives none": beside(
+        scene(opacity=DENSE, shading="phong"), {**MOVED, "visible": False}, {**TURNED, "receives_shadow": False, "shading": "phong"}),
+    "three volumes without shadows, one flat, flat view": beside(
+        scene(opacity=AROUND, shading="phong", shadows="off", camera=FLAT), {**MOVED, "shading": "flat"}, TURNED),
+    "two halves of a volume": halved(scene(opacity=AROUND, shading="phong")),
+    "two halves of a medium, light from behind": halved(scene(opacity=OPACITY, direction=(0.2, -0.3, -0.9))),
+    "volumes with cuts, gradient opacity": beside(
+        scene(opacity=AROUND, shading="phong", volume={"cuts": [BALL]}),
+        {**MOVED, "cuts": [plane(1, 0.4, -0.2), BLOCK], "shading": "phong"}, {**TURNED, "transfer_function": {**GLASS, **STEEP}}),
+    "volumes, soft shadows of surfaces, colours": beside(
+        scene(shadows="soft", shading="phong", opacity=LAYERS, light=SUN, volume={"attenuation_color": [1, 0.5, 0.2]}), {**MOVED, "shading": "phong"}, TURNED),
+    "volumes, the paper's soft shadows": beside(scene(shadows="soft", shading="phong", opacity=DENSE, light=SUN, render=PAPER), MOVED),
+    "volumes, sub-lights, a clip box": beside(
+        scene(shadows="soft", shading="phong", opacity=AROUND, light=LAMP, volume={"clip": CLIP}, render=SUBLIGHTS), {**MOVED, "shading": "phong"}),
+    "volumes under a sky, forward scattering": beside(scene(sky=SKY, shadows="soft", light=SUN, volume=FORWARDS), {**MOVED, **BACKWARDS}, {**TURNED, "shading": "phong"}),
+    "volumes with a function of value and gradient, a projected image": beside(
+        with_plane(scene(shading="phong", light={**LAMP, "texture": SLIDE})), MOVED, {**TURNED, "shading": "phong"}),
+    "a volume in a field at levels": beside(scene(opacity=THIN, camera=FAR, volume=GRAINS), {**GRAINS, **TURNED, "file": "grains.csv"}),
+})
 LABELS = scene(shading="phong")
 LABELS["volumes"] = [{"file": "labels.nrrd", "labels": [{"value": 1, "color": [0.8, 0.2, 0.1]}, {"value": 2, "color": [0.1, 0.4, 0.8]}]}]
 MADE["labels"] = LABELS
@@ -256,12 +301,16 @@ FEW = ("medium", "a field at levels, surfaces", "gradient opacity, cuts, light f
        "the paper's soft shadows of surfaces, colours, near light", "a sky, soft shadows of surfaces, colours",
        "forward scattering under a sky, soft shadows",
        "a projected image, sub-lights, cuts, a sky",
+       "three volumes, of which one only casts shadows and one receives none",
        "soft shadows of surfaces in layers, a mask, cuts, light from behind")
 LEFT = {
     "more than 16 x 16 sub-lights": scene(shadows="soft", light=SUN, render={**SUBLIGHTS, "light_samples": 17}),
     "blurred shadows of lights that show images on their surfaces": scene(shadows="soft", light={**TILTED, "emission": SHOWN}),
     "meshes or isosurfaces": {**scene(), "meshes": [{"spheres": [[0, -12, 0, 3]]}]},
     "a mask with sheets more than 1.5 voxels apart": scene(volume={"mask": ORGANS}, render={"sheet_spacing": 1.6}),
+    "several volumes of which one has a mask": beside(scene(volume={"mask": ORGANS}), MOVED),
+    "a maximum projection of several volumes": beside(projected(), MOVED),
+    "several volumes with different types of voxels": beside(scene(), {**MOVED, "file": "grains.csv", "array": "density"}),
     "splatting in place of gathering": scene(render={"reconstruction": "splat"}),
 }
 

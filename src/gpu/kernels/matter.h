@@ -122,6 +122,18 @@ DEVICE plane_data plane_of_volume(const volume_data *volume) {
   return plane;
 }
 
+/* Returns whether a volume's factor on extinction depends on the gradient, so that the gradient is known
+ * where the factor is. */
+DEVICE int knows_gradient(const volume_data *volume) {
+  (void)volume;
+  return (STEEP && HAS(volume->plan, steep)) || (PLANE && HAS(volume->plan, plane));
+}
+
+/* Returns whether a volume has a factor on extinction. */
+DEVICE int is_weighed(const volume_data *volume) {
+  return knows_gradient(volume) || (MASKED && HAS(volume->plan, masked));
+}
+
 /* The factor by which gradient opacity, a mask and a function of value and gradient multiply extinction. */
 typedef struct matter_factor {
   float factor;
@@ -138,20 +150,24 @@ DEVICE matter_factor factor_of_matter(const volume_data *volume, vector point, f
   found.row = 0.0f;
   found.slope = vector_of(0.0f, 0.0f, 0.0f);
 #if STEEP || PLANE
-  found.slope = gradient_at(*volume, point);
+  if (knows_gradient(volume)) found.slope = gradient_at(*volume, point);
 #endif
 #if STEEP
-  found.factor = factor_of_slope(volume, found.slope);
+  if (HAS(volume->plan, steep)) found.factor = factor_of_slope(volume, found.slope);
 #endif
 #if MASKED
-  const mask_data mask = mask_of_volume(volume);
-  found.factor = found.factor * mask_factor(&mask, point);
+  if (HAS(volume->plan, masked)) {
+    const mask_data mask = mask_of_volume(volume);
+    found.factor = found.factor * mask_factor(&mask, point);
+  }
 #endif
 #if PLANE
-  const plane_data plane = plane_of_volume(volume);
-  found.row = row_of_slope(found.slope, volume->plan->row_scale, volume->plan->row_offset);
-  found.factor = found.factor *
-                 divided(extinction_in_row(&plane, found.row, from, to), greater(extinction, 1e-30f));
+  if (HAS(volume->plan, plane)) {
+    const plane_data plane = plane_of_volume(volume);
+    found.row = row_of_slope(found.slope, volume->plan->row_scale, volume->plan->row_offset);
+    found.factor = found.factor *
+                   divided(extinction_in_row(&plane, found.row, from, to), greater(extinction, 1e-30f));
+  }
 #else
   (void)from, (void)to, (void)extinction;
 #endif

@@ -8,6 +8,14 @@
 #include "gpu/kernels/cuts.h"
 #include "gpu/kernels/taps.h"
 
+/* Whether a volume has a property that some volume of the variant has. A single volume has all properties of
+ * its variant. */
+#if VOLUMES > 1
+#define HAS(volume, property) ((volume)->property)
+#else
+#define HAS(volume, property) 1
+#endif
+
 /* The greatest number of `distances` below. */
 #define FARTHEST_BRICK 9
 
@@ -26,8 +34,15 @@ typedef struct volume_data {
   GLOBAL const byte *mask;   /* the mask's parts (kernels/mask.h); read only if there is a mask */
   GLOBAL const float
       *phases; /* the table of the phase function (kernels/phase.h); read only if there is one */
-  GLOBAL const plan_cut *cuts; /* [views][cut_count]; the eye's view comes first, then the lights' views */
+  GLOBAL const plan_cut *cuts;      /* the volume's cuts in the eye's view; the cuts in a light's view come
+                                     * plan_light.first_cut cuts later */
+  GLOBAL const plan_bounds *bounds; /* the volume's bounds in the eye's view */
 } volume_data;
+
+/* A volume's bounds in the view of a light. */
+DEVICE GLOBAL const plan_bounds *bounds_in_light(const volume_data *volume, GLOBAL const plan_light *light) {
+  return volume->bounds + (1 + light->number) * VOLUMES;
+}
 
 /* The position of a point in the grid; index space, clamped to [-1, n). */
 typedef struct grid_point {
@@ -91,6 +106,7 @@ DEVICE tap_place place_of_taps(const volume_data *volume, const float at[3]) {
   }
 #if BRICKS
   GLOBAL const plan_volume *plan = volume->plan;
+  if (!HAS(plan, bricks)) return place;
   wide block = 0;
   for (int a = 2; a >= 0; a--) {
     const int last = plan->directory_size[a] - 1, own = (place.cell[a] + 1) >> plan->brick_shift;
@@ -116,7 +132,7 @@ DEVICE tap_place place_of_taps(const volume_data *volume, const float at[3]) {
 /* Returns whether any tap around a cell lies outside the grid along an axis. In a field in bricks no tap
  * does, because bricks hold all taps of their cells. */
 DEVICE int taps_leave(GLOBAL const plan_volume *volume, int cell, int axis) {
-  return !BRICKS && !taps_inside(cell, volume->dimension[axis]);
+  return !(BRICKS && HAS(volume, bricks)) && !taps_inside(cell, volume->dimension[axis]);
 }
 
 DEVICE GLOBAL const byte *first_row(const volume_data *volume, const int cell[3]) {

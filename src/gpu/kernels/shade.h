@@ -78,20 +78,25 @@ DEVICE void weigh_slab(GLOBAL const device_sweep *plan, GLOBAL const plan_rays *
   place_slab(plan, rays, u, v, s);
 }
 
-DEVICE void find_normal(const volume_data *volume, float density, slab_sample *s) {
+/* Finds the gradient where it is needed, as find_slopes() in render/slab_lanes.h. If the factor on extinction
+ * depends on the gradient, the gradient is known already. */
+DEVICE void find_slope(const volume_data *volume, slab_sample *s) {
+  const int phong = PHONG && HAS(volume->plan, phong), lit = LIT && HAS(volume->plan, lit);
   s->sloped = s->sums.extinction > 0.0f;
+  if (knows_gradient(volume)) return;
+  s->slope = vector_of(0.0f, 0.0f, 0.0f);
+  if (!phong) s->sloped = s->sloped && s->sums.extinction * s->part.length * s->path > THIN_DEPTH;
+  if (!((phong || (lit && SHADOWED)) && HAS(volume->plan, visible))) s->sloped = 0;
+  if (s->sloped) s->slope = gradient_at(*volume, s->position);
+}
+
+DEVICE void find_normal(const volume_data *volume, float density, slab_sample *s) {
+  find_slope(volume, s);
   s->normal = vector_of(0.0f, 0.0f, 0.0f);
   s->surface = 0.0f;
   s->behind = FACE_VOXELS;
-#if !(STEEP || PLANE)
-  s->slope = s->normal;
-#if !PHONG
-  s->sloped = s->sloped && s->sums.extinction * s->part.length * s->path > THIN_DEPTH;
-#endif
-  if (!(PHONG || (LIT && SHADOWED))) s->sloped = 0;
-  if (s->sloped) s->slope = gradient_at(*volume, s->position);
-#endif
 #if PHONG
+  if (!(HAS(volume->plan, phong) && HAS(volume->plan, visible))) return;
   vector slope = scaled(s->slope, magnitude(volume->plan->scale));
   const float outward = density < 0.0f ? 1.0f : -1.0f;
 #if MASKED
@@ -225,37 +230,48 @@ DEVICE void shadow_sample(GLOBAL const device_sweep *plan, const volume_data *vo
 #endif
 }
 
-/* Adds the light that a sample sends on from one light to the eye. */
-DEVICE void add_light(GLOBAL const device_sweep *plan, const volume_data *volume,
-                      GLOBAL const plan_light *light, const light_buffers *buffers, const slab_sample *s,
-                      vector color, vector *lit) {
-  GLOBAL const plan_volume *matter = volume->plan;
+/* A light at a sample, before anything attenuates it. */
+typedef struct full_light {
   vector towards;
-  float strength, path = find_direction(plan, light, s->position, &towards, &strength);
-  float facing = dot3(s->normal, towards), medium = 1.0f - s->surface;
-  if (!(s->surface < 1.0f || facing > 0.0f)) return;
+  float path; /* the length of the light's way through the slab */
   arriving_light arriving;
-  for (int c = 0; c < 3; c++) arriving.on_medium[c] = strength * light->color[c];
+} full_light;
+
+DEVICE full_light light_at_sample(GLOBAL const device_sweep *plan, GLOBAL const plan_light *light,
+                                  const light_buffers *buffers, const slab_sample *s) {
+  full_light full;
+  float strength;
+  full.path = find_direction(plan, light, s->position, &full.towards, &strength);
+  for (int c = 0; c < 3; c++) full.arriving.on_medium[c] = strength * light->color[c];
 #if TEXTURES
   float pattern[3];
-  if (pattern_of_texture(buffers->textures, plan->light_count, (int)(light - plan->lights), s->position,
-                         pattern))
-    for (int c = 0; c < 3; c++) arriving.on_medium[c] = arriving.on_medium[c] * pattern[c];
-#endif
-  for (int c = 0; c < 3; c++) arriving.on_surface[c] = arriving.on_medium[c];
-#if SHADOWED
-  if (light->shadowed && matter->receives_shadow &&
-      (arriving.on_medium[0] > 0.0f || arriving.on_medium[1] > 0.0f || arriving.on_medium[2] > 0.0f))
-    shadow_sample(plan, volume, light, buffers, s, towards, path, &arriving);
+  if (pattern_of_texture(buffers->textures, plan->light_count, light->number, s->position, pattern))
+    for (int c = 0; c < 3; c++) full.arriving.on_medium[c] = full.arriving.on_medium[c] * pattern[c];
 #else
   (void)buffers;
-  (void)path;
 #endif
+  for (int c = 0; c < 3; c++) full.arriving.on_surface[c] = full.arriving.on_medium[c];
+  return full;
+}
+
+DEVICE int is_bright(const arriving_light *light) {
+  return light->on_medium[0] > 0.0f || light->on_medium[1] > 0.0f || light->on_medium[2] > 0.0f;
+}
+
+/* Adds the light that a sample sends on to the eye from the light that arrives. */
+DEVICE void add_arriving(GLOBAL const device_sweep *plan, const volume_data *volume,
+                         GLOBAL const plan_light *light, const arriving_light *arriving, const slab_sample *s,
+                         vector towards, vector color, vector *lit) {
+  GLOBAL const plan_volume *matter = volume->plan;
+  float facing = dot3(s->normal, towards), medium = 1.0f - s->surface;
 #if PHASES
-  const phase_data phases = phases_of_volume(plan, volume);
-  medium = medium * phase_of_light(&phases, matter->anisotropy, light, (int)(light - plan->lights), towards,
-                                   s->position, s->towards_eye);
+  if (VOLUMES == 1 || matter->anisotropy != 0) {
+    const phase_data phases = phases_of_volume(plan, volume);
+    medium = medium * phase_of_light(&phases, matter->anisotropy, light, light->number, towards, s->position,
+                                     s->towards_eye);
+  }
 #else
+  (void)plan;
   if (matter->anisotropy != 0) medium = medium * phase_of(matter->anisotropy, dot3(s->towards_eye, towards));
 #endif
   if (light->of_sky > 0) medium = medium * light->of_sky;
@@ -265,6 +281,8 @@ DEVICE void add_light(GLOBAL const device_sweep *plan, const volume_data *volume
     vector mirrored = add_scaled(scaled(towards, -1.0f), s->normal, facing * 2.0f);
     glint = power_of(dot3(s->towards_eye, mirrored), matter->shininess) * matter->specular * s->surface;
   }
+#else
+  (void)facing;
 #endif
   float of_color[3], sum[3];
   of_color[0] = color.x;
@@ -275,66 +293,90 @@ DEVICE void add_light(GLOBAL const device_sweep *plan, const volume_data *volume
   sum[2] = lit->z;
   for (int c = 0; c < 3; c++) {
     float even = matter->absorbs ? fused(medium, matter->albedo[c] - 1, medium) : medium;
-    sum[c] = fused(arriving.on_medium[c], of_color[c] * even, sum[c]);
+    sum[c] = fused(arriving->on_medium[c], of_color[c] * even, sum[c]);
 #if PHONG
-    sum[c] = fused(arriving.on_surface[c], fused(of_color[c], diffuse, glint), sum[c]);
+    if (HAS(matter, phong))
+      sum[c] = fused(arriving->on_surface[c], fused(of_color[c], diffuse, glint), sum[c]);
 #endif
   }
   *lit = vector_of(sum[0], sum[1], sum[2]);
 }
 
-/* The light that a sample sends to the eye. sky: the cells of the sky's field. buffers: the first of the
- * buffers of all lights. slot: the slot, in the buffers' rings, of the sheet before the slab. rays: the eye's
- * rays in index space at the slab's second sheet. */
-DEVICE vector color_of_slab(GLOBAL const device_sweep *plan, const volume_data *volume,
-                            GLOBAL const short *sky, const light_buffers *buffers,
-                            GLOBAL const plan_rays *rays, int slot, const slab_sample *s) {
-  GLOBAL const plan_volume *matter = volume->plan;
-#if PLANE
-  const plane_data plane = plane_of_volume(volume);
-  float from, to = end_of_shown(s, &from);
-  vector color = color_in_row(&plane, s->row, from, to, s->before, s->after);
-#else
-  vector color = color_of_way(volume, s);
+/* Adds the light that a sample sends on from one light to the eye. */
+DEVICE void add_light(GLOBAL const device_sweep *plan, const volume_data *volume,
+                      GLOBAL const plan_light *light, const light_buffers *buffers, const slab_sample *s,
+                      vector color, vector *lit) {
+  full_light full = light_at_sample(plan, light, buffers, s);
+  if (!(s->surface < 1.0f || dot3(s->normal, full.towards) > 0.0f)) return;
+#if SHADOWED
+  if (light->shadowed && volume->plan->receives_shadow && is_bright(&full.arriving))
+    shadow_sample(plan, volume, light, buffers, s, full.towards, full.path, &full.arriving);
 #endif
+  add_arriving(plan, volume, light, &full.arriving, s, full.towards, color, lit);
+}
+
+/* The colour of a volume's matter at a sample. */
+DEVICE vector color_of_matter(const volume_data *volume, const slab_sample *s) {
+  vector color;
+#if PLANE
+  if (HAS(volume->plan, plane)) {
+    const plane_data plane = plane_of_volume(volume);
+    float from, to = end_of_shown(s, &from);
+    color = color_in_row(&plane, s->row, from, to, s->before, s->after);
+  } else
+#endif
+    color = color_of_way(volume, s);
 #if COLORED
-  float of_voxels[3];
-  color_between_voxels(volume->colors, matter->color_decode, matter->color_last, matter->to_index,
-                       s->position, of_voxels);
-  color = vector_of(color.x * of_voxels[0], color.y * of_voxels[1], color.z * of_voxels[2]);
+  GLOBAL const plan_volume *matter = volume->plan;
+  if (HAS(matter, colored)) {
+    float of_voxels[3];
+    color_between_voxels(volume->colors, matter->color_decode, matter->color_last, matter->to_index,
+                         s->position, of_voxels);
+    color = vector_of(color.x * of_voxels[0], color.y * of_voxels[1], color.z * of_voxels[2]);
+  }
 #endif
 #if MASKED
-  if (matter->mask.tints) {
+  if (volume->plan->mask.tints) {
     const mask_data mask = mask_of_volume(volume);
     color = tinted_by_mask(&mask, s->position, color);
   }
 #endif
+  return color;
+}
+
+/* The light that a volume sends to the eye without any light source: ambient light, and its emission. */
+DEVICE vector even_light(GLOBAL const device_sweep *plan, const volume_data *volume, vector color) {
+  GLOBAL const plan_volume *matter = volume->plan;
   float own = matter->emission * plan->emission;
-  vector lit = vector_of(color.x * (matter->ambient * plan->ambient[0] + own),
-                         color.y * (matter->ambient * plan->ambient[1] + own),
-                         color.z * (matter->ambient * plan->ambient[2] + own));
-#if LIT
-  for (int i = 0; i < plan->light_count; i++) {
-    GLOBAL const plan_light *light = &plan->lights[i];
-    light_buffers own;
-    own.planes = buffers->planes + (wide)light->planes * 16 +
-                 (wide)slot * (wide)(light->plane * PLANES_OF_SHEET);
-    own.young = SOFT ? rays[(3 + 2 * i) * plan->sheets].young : 0.0f;
+  return vector_of(color.x * (matter->ambient * plan->ambient[0] + own),
+                   color.y * (matter->ambient * plan->ambient[1] + own),
+                   color.z * (matter->ambient * plan->ambient[2] + own));
+}
+
+/* The buffers of one light. buffers: the first of the buffers of all lights. slot: the slot, in the buffers'
+ * rings, of the sheet before the slab. young: as in plan_rays. */
+DEVICE light_buffers buffers_of_light(GLOBAL const plan_light *light, const light_buffers *buffers, int slot,
+                                      float young) {
+  light_buffers own;
+  own.planes = buffers->planes + (wide)light->planes * 16 +
+               (wide)slot * (wide)(light->plane * PLANES_OF_SHEET);
+  own.young = young;
 #if TEXTURES
-    own.textures = buffers->textures;
+  own.textures = buffers->textures;
 #endif
 #if SUBLIGHTS
-    own.sublights = buffers->sublights + light->first_sublight;
-    own.of_sublights = buffers->of_sublights + (wide)light->sublight_planes * 16 +
-                       (wide)slot * (wide)light->sublights * (PLANES_OF_SHEET * (wide)light->sublight_plane);
+  own.sublights = buffers->sublights + light->first_sublight;
+  own.of_sublights = buffers->of_sublights + (wide)light->sublight_planes * 16 +
+                     (wide)slot * (wide)light->sublights * (PLANES_OF_SHEET * (wide)light->sublight_plane);
 #endif
-    add_light(plan, volume, light, &own, s, color, &lit);
-  }
-#else
-  (void)buffers;
-  (void)slot;
-#endif
+  return own;
+}
+
 #if SKY
+
+/* Adds the light of the sky that a sample sends on. sky: the cells of the sky's field. */
+DEVICE vector with_sky(GLOBAL const device_sweep *plan, const volume_data *volume, GLOBAL const short *sky,
+                       const slab_sample *s, vector color, vector lit) {
   const sky_data field = {&plan->sky, sky};
 #if PHASES
   const phase_data phases = phases_of_volume(plan, volume);
@@ -342,8 +384,33 @@ DEVICE vector color_of_slab(GLOBAL const device_sweep *plan, const volume_data *
 #else
   const vector of_sky = sky_of_sample(&field, volume, s);
 #endif
-  lit = vector_of(fused(of_sky.x, color.x, lit.x), fused(of_sky.y, color.y, lit.y),
-                  fused(of_sky.z, color.z, lit.z));
+  return vector_of(fused(of_sky.x, color.x, lit.x), fused(of_sky.y, color.y, lit.y),
+                   fused(of_sky.z, color.z, lit.z));
+}
+
+#endif
+
+/* The light that a sample sends to the eye. sky: the cells of the sky's field. buffers: the first of the
+ * buffers of all lights. slot: the slot, in the buffers' rings, of the sheet before the slab. rays: the eye's
+ * rays in index space at the slab's second sheet. */
+DEVICE vector color_of_slab(GLOBAL const device_sweep *plan, const volume_data *volume,
+                            GLOBAL const short *sky, const light_buffers *buffers,
+                            GLOBAL const plan_rays *rays, int slot, const slab_sample *s) {
+  const vector color = color_of_matter(volume, s);
+  vector lit = even_light(plan, volume, color);
+#if LIT
+  for (int i = 0; i < plan->light_count; i++) {
+    GLOBAL const plan_light *light = &plan->lights[i];
+    const light_buffers own = buffers_of_light(light, buffers, slot,
+                                               SOFT ? rays[(3 + 2 * i) * plan->sheets].young : 0.0f);
+    add_light(plan, volume, light, &own, s, color, &lit);
+  }
+#else
+  (void)buffers;
+  (void)slot;
+#endif
+#if SKY
+  lit = with_sky(plan, volume, sky, s, color, lit);
 #else
   (void)sky;
 #endif

@@ -238,15 +238,13 @@ DEVICE float light_of_medium(const sky_data *sky, const sky_place *place, const 
   return greater(fused(second_degree(light, onwards) - second, g * g, sum), 0.0f);
 }
 
-#else
+#endif
 
 /* The light that an evenly scattering medium receives from the sky. hidden: whether matter may hide the sky;
  * then `place` is set. */
-DEVICE float light_of_medium(const sky_data *sky, const sky_place *place, int hidden, int channel) {
+DEVICE float light_of_even_medium(const sky_data *sky, const sky_place *place, int hidden, int channel) {
   return greater(harmonic_at(sky, place, hidden, channel, 0) * (float)HARMONIC_0, 0.0f);
 }
-
-#endif
 
 /* ---- the light that a sample scatters ---- */
 
@@ -289,10 +287,13 @@ DEVICE vector sky_of_sample(const sky_data *sky, const volume_data *volume,
                        : 0.0f;
 #if PHASES
       const vector onwards = scaled(s->towards_eye, -1.0f);
-      in_medium = light_of_medium(sky, &place, phases, matter->anisotropy, onwards, hidden, c) * haze;
+      in_medium = (VOLUMES == 1 || matter->anisotropy != 0
+                       ? light_of_medium(sky, &place, phases, matter->anisotropy, onwards, hidden, c)
+                       : light_of_even_medium(sky, &place, hidden, c)) *
+                  haze;
       if (!(s->surface < 1.0f)) in_medium = 0.0f;
 #else
-      in_medium = s->surface < 1.0f ? light_of_medium(sky, &place, hidden, c) * haze : 0.0f;
+      in_medium = s->surface < 1.0f ? light_of_even_medium(sky, &place, hidden, c) * haze : 0.0f;
 #endif
     }
     const float left = matter->absorbs ? in_medium * matter->albedo[c] : in_medium;

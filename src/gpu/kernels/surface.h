@@ -7,7 +7,7 @@
 #define HL_GPU_SURFACE_H
 
 #include "core/sheet_constants.h"
-#include "gpu/kernels/light.h"
+#include "gpu/kernels/passing.h"
 
 /* ---- the faces of the box ---- */
 
@@ -69,7 +69,8 @@ DEVICE float find_face(const volume_data *volume, const slab_sample *s, vector *
   nearest.way = 1e30f;
   nearest.cuts = 0;
   nearest.outward = *outward = vector_of(0.0f, 0.0f, 0.0f);
-  if (!CUTS && !is_near_face(plan, s->position)) return FACE_VOXELS;
+  if ((!CUTS || (VOLUMES > 1 && plan->cut_count == 0)) && !is_near_face(plan, s->position))
+    return FACE_VOXELS;
   for (int axis = 0; axis < 3; axis++) {
     GLOBAL const float *row = plan->to_index[axis];
     float speed = row_of_vector(row, s->towards_eye);
@@ -187,7 +188,7 @@ DEVICE float skin_of_faces(const volume_data *data, GLOBAL const plan_light *lig
   float z = skin_of_axis(from.z, to.z, volume->face_low[2], volume->face_high[2], volume->steps[2]);
   float skin = greater(greater(x, y), z);
 #if CUTS
-  for (int i = 0; i < light->cut_count; i++)
+  for (int i = 0; i < volume->light_cut_count; i++)
     skin = greater(skin, skin_of_cut(&data->cuts[light->first_cut + i], from, to));
 #endif
   return skin;
@@ -202,7 +203,7 @@ DEVICE int nears_inner_corner(const volume_data *data, GLOBAL const plan_light *
   const int perspective = !light->parallel;
   const vector from = position_on(in_index, perspective, u, v),
                to = position_on(in_index + 1, perspective, u, v);
-  for (int i = 0; i < light->cut_count; i++) {
+  for (int i = 0; i < data->plan->light_cut_count; i++) {
     GLOBAL const plan_cut *cut = &data->cuts[light->first_cut + i];
     near = near || (cut->shape == CUT_BOX && !cut->keep_inside && nears_edge(cut, from, to));
   }
@@ -277,57 +278,101 @@ DEVICE way_begin find_begin(const volume_data *volume, const slab_sample *s, vec
   return begin;
 }
 
+/* The fractions of the light at the slab's first sheet that light a sample's own surface, as own_surface in
+ * render/reaching_lanes.h. */
+typedef struct own_surface {
+  float kept, passing;
+} own_surface;
+
+/* Finds these fractions. passed, outside: the transmittance and the light at the outside, at the slab's first
+ * sheet. */
+DEVICE own_surface find_own_surface(const volume_data *volume, const slab_sample *s, const way_begin *begin,
+                                    float passed, float outside) {
+  own_surface own;
+  own.kept = own.passing = 1.0f;
+  if (begin->there && begin->first != begin->foot) {
+    second_surface other = kept_at_foot(volume->tables, begin->first, begin->start, begin->foot,
+                                        magnitude(begin->change), passed, outside);
+    own.kept = greater(other.kept, skin_of_sample(s));
+    own.passing = greater(exp_of_depth(lesser(other.ahead, DEEPEST)), skin_of_sample(s));
+  }
+  return own;
+}
+
+/* The light that reaches a sample's slab in one channel: the light at the outside of surfaces, and the
+ * transmittance, which is found only if it is wanted. */
+typedef struct surface_light {
+  float outside, passed;
+} surface_light;
+
+/* The means over a light's sub-lights. */
+typedef struct sublight_means {
+  float passed[CHANNELS], outside[CHANNELS];
+} sublight_means;
+
+DEVICE sublight_means means_for_surface(GLOBAL const plan_light *light, const slab_sample *s,
+                                        const light_buffers *buffers, int wants_passed) {
+  sublight_means means;
+  for (int c = 0; c < CHANNELS; c++) means.passed[c] = means.outside[c] = 0.0f;
+#if SUBLIGHTS
+  if (light->sublights > 0) {
+    mean_of_sublights(light, buffers, s->position, 1, means.outside);
+    if (wants_passed) mean_of_sublights(light, buffers, s->position, 0, means.passed);
+  }
+#else
+  (void)light, (void)s, (void)buffers, (void)wants_passed;
+#endif
+  return means;
+}
+
+/* In the buffer's planes Y follows T. */
+DEVICE surface_light light_for_surface(GLOBAL const plan_light *light, const shadow_taps *taps,
+                                       const light_buffers *buffers, const sublight_means *means, int c,
+                                       int wants_passed) {
+  GLOBAL const float *plane = buffers->planes + c * light->plane + light->origin;
+  surface_light found;
+  found.outside = means->outside[c];
+  found.passed = means->passed[c];
+#if SUBLIGHTS
+  if (light->sublights > 0) return found;
+#endif
+  found.outside = interpolated(light, taps, light->cubic, plane + CHANNELS * light->plane);
+  if (wants_passed || light->soft) found.passed = interpolated(light, taps, light->cubic, plane);
+#if SOFT
+  if (light->soft) {
+    const float taken = found.outside - found.passed;
+    found.passed = between_chunks(interpolated(light, taps, light->cubic, plane + OLDER_PLANE * light->plane),
+                                  found.passed, buffers->young);
+    found.outside = found.passed + greater(taken, 0.0f);
+  }
+#endif
+  return found;
+}
+
+/* The light that lights a sample's own surface. */
+DEVICE float light_of_own_surface(surface_light light, own_surface own) {
+  if (own.kept == 1.0f && own.passing == 1.0f) return light.outside;
+  const float passed = light.passed * own.passing;
+  return fused(light.outside - passed, own.kept, passed);
+}
+
 /* Finds the light at the outside of a sample's surface. way: the light's way from the slab's first sheet to
- * the sample. In the buffer's planes Y follows T. */
+ * the sample. */
 DEVICE void passing_to_surface(const volume_data *volume, GLOBAL const plan_light *light,
                                const slab_sample *s, vector towards, float way, const light_buffers *buffers,
                                float passing[CHANNELS]) {
   const shadow_taps taps = taps_of_position(light, s->position);
-  float own_kept = 1.0f, own_passing = 1.0f;
-#if SUBLIGHTS
-  float mean_passed[CHANNELS], mean_outside[CHANNELS];
-  for (int c = 0; c < CHANNELS; c++) mean_passed[c] = 0.0f;
-  if (light->sublights > 0) {
-    mean_of_sublights(light, buffers, s->position, 1, mean_outside);
-    if (volume->plan->several_surfaces) mean_of_sublights(light, buffers, s->position, 0, mean_passed);
-  }
-#endif
+  const int several = volume->plan->several_surfaces;
+  const sublight_means means = means_for_surface(light, s, buffers, several);
+  own_surface own;
+  own.kept = own.passing = 1.0f;
   for (int c = 0; c < CHANNELS; c++) {
-    GLOBAL const float *plane = buffers->planes + c * light->plane + light->origin;
-    float outside = 0.0f, passed = 0.0f;
-#if SUBLIGHTS
-    if (light->sublights > 0) {
-      outside = mean_outside[c];
-      passed = mean_passed[c];
-    } else
-#endif
-    {
-      outside = interpolated(light, &taps, light->cubic, plane + CHANNELS * light->plane);
-      if (volume->plan->several_surfaces || light->soft)
-        passed = interpolated(light, &taps, light->cubic, plane);
+    const surface_light found = light_for_surface(light, &taps, buffers, &means, c, several);
+    if (several && c == 0) {
+      const way_begin begin = find_begin(volume, s, towards, way);
+      own = find_own_surface(volume, s, &begin, found.passed, found.outside);
     }
-#if SOFT
-    if (light->soft) {
-      const float taken = outside - passed;
-      passed = between_chunks(interpolated(light, &taps, light->cubic, plane + OLDER_PLANE * light->plane),
-                              passed, buffers->young);
-      outside = passed + greater(taken, 0.0f);
-    }
-#endif
-    if (volume->plan->several_surfaces) {
-      if (c == 0) {
-        const way_begin begin = find_begin(volume, s, towards, way);
-        if (begin.there && begin.first != begin.foot) {
-          second_surface other = kept_at_foot(volume->tables, begin.first, begin.start, begin.foot,
-                                              magnitude(begin.change), passed, outside);
-          own_kept = greater(other.kept, skin_of_sample(s));
-          own_passing = greater(exp_of_depth(lesser(other.ahead, DEEPEST)), skin_of_sample(s));
-        }
-      }
-      passed = passed * own_passing;
-      outside = fused(outside - passed, own_kept, passed);
-    }
-    passing[c] = lesser(outside, 1.0f);
+    passing[c] = lesser(light_of_own_surface(found, own), 1.0f);
   }
 }
 

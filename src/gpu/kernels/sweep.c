@@ -1,5 +1,5 @@
 /* gpu/kernels/sweep.c - defines the kernels' entry points. */
-#include "gpu/kernels/sweep.h"
+#include "gpu/kernels/attenuate.h"
 #include "gpu/kernels/cascade.h"
 #include "gpu/kernels/paper.h"
 #include "gpu/kernels/sublights.h"
@@ -22,12 +22,12 @@ KERNEL(8) try_arithmetic(GLOBAL const float *from, GLOBAL float *to, unsigned co
 }
 
 /* Finds, for each brick, the distance in bricks to the nearest brick that may show something. This takes
- * three passes, one along each axis; a call makes one pass. x, y, z: the numbers of bricks. relevant: not 0
- * in the first pass. In this pass `from` holds 1 for each brick that may show something, and no distances
- * yet. */
+ * three passes, one along each axis; a call makes one pass. x, y, z: the numbers of bricks. first: the number
+ * of the volume's first brick. relevant: not 0 in the first pass. In this pass `from` holds 1 for each brick
+ * that may show something, and no distances yet. */
 KERNEL(16)
 spread_distances(GLOBAL const byte *from, GLOBAL byte *to, unsigned x, unsigned y, unsigned z, unsigned axis,
-                 unsigned relevant) {
+                 unsigned relevant, unsigned first) {
   wide number = (wide)(unsigned)work_number(), count = (wide)x * y * z;
   if (number >= count) return;
   unsigned column = (unsigned)(number % x), row = (unsigned)(number / x % y),
@@ -40,6 +40,7 @@ spread_distances(GLOBAL const byte *from, GLOBAL byte *to, unsigned x, unsigned 
                                  : z);
   wide stride = axis == 0 ? 1 : axis == 1 ? (wide)x : (wide)x * y;
   int least = FARTHEST_BRICK;
+  from += first;
   for (int offset = 1 - FARTHEST_BRICK; offset < FARTHEST_BRICK; offset++) {
     if (at + offset < 0 || at + offset >= length) continue;
     int value = from[number - (wide)at * stride + (wide)(at + offset) * stride];
@@ -48,7 +49,7 @@ spread_distances(GLOBAL const byte *from, GLOBAL byte *to, unsigned x, unsigned 
     int farther = value > size ? value : size;
     if (farther < least) least = farther;
   }
-  to[number] = (byte)least;
+  to[first + number] = (byte)least;
 }
 
 /* The arguments of the kernels that work on a run of slabs. */
@@ -69,7 +70,8 @@ DEVICE sweep_data sweep_of(SWEEP_ARGUMENTS) {
   sweep_data sweep;
   sweep.plan = plan;
   sweep.rays = rays;
-  sweep.volume.plan = &plan->volume;
+  sweep.volume.plan = (GLOBAL const plan_volume *)(plan + 1);
+  sweep.volume.bounds = (GLOBAL const plan_bounds *)(sweep.volume.plan + VOLUMES);
   sweep.volume.voxels = voxels;
   sweep.volume.distances = distances;
   sweep.volume.cell_bits = cell_bits;
@@ -93,7 +95,7 @@ DEVICE sweep_data sweep_of(SWEEP_ARGUMENTS) {
   sweep.shown_from = shown_from;
   sweep.counts = counts;
   const wide pixel_count = (wide)plan->tiles * 256, slot_count = pixel_count * (wide)(plan->ring / 2);
-  sweep.slots = slots + (wide)(run & 1) * slot_count * 4;
+  sweep.slots = slots + (wide)(run & 1) * slot_count * SLOT_FLOATS;
   sweep.list = list + (wide)(run & 1) * slot_count;
   sweep.masks = masks + (wide)(run & 1) * pixel_count;
   (void)first;
@@ -141,8 +143,7 @@ KERNEL(12) run_light(SWEEP_ARGUMENTS) {
   const int own_tile = tile - light->first_tile, column = own_tile % light->tiles_x * 16 + column_of(member),
             row = own_tile / light->tiles_x * 16 + row_of(member), perspective = !light->parallel;
   const float u = (float)column, v = (float)row;
-  GLOBAL const plan_rays *in_index = rays + (2 + 2 * number) * plan->sheets,
-                         *in_frame = in_index + plan->sheets;
+  GLOBAL const plan_rays *in_frame = rays + (3 + 2 * number) * plan->sheets;
   GLOBAL float *state = light_state + (wide)tile * (256 * PLANES_OF_SHEET) + member;
   GLOBAL float *pixel = planes + (wide)light->planes * 16 + light->origin + (wide)row * (wide)light->stride +
                         column;
@@ -153,7 +154,12 @@ KERNEL(12) run_light(SWEEP_ARGUMENTS) {
   for (int c = 0; c < CHANNELS; c++) own.moment[c] = moments[c * 512];
 #endif
   int changed_at = changed[(wide)tile * 256 + member];
-  const ray_left ray = left_of_ray(&light->box, cuts + light->first_cut, light->cut_count, u, v);
+  ray_left lefts[VOLUMES];
+  for (int i = 0; i < VOLUMES; i++) {
+    const volume_data volume = volume_of_sweep(&sweep, i);
+    lefts[i] = left_of_ray(volume.plan, &bounds_in_light(&volume, light)->box, volume.cuts + light->first_cut,
+                           volume.plan->light_cut_count, u, v);
+  }
   int lit = block_any(votes, is_lit(&own));
 #if SUBLIGHTS
   /* the buffer of a light with sub-lights takes each slab for itself, where some sub-light reaches it */
@@ -164,23 +170,21 @@ KERNEL(12) run_light(SWEEP_ARGUMENTS) {
 #else
   const int single = 0;
 #endif
-  const slab_range slabs = slabs_with_content(&light->content, u, v, plan->spacing, first, end);
+  const slab_range slabs = slabs_of_ray(&sweep, 1 + number, u, v, first, end);
   const int own_first = slabs.first > light->first_slab ? slabs.first : light->first_slab;
-  const float speed = speed_of_ray(in_index + first - 1, perspective, u, v);
-  sheet_way way = no_sheets();
+  ways_of_ray ways;
+  begin_ways(&sweep, 1 + number, perspective, first - 1, u, v, &ways);
   for (int sheet = first - 1, step; sheet < end; sheet += step) {
     int does = 0;
     step = 1;
     for (int c = 0; c < PLANES_OF_SHEET && single; c++) own.passing[c] = 1.0f;
     if (lit && sheet >= own_first - 1 && sheet < slabs.end) {
-      step = fill_way(&sweep.volume, in_index + sheet, perspective, u, v, speed, sheet == own_first - 1,
-                      &way);
-      if ((way.before_shows || way.after_shows) && sheet >= own_first)
-        does = attenuate_slab(&sweep, light, in_index + sheet, in_frame + sheet, &ray, way.before, way.after,
-                              &own);
+      step = fill_ways(&sweep, 1 + number, perspective, sheet, u, v, sheet == own_first - 1, &ways);
+      if (ways_show(&ways) && sheet >= own_first)
+        does = attenuate_slab(&sweep, light, in_frame + sheet, sheet, lefts, &ways, &own);
     } else {
       step = !lit || sheet >= slabs.end ? end - sheet : own_first - 1 - sheet;
-      way.after_known = way.after_shows = 0;
+      forget_ways(&ways);
     }
     if (does == SLAB_TAKES) changed_at = sheet;
 #if SUBLIGHTS
@@ -197,7 +201,7 @@ KERNEL(12) run_light(SWEEP_ARGUMENTS) {
 #endif
     step = least_of_group(step);
     if (step > end - sheet) step = end - sheet;
-    if (step > 1) way.after_known = way.after_shows = 0;
+    if (step > 1) forget_ways(&ways);
     for (int k = sheet < first ? first : sheet;
          k < sheet + step && changed_at > 0 && changed_at + single > k - plan->ring; k++)
       for (int c = 0; c < PLANES_OF_SHEET; c++)

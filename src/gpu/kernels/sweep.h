@@ -10,7 +10,11 @@
 
 #include "core/sheet_constants.h"
 #include "gpu/kernels/maximum.h"
+#include "gpu/kernels/several.h"
 #include "gpu/kernels/shade.h"
+
+/* The number of floats of a slot: four, or two for each volume. */
+#define SLOT_FLOATS (VOLUMES > 2 ? 2 * VOLUMES : 4)
 
 /* The state of a pixel's ray on its way from sheet to sheet: the densities on the last two sheets, as far as
  * they are known. */
@@ -99,9 +103,10 @@ typedef struct sweep_data {
   GLOBAL const device_sweep *plan;
   /* [2 + 2 lights][sheets]: the eye's rays in index space at each sheet; the eye's rays in frame space in the
    * middle of the slab before each sheet; then for each light its rays in index space and in frame space at
-   * each sheet. */
+   * each sheet. Index space is the first volume's. The rays in the index spaces of the other volumes follow:
+   * [volumes - 1][1 + lights][sheets]. */
   GLOBAL const plan_rays *rays;
-  volume_data volume;
+  volume_data volume;   /* of several volumes, the first one */
   GLOBAL float *pixels; /* [tiles][16 blocks][R G B A][16]; in a maximum projection the four numbers are
                          * those of ray_maximum, and one more that is not used */
   GLOBAL float *planes; /* planes of all lights */
@@ -120,15 +125,96 @@ typedef struct sweep_data {
   GLOBAL unsigned *counts;      /* [256], then [runs]. The first 256 numbers count composited samples; tile t
                                  * adds its samples to number t % 256. The others are the lengths of the
                                  * lists */
-  /* [slabs of a run][256 * tiles pixels][4]; a slot for each pixel and slab. At first a slot holds the
-   * densities on the slab's two sheets. Later it holds the light that the slab sends to the eye (R, G, B),
-   * and the slab's opacity, which is -1 if nothing is seen. Of this array and of the next two there are two
-   * copies: one for even runs, one for odd runs. */
+  /* [slabs of a run][256 * tiles pixels][SLOT_FLOATS]; a slot for each pixel and slab. At first a slot holds
+   * the densities of each volume on the slab's two sheets. Later it holds the light that the slab sends to
+   * the eye (R, G, B), and the slab's opacity, which is -1 if nothing is seen. Of this array and of the next
+   * two there are two copies: one for even runs, one for odd runs. */
   GLOBAL float *slots;
   GLOBAL unsigned *list;  /* [slabs of a run * 256 * tiles]; the numbers of the slots that are in use */
   GLOBAL unsigned *masks; /* [256 * tiles]; bit k of a pixel's mask is set if the pixel uses its slot for the
                            * run's k-th slab */
 } sweep_data;
+
+/* ---- the ways of a pixel's ray through all volumes ---- */
+
+DEVICE volume_data volume_of_sweep(const sweep_data *sweep, int number) {
+#if VOLUMES > 1
+  return volume_of(&sweep->volume, number);
+#else
+  (void)number;
+  return sweep->volume;
+#endif
+}
+
+/* The rays of a view in a volume's index space. view: 0 for the eye, then the lights. */
+DEVICE GLOBAL const plan_rays *index_rays(const sweep_data *sweep, int view, int volume) {
+  const int views = 1 + sweep->plan->light_count;
+  return sweep->rays + (volume == 0 ? 2 * view : (1 + volume) * views + view) * sweep->plan->sheets;
+}
+
+/* The state of a pixel's ray in all volumes. */
+typedef struct ways_of_ray {
+  sheet_way of[VOLUMES];
+  float speed[VOLUMES];
+} ways_of_ray;
+
+/* The slabs of a run in which a ray may meet anything of a volume that counts: of a visible volume, or of one
+ * that casts shadows. view: as for index_rays(). */
+DEVICE slab_range slabs_of_ray(const sweep_data *sweep, int view, float u, float v, int first, int end) {
+#if VOLUMES > 1
+  slab_range range;
+  range.first = end;
+  range.end = first;
+  for (int i = 0; i < VOLUMES; i++) {
+    GLOBAL const plan_volume *volume = sweep->volume.plan + i;
+    if (!(view == 0 ? volume->visible : volume->casts)) continue;
+    const slab_range own = slabs_with_content(&sweep->volume.bounds[view * VOLUMES + i].content, u, v,
+                                              sweep->plan->spacing, first, end);
+    if (own.first >= own.end) continue;
+    range.first = own.first < range.first ? own.first : range.first;
+    range.end = own.end > range.end ? own.end : range.end;
+  }
+  return range;
+#else
+  return slabs_with_content(&sweep->volume.bounds[view].content, u, v, sweep->plan->spacing, first, end);
+#endif
+}
+
+/* Begins a ray's ways at a sheet. */
+DEVICE void begin_ways(const sweep_data *sweep, int view, int perspective, int sheet, float u, float v,
+                       ways_of_ray *ways) {
+  for (int i = 0; i < VOLUMES; i++) {
+    ways->of[i] = no_sheets();
+    ways->speed[i] = speed_of_ray(index_rays(sweep, view, i) + sheet, perspective, u, v);
+  }
+}
+
+/* Does fill_way() for all volumes. Returns the number of sheets from this sheet to the next sheet at which
+ * the ray may meet anything. */
+DEVICE int fill_ways(const sweep_data *sweep, int view, int perspective, int sheet, float u, float v,
+                     int starts, ways_of_ray *ways) {
+  int step = 1;
+  for (int i = 0; i < VOLUMES; i++) {
+    const volume_data volume = volume_of_sweep(sweep, i);
+    if (VOLUMES > 1 && view > 0 && !HAS(volume.plan, casts)) continue;
+    const int own = fill_way(&volume, index_rays(sweep, view, i) + sheet, perspective, u, v, ways->speed[i],
+                             starts, &ways->of[i]);
+    step = i == 0 || own < step ? own : step;
+  }
+  return step;
+}
+
+/* Returns whether some volume shows anything in a slab. */
+DEVICE int ways_show(const ways_of_ray *ways) {
+  int shows = 0;
+  for (int i = 0; i < VOLUMES; i++) shows = shows || ways->of[i].before_shows || ways->of[i].after_shows;
+  return shows;
+}
+
+/* Forgets the densities on the last sheet, because the ray skips sheets. */
+DEVICE void forget_ways(ways_of_ray *ways) {
+  for (int i = 0; i < VOLUMES; i++) ways->of[i].after_known = ways->of[i].after_shows = 0;
+}
 
 DEVICE int column_of(int member) { return (member >> 4 & 3) * 4 + (member & 3); }
 DEVICE int row_of(int member) { return (member >> 6) * 4 + (member >> 2 & 3); }
@@ -137,22 +223,24 @@ DEVICE int row_of(int member) { return (member >> 6) * 4 + (member >> 2 & 3); }
 typedef struct ray_left {
   float u, v;
   GLOBAL const plan_cut *cuts; /* [cut_count]; the cuts of the pixel's view */
-  int cut_count;
-  heights_in_box in_box; /* of heights_left() */
+  int cut_count, boxed;        /* boxed: whether the volume's box or a cut cuts visible matter */
+  heights_in_box in_box;       /* of heights_left() */
 } ray_left;
 
-DEVICE ray_left left_of_ray(GLOBAL const plan_box *box, GLOBAL const plan_cut *cuts, int cut_count, float u,
-                            float v) {
+DEVICE ray_left left_of_ray(GLOBAL const plan_volume *volume, GLOBAL const plan_box *box,
+                            GLOBAL const plan_cut *cuts, int cut_count, float u, float v) {
   ray_left ray;
+  (void)volume;
+  ray.boxed = BOXED && HAS(volume, boxed);
   ray.u = u;
   ray.v = v;
   ray.cuts = cuts;
   ray.cut_count = cut_count;
+  ray.in_box.enter = ray.in_box.leave = 0.0f;
 #if BOXED
-  ray.in_box = heights_left(box, cuts, CUTS ? cut_count : 0, u, v);
+  if (ray.boxed) ray.in_box = heights_left(box, cuts, CUTS ? cut_count : 0, u, v);
 #else
   (void)box;
-  ray.in_box.enter = ray.in_box.leave = 0.0f;
 #endif
   return ray;
 }
@@ -171,13 +259,13 @@ DEVICE heights_in_box heights_left_in_slab(const ray_left *ray, float height, fl
 /* The part that the volume's box and cuts leave of the slab that ends at a sheet. */
 DEVICE covered_span part_of_slab(const ray_left *ray, float height, float spacing) {
 #if BOXED
-  return covered(heights_left_in_slab(ray, height, spacing), height, spacing);
+  if (ray->boxed) return covered(heights_left_in_slab(ray, height, spacing), height, spacing);
 #else
   (void)ray;
   (void)height;
   (void)spacing;
-  return whole_slab();
 #endif
+  return whole_slab();
 }
 
 /* ---- the picture ---- */
@@ -212,7 +300,8 @@ DEVICE int take_values(const sweep_data *sweep, const tile_pixel *pixel, int she
   GLOBAL const plan_rays *rays = sweep->rays + plan->sheets + sheet;
   table_coordinate a = coordinate_of_density(volume->plan, before),
                    b = coordinate_of_density(volume->plan, after);
-  const ray_left left = left_of_ray(&plan->box, volume->cuts, volume->plan->cut_count, pixel->u, pixel->v);
+  const ray_left left = left_of_ray(volume->plan, &volume->bounds->box, volume->cuts, volume->plan->cut_count,
+                                    pixel->u, pixel->v);
   covered_span part = part_of_slab(&left, rays->height, plan->spacing);
   slab_sample s;
   find_geometry(plan, rays, pixel->u, pixel->v, &s);
@@ -237,12 +326,24 @@ DEVICE int take_values(const sweep_data *sweep, const tile_pixel *pixel, int she
   return shows;
 }
 
+/* Returns whether the eye may see some volume in a slab. */
+DEVICE int may_be_seen(const sweep_data *sweep, const ways_of_ray *ways) {
+  int seen = 0;
+  for (int i = 0; i < VOLUMES; i++) {
+    GLOBAL const plan_volume *volume = sweep->volume.plan + i;
+    const sheet_way *way = &ways->of[i];
+    if (VOLUMES > 1 && !(HAS(volume, visible) && (way->before_shows || way->after_shows))) continue;
+    seen = seen || may_be_visible(volume, coordinate_of_density(volume, way->before),
+                                  coordinate_of_density(volume, way->after));
+  }
+  return seen;
+}
+
 /* Lists the slabs of a run that a pixel may see, or finds the greatest value in them. Returns a bit for each
  * of these slabs that is listed. count: the counter of the list's entries. */
 DEVICE unsigned find_slabs(const sweep_data *sweep, int number, int run_first, int end,
                            GLOBAL unsigned *count) {
   GLOBAL const device_sweep *plan = sweep->plan;
-  GLOBAL const plan_volume *volume = sweep->volume.plan;
   const tile_pixel pixel = pixel_of(plan, number);
   if (!pixel.inside) return 0;
   int first = run_first;
@@ -252,31 +353,32 @@ DEVICE unsigned find_slabs(const sweep_data *sweep, int number, int run_first, i
 #else
   if (!(values_of(sweep->pixels, &pixel)[48] < PIXEL_OPAQUE)) return 0;
 #endif
-  slab_range slabs = slabs_with_content(&plan->content, pixel.u, pixel.v, plan->spacing, first, end);
+  slab_range slabs = slabs_of_ray(sweep, 0, pixel.u, pixel.v, first, end);
   if (slabs.first >= slabs.end) return 0;
   slabs.first = least_of_pack(slabs.first); /* all members of a pack work on the same sheet at a time; each
                                              * member leaves out the slabs before its own `first` */
-  const float speed = speed_of_ray(sweep->rays + slabs.first - 1, EYE_PERSPECTIVE, pixel.u, pixel.v);
-  sheet_way way = no_sheets();
+  ways_of_ray ways;
+  begin_ways(sweep, 0, EYE_PERSPECTIVE, slabs.first - 1, pixel.u, pixel.v, &ways);
   unsigned mask = 0, samples = 0;
   for (int sheet = slabs.first - 1, step; sheet < slabs.end; sheet += step) {
-    step = fill_way(&sweep->volume, sweep->rays + sheet, EYE_PERSPECTIVE, pixel.u, pixel.v, speed,
-                    sheet == slabs.first - 1, &way);
-    if ((way.before_shows || way.after_shows) && sheet >= first &&
-        may_be_visible(volume, coordinate_of_density(volume, way.before),
-                       coordinate_of_density(volume, way.after))) {
+    step = fill_ways(sweep, 0, EYE_PERSPECTIVE, sheet, pixel.u, pixel.v, sheet == slabs.first - 1, &ways);
+    if (ways_show(&ways) && sheet >= first && may_be_seen(sweep, &ways)) {
 #if MAXIMUM
-      samples += (unsigned)take_values(sweep, &pixel, sheet, way.before, way.after);
+      samples += (unsigned)take_values(sweep, &pixel, sheet, ways.of[0].before, ways.of[0].after);
 #else
       unsigned slot = (unsigned)(sheet - run_first) * (unsigned)(plan->tiles * 256) + (unsigned)number;
-      sweep->slots[(wide)slot * 4] = way.before;
-      sweep->slots[(wide)slot * 4 + 1] = way.after;
+      for (int i = 0; i < VOLUMES; i++) {
+        GLOBAL float *at = sweep->slots + (wide)slot * SLOT_FLOATS + 2 * i;
+        const int shows = VOLUMES == 1 || ways.of[i].before_shows || ways.of[i].after_shows;
+        at[0] = shows ? ways.of[i].before : 0.0f;
+        at[1] = shows ? ways.of[i].after : 0.0f;
+      }
       sweep->list[add_to(count, 1u)] = slot;
       mask |= 1u << (sheet - run_first);
 #endif
     }
     step = least_of_pack(step);
-    if (step > 1) way.after_known = way.after_shows = 0;
+    if (step > 1) forget_ways(&ways);
   }
 #if MAXIMUM
   add_to(sweep->counts + (pixel.tile & 255), samples);
@@ -286,6 +388,68 @@ DEVICE unsigned find_slabs(const sweep_data *sweep, int number, int run_first, i
 #endif
   return mask;
 }
+
+/* The buffers of all lights, as color_of_slab() takes them. */
+DEVICE light_buffers buffers_of_sweep(const sweep_data *sweep) {
+  light_buffers buffers;
+  buffers.planes = sweep->planes;
+  buffers.young = 0.0f;
+#if SUBLIGHTS
+  buffers.sublights = sweep->sublights;
+  buffers.of_sublights = sweep->of_sublights;
+#endif
+#if TEXTURES
+  buffers.textures = sweep->textures;
+#endif
+  return buffers;
+}
+
+#if VOLUMES > 1
+
+/* Classifies and lights the slab of a slot. */
+DEVICE void shade_slot(const sweep_data *sweep, unsigned slot, int run_first) {
+  GLOBAL const device_sweep *plan = sweep->plan;
+  const volume_data *first = &sweep->volume;
+  const int sheet = run_first + (int)(slot / (unsigned)(plan->tiles * 256));
+  const tile_pixel pixel = pixel_of(plan, (int)(slot % (unsigned)(plan->tiles * 256)));
+  GLOBAL float *at = sweep->slots + (wide)slot * SLOT_FLOATS;
+  GLOBAL const plan_rays *rays = sweep->rays + plan->sheets + sheet;
+  shared_slab slab;
+  for (int i = 0; i < VOLUMES; i++) {
+    const volume_data volume = volume_of(first, i);
+    const float before = at[2 * i], after = at[2 * i + 1];
+    slab.first[i] = before;
+    slab.last[i] = after;
+    slab.here[i] = may_be_visible(volume.plan, coordinate_of_density(volume.plan, before),
+                                  coordinate_of_density(volume.plan, after));
+    if (!slab.here[i]) continue;
+    const ray_left ray = left_of_ray(volume.plan, &volume.bounds->box, volume.cuts, volume.plan->cut_count,
+                                     pixel.u, pixel.v);
+    slab.own[i] = part_of_slab(&ray, rays->height, plan->spacing);
+    slab.here[i] = slab.own[i].length > 0.0f;
+  }
+  classify_slab(first, &slab);
+  at[3] = -1.0f;
+  if (!(slab.all.extinction > 0.0f)) return;
+  place_shared(plan, rays, pixel.u, pixel.v, first, &slab);
+#if WEIGHED
+  if (weigh_volumes(first, &slab)) {
+    total_slab(first, &slab);
+    if (!(slab.all.extinction > 0.0f)) return;
+    place_shared(plan, rays, pixel.u, pixel.v, first, &slab);
+  }
+#endif
+  find_normals(first, &slab);
+  const light_buffers buffers = buffers_of_sweep(sweep);
+  const vector lit = color_of_shared(plan, first, sweep->sky, &buffers, rays - plan->sheets,
+                                     (sheet - 1) % plan->ring, &slab);
+  at[0] = lit.x;
+  at[1] = lit.y;
+  at[2] = lit.z;
+  at[3] = slab.all.opacity;
+}
+
+#else
 
 /* Classifies and lights the slab of a slot. */
 DEVICE void shade_slot(const sweep_data *sweep, unsigned slot, int run_first) {
@@ -298,7 +462,8 @@ DEVICE void shade_slot(const sweep_data *sweep, unsigned slot, int run_first) {
   const float before = at[0], after = at[1];
   table_coordinate a = coordinate_of_density(volume->plan, before),
                    b = coordinate_of_density(volume->plan, after);
-  const ray_left ray = left_of_ray(&plan->box, volume->cuts, volume->plan->cut_count, pixel.u, pixel.v);
+  const ray_left ray = left_of_ray(volume->plan, &volume->bounds->box, volume->cuts, volume->plan->cut_count,
+                                   pixel.u, pixel.v);
   slab_sample s;
   s.part = part_of_slab(&ray, rays->height, plan->spacing);
 #if BOXED
@@ -316,16 +481,7 @@ DEVICE void shade_slot(const sweep_data *sweep, unsigned slot, int run_first) {
   if (!(s.extinction > 0.0f)) return;
 #endif
   find_normal(volume, before + after, &s);
-  light_buffers buffers;
-  buffers.planes = sweep->planes;
-  buffers.young = 0.0f;
-#if SUBLIGHTS
-  buffers.sublights = sweep->sublights;
-  buffers.of_sublights = sweep->of_sublights;
-#endif
-#if TEXTURES
-  buffers.textures = sweep->textures;
-#endif
+  const light_buffers buffers = buffers_of_sweep(sweep);
   vector lit = color_of_slab(plan, volume, sweep->sky, &buffers, rays - plan->sheets,
                              (sheet - 1) % plan->ring, &s);
   at[0] = lit.x;
@@ -333,6 +489,8 @@ DEVICE void shade_slot(const sweep_data *sweep, unsigned slot, int run_first) {
   at[2] = lit.z;
   at[3] = s.opacity;
 }
+
+#endif
 
 /* Composites a pixel's slabs of a run, in order. */
 DEVICE void composite_slabs(const sweep_data *sweep, int number) {
@@ -345,7 +503,8 @@ DEVICE void composite_slabs(const sweep_data *sweep, int number) {
   for (int c = 0; c < 4; c++) pixel[c] = values[c * 16];
   for (unsigned k = 0; mask != 0 && (BACK_TO_FRONT || pixel[3] < PIXEL_OPAQUE); k++, mask >>= 1) {
     if ((mask & 1) == 0) continue;
-    GLOBAL const float *at = sweep->slots + ((wide)k * (wide)(plan->tiles * 256) + (wide)number) * 4;
+    GLOBAL const float *at = sweep->slots +
+                             ((wide)k * (wide)(plan->tiles * 256) + (wide)number) * SLOT_FLOATS;
     const float opacity = at[3];
     if (opacity < 0.0f) continue;
     float weight = BACK_TO_FRONT ? opacity : opacity * (1.0f - pixel[3]);
@@ -357,130 +516,6 @@ DEVICE void composite_slabs(const sweep_data *sweep, int number) {
   if (samples == 0) return;
   for (int c = 0; c < 4; c++) values[c * 16] = pixel[c];
   add_to(sweep->counts + (place.tile & 255), samples);
-}
-
-/* ---- the lights ---- */
-
-/* A pixel of a light's buffer: T, then Y (shadow/attenuate.h) if there are surfaces, then the light from
- * which samples of soft lights fade. */
-typedef struct light_pixel {
-  float passing[PLANES_OF_SHEET];
-#if SOFT
-  float moment[CHANNELS];
-#endif
-#if SUBLIGHTS
-  /* the light of the first channel that is left of all the light of the sub-lights' centre; passing[0] is the
-   * transmittance of the slab alone there */
-  float left;
-#endif
-} light_pixel;
-
-/* The light of the first channel that is left of all the light that the lamp sends. */
-DEVICE float light_left(GLOBAL const plan_light *light, const light_pixel *pixel) {
-#if SUBLIGHTS
-  if (light->sublights > 0) return pixel->left;
-#endif
-  (void)light;
-  return pixel->passing[0];
-}
-
-/* The factor by which matter_factor multiplies a slab's extinction. It is found at the centre of
- * gravity of the slab's matter. */
-DEVICE float factor_in_slab(const sweep_data *sweep, GLOBAL const plan_light *light,
-                            GLOBAL const plan_rays *in_frame, const ray_left *ray, covered_span part, float a,
-                            float b, const way_sums *sums) {
-  const way_means means = means_of_way(a, b, sums);
-  const float centre = fused(part.length, divided(means.from_a, means.from_a + means.from_b), part.begin);
-  const vector end = position_on(in_frame, !light->parallel, ray->u, ray->v);
-  const vector step = light->parallel
-                          ? vector_at(light->through)
-                          : scaled(direction_of(in_frame, ray->u, ray->v),
-                                   divided(sweep->plan->spacing, climb_of(in_frame, ray->u, ray->v)));
-  const vector point = add_scaled(end, step, centre - 1.0f);
-  return factor_of_matter(&sweep->volume, point, a, b, sums->extinction).factor;
-}
-
-/* The effect of a slab on the light of a pixel. SLAB_TAKES: the slab absorbs light. SLAB_HIDES: the slab
- * absorbs no light, but it ends surfaces, because a factor hides its matter. */
-#define SLAB_TAKES 1
-#define SLAB_HIDES 2
-
-/* Multiplies the light by the transmittance of a slab. Returns 0, SLAB_TAKES or SLAB_HIDES. */
-DEVICE int attenuate_slab(const sweep_data *sweep, GLOBAL const plan_light *light,
-                          GLOBAL const plan_rays *in_index, GLOBAL const plan_rays *in_frame,
-                          const ray_left *ray, float before, float after, light_pixel *pixel) {
-  GLOBAL const device_sweep *plan = sweep->plan;
-  GLOBAL const plan_volume *volume = sweep->volume.plan;
-  table_coordinate a = coordinate_of_density(volume, before), b = coordinate_of_density(volume, after);
-  if (!may_be_visible(volume, a, b)) return 0;
-#if BOXED
-  const heights_in_box left = heights_left_in_slab(ray, in_frame->height, plan->spacing);
-  const covered_span part = covered(left, in_frame->height, plan->spacing);
-  /* whether light leaves the matter in the slab, or at the slab's end */
-  const int ends = left.leave <= in_frame->height;
-  cut_way(part, &a, &b);
-#else
-  const covered_span part = whole_slab();
-  const int ends = 0;
-#endif
-  (void)ends;
-  const way_sums sums = sums_of_way(sweep->volume.tables, a, b);
-  float extinction = sums.extinction * part.length, all = 0.0f;
-  if (!(extinction > 0.0f)) return 0;
-#if WEIGHED
-  extinction = extinction * factor_in_slab(sweep, light, in_frame, ray, part, a.x, b.x, &sums);
-  if (!(extinction > 0.0f)) return SLAB_HIDES;
-#endif
-  for (int c = 0; c < CHANNELS; c++) all = all + fused(extinction, volume->weight[c], 0.0f);
-  if (!(all > 0.0f)) return 0;
-  float path = path_through_sheet(in_frame, !light->parallel, light->slab_path, ray->u, ray->v);
-#if OUTSIDE
-  const float skin = BOXED && volume->faces_take
-                         ? skin_of_faces(&sweep->volume, light, in_index - 1, ray->u, ray->v)
-                         : 0.0f;
-  kept_light kept = kept_in_slab(&sweep->volume, a, b, &sums, part.length * path, extinction * path, skin,
-                                 pixel->passing[0], pixel->passing[CHANNELS]);
-  if (ends || (CUTS && volume->faces_take && light_left(light, pixel) < DARK &&
-               nears_inner_corner(&sweep->volume, light, in_index - 1, ray->u, ray->v)))
-    kept.before = kept.within = 0.0f;
-#endif
-  for (int c = 0; c < CHANNELS; c++) {
-    float depth = fused(extinction, volume->weight[c], 0.0f), light_before = pixel->passing[c];
-    const float passing = exp_negative(depth * path);
-    pixel->passing[c] = light_before * passing;
-#if SUBLIGHTS
-    if (c == 0) pixel->left = pixel->left * passing;
-#endif
-#if SOFT
-    pixel->passing[OLDER_PLANE + c] = pixel->passing[OLDER_PLANE + c] * passing;
-    pixel->moment[c] = fused(light_before - pixel->passing[c], in_frame->position, pixel->moment[c]);
-#endif
-#if OUTSIDE
-    pixel->passing[CHANNELS + c] = pass_outside(pixel->passing[CHANNELS + c], light_before, pixel->passing[c],
-                                                kept);
-#endif
-  }
-  return SLAB_TAKES;
-}
-
-/* Ends the surface in a light's pixel: sets the light at the surface's outside to the transmittance. */
-DEVICE void leave_surface(light_pixel *pixel) {
-  for (int c = 0; c < CHANNELS * OUTSIDE; c++)
-    pixel->passing[CHANNELS + c] = greater(pixel->passing[c], 0.0f);
-}
-
-DEVICE int is_lit(const light_pixel *pixel) {
-  int lit = 0;
-  for (int c = 0; c < PLANES_OF_SHEET; c++) lit = lit || pixel->passing[c] >= DARK;
-  return lit;
-}
-
-/* The number of the light to which a tile belongs. tile: index among the tiles of all lights. */
-DEVICE int light_of_tile(GLOBAL const device_sweep *plan, int tile) {
-  int light = 0;
-  for (int i = 0; i < plan->light_count; i++)
-    if (plan->lights[i].tiles > 0 && tile >= plan->lights[i].first_tile) light = i;
-  return light;
 }
 
 #endif
