@@ -148,7 +148,7 @@ struct gpu_sweep {
   const plan_volume *volumes; /* [variant.volumes] */
   const plan_bounds *bounds;  /* [1 + lights][variant.volumes] */
   plan_variant variant;
-  const plan_rays *rays; /* [ray_sets][sheets] (gpu/kernels/sweep.h) */
+  const plan_rays *rays; /* [ray_sets][sheets] (gpu/kernels/slabs.h) */
   size_t ray_sets;
   const plan_cut *cuts; /* [cut_count]; the cuts of all views, the eye's first; null if there is none */
   size_t cut_count;

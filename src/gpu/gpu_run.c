@@ -157,7 +157,7 @@ static bool upload_plan(hl_gpu *gpu, const gpu_sweep *sweep) {
          hl_gpu_upload(gpu, BUFFER_PLAN, own + of_volumes, sweep->bounds, bounds);
 }
 
-/* The number of floats of a slot: four, or two for each volume (gpu/kernels/sweep.h). */
+/* The number of floats of a slot: four, or two for each volume (gpu/kernels/slabs.h). */
 static size_t slot_floats(const gpu_sweep *sweep) {
   return sweep->variant.volumes > 2 ? 2 * (size_t)sweep->variant.volumes : 4;
 }

@@ -3,7 +3,7 @@
 #ifndef HL_GPU_ATTENUATE_H
 #define HL_GPU_ATTENUATE_H
 
-#include "gpu/kernels/sweep.h"
+#include "gpu/kernels/slabs.h"
 
 /* A pixel of a light's buffer: T, then Y (shadow/attenuate.h) if there are surfaces, then the light from
  * which samples of soft lights fade. */

@@ -1,8 +1,6 @@
-/* gpu/kernels/light.h - finds the light that reaches a sample. The shadow buffer is read at the sample's
- * position, and the slab's own matter absorbs a part of the light. The functions serve one pixel and one
- * volume that is a medium. They compute the same numbers as render/reaching_lanes.h,
- * render/light_depth_lanes.h, render/before_slab_lanes.h and shadow/shadow_lookup_lanes.h for sixteen pixels
- * and several volumes. */
+/* gpu/kernels/light.h - looks up shadow buffers at samples, and finds the light's ways through a volume
+ * within a slab. The functions serve one pixel and one volume. They compute the same numbers as
+ * render/reaching_lanes.h, render/light_depth_lanes.h and shadow/shadow_lookup_lanes.h for sixteen pixels. */
 #ifndef HL_GPU_LIGHT_H
 #define HL_GPU_LIGHT_H
 

@@ -1,12 +1,12 @@
-/* gpu/kernels/sweep.h - does the work of the kernels on a run of a few successive slabs.
+/* gpu/kernels/slabs.h - does the work of the kernels on a run of a few successive slabs.
  *
- * In a light's buffer, a member composites all slabs of the run into its pixel. The picture takes three
- * steps. First each pixel lists the slabs in which it may see something. Then each listed slab is lit, by any
- * member. Last, each pixel composites its own slabs, in order. The list gives all members equal work:
- * lighting a slab takes long, and some pixels see many slabs and others none. If a ray can see nothing on
- * both sheets of a slab, the densities on these sheets are not computed. */
-#ifndef HL_GPU_SWEEP_H
-#define HL_GPU_SWEEP_H
+ * In a light's buffer, a member composites all slabs of the run into its pixel (kernels/attenuate.h). The
+ * picture takes three steps. First each pixel lists the slabs in which it may see something. Then each listed
+ * slab is lit, by any member. Last, each pixel composites its own slabs, in order. The list gives all members
+ * equal work: lighting a slab takes long, and some pixels see many slabs and others none. If a ray can see
+ * nothing on both sheets of a slab, the densities on these sheets are not computed. */
+#ifndef HL_GPU_SLABS_H
+#define HL_GPU_SLABS_H
 
 #include "core/sheet_constants.h"
 #include "gpu/kernels/maximum.h"
