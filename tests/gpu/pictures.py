@@ -284,6 +284,9 @@ MADE.update({
     "volumes under a sky, forward scattering": beside(scene(sky=SKY, shadows="soft", light=SUN, volume=FORWARDS), {**MOVED, **BACKWARDS}, {**TURNED, "shading": "phong"}),
     "volumes with a function of value and gradient, a projected image": beside(
         with_plane(scene(shading="phong", light={**LAMP, "texture": SLIDE})), MOVED, {**TURNED, "shading": "phong"}),
+    "coloured voxels in two volumes": beside(
+        scene(opacity=[[20, 0], [200, 0.3]], volume={"file": "colors.nrrd"}),
+        {**TURNED, "file": "colors.nrrd", "shading": "phong", "transfer_function": {**GLASS, "opacity": [[60, 0], [90, 0.9]]}}),
     "a volume in a field at levels": beside(scene(opacity=THIN, camera=FAR, volume=GRAINS), {**GRAINS, **TURNED, "file": "grains.csv"}),
 })
 LABELS = scene(shading="phong")
@@ -310,7 +313,7 @@ LEFT = {
     "a mask with sheets more than 1.5 voxels apart": scene(volume={"mask": ORGANS}, render={"sheet_spacing": 1.6}),
     "several volumes of which one has a mask": beside(scene(volume={"mask": ORGANS}), MOVED),
     "a maximum projection of several volumes": beside(projected(), MOVED),
-    "several volumes with different types of voxels": beside(scene(), {**MOVED, "file": "grains.csv", "array": "density"}),
+    "several volumes with different types of voxels": beside(scene(), {**MOVED, "file": "colors.nrrd"}),
     "splatting in place of gathering": scene(render={"reconstruction": "splat"}),
 }
 
