@@ -3,10 +3,10 @@
  *     compare [--size N] [--spacing S] [--only TEXT] [--soft] [--points N] [--write FOLDER]
  *
  * Prints one line per scene and shadow setting: the root mean square, greatest and mean signed differences
- * of renderer - reference over R, G, B, A, and the pixel of the greatest one. Without options it is a test:
- * exit status 1 if a picture is further from the reference than its bar. --only picks scenes by part of their
- * name, --soft adds the soft methods where they have no bars, --write keeps the pictures as
- * FOLDER/NAME-SHADOWS-renderer.npy and -reference.npy.
+ * of renderer - reference over R, G, B, A, and the pixel of the greatest one. Without options the program is
+ * a test: it ends with status 1 if a picture differs from the reference by more than the scene's bar. --only
+ * picks scenes by part of their name, --soft adds the soft methods where they have no bars, --write keeps the
+ * pictures as FOLDER/NAME-SHADOWS-renderer.npy and -reference.npy.
  */
 #include <setjmp.h>
 #include <stdarg.h>
@@ -21,10 +21,10 @@
 typedef struct choices {
   int size;         /* pixels a side */
   double spacing;   /* the distance of the sheets, in voxels */
-  const char *only; /* null: all */
+  const char *only; /* only scenes whose names contain this text are rendered; null: all scenes */
   int soft;
   int light_points;   /* the number of points of each light in the reference's pictures of soft shadows */
-  const char *folder; /* null: keep nothing */
+  const char *folder; /* the folder for the pictures; null: pictures are not kept */
 } choices;
 
 typedef struct shadow_setting {
@@ -83,7 +83,7 @@ static hl_image *new_image(const stage *set) {
   return image;
 }
 
-/* True if the renderer's picture is near enough. */
+/* Returns whether the renderer's picture differs from the reference by no more than the scene's bar. */
 static int compare_one(stage *set, const scenario *scene, const shadow_setting *setting,
                        const choices *chosen, const hl_image *reference) {
   hl_image *rendered = new_image(set);
@@ -103,8 +103,8 @@ static int compare_one(stage *set, const scenario *scene, const shadow_setting *
   return !barred || difference.rmse <= bar;
 }
 
-/* Compares every setting of one scene. The reference's picture is rendered again only if a setting changes
- * it. Returns the number of pictures that differ by more than their bars. */
+/* Compares every setting of one scene. The reference's picture is rendered again only if a setting of shadows
+ * changes that picture. Returns the number of pictures that differ by more than their bars. */
 static int compare_all(const scenario *scene, const choices *chosen) {
   stage set;
   int failures = 0;

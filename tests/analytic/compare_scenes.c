@@ -237,11 +237,13 @@ static void make_smoke(stage *set) { make_smoke_lit(set, (vec3){-0.5, 0.3, -1});
 static void make_smoke_backlit(stage *set) { make_smoke_lit(set, (vec3){46, -60, 40}); }
 static void make_smoke_silhouette(stage *set) {
   make_smoke_lit(set, (vec3){46, -70, 52});
-} /* the eye's direction is opposite to the light's */
+} /* the direction to the eye is opposite to the direction to the light */
 static void make_smoke_headlight(stage *set) {
   make_smoke_lit(set, (vec3){-46, 70, -52});
-} /* the eye's direction is parallel to the light's */
-static void make_smoke_across(stage *set) { make_smoke_lit(set, (vec3){70, 46, 0}); } /* e.l = 0 */
+} /* the direction to the eye is the direction to the light */
+static void make_smoke_across(stage *set) {
+  make_smoke_lit(set, (vec3){70, 46, 0});
+} /* the directions to the eye and to the light are perpendicular */
 static void make_oblique(stage *set) {
   hl_scene_volume *volume = add_field(set, balls, (size_t[3]){26, 22, 12}, (double[3]){1, 1.2, 2.2});
   volume->rotate_axis[0] = 1;
@@ -268,8 +270,8 @@ static void make_two_volumes(stage *set) {
   look_from_corner(set);
   stage_add_directional(set, (vec3){-0.5, 0.3, -1});
 }
-/* The faces of the box cut through dense matter. The picture must show them in their places and at full
- * strength. */
+/* The faces of the box cut through dense matter. The picture must show these faces in their places and at
+ * full strength. */
 static void make_clipped(stage *set) {
   hl_scene_volume *volume = add_cube(set, full, 24);
   OPACITY(volume, THIN);
@@ -307,7 +309,7 @@ static void make_hidden_occluder(stage *set) {
   screen->visible = 0;
 }
 
-/* A grid that is one voxel thick: along one axis, each of its voxels lies at the border. */
+/* The grid is one voxel thick, so that every voxel lies at the grid's border. */
 static void make_single_layer(stage *set) {
   hl_scene_volume *volume = add_field(set, balls, (size_t[3]){28, 28, 1}, (double[3]){1, 1, 2});
   volume->shading = HL_SHADING_NONE;
@@ -370,7 +372,7 @@ static void make_eye_within_parallel(stage *set) {
 
 /* ---- textured lights ---- */
 
-/* A pattern with bright and dark places in every colour. It is so smooth that a reference without
+/* A pattern with bright and dark places in every colour. The pattern is so smooth that a reference without
  * prefiltering does not alias. */
 static const float *slide(void) {
   static float pixels[12 * 9 * 3];
@@ -425,14 +427,14 @@ static void make_spot(stage *set) {
   stage_add_spot(set, (vec3){17, -8, 32}, (vec3){-16, 5, -30}, 32, 9)->radius = 3;
 }
 static void make_spot_inside(stage *set) {
-  /* The lamp is within the smoke, so that its sectors share one cone. */
+  /* The lamp is within the smoke, so that several sectors share the lamp's cone. */
   make_smoke(set);
   set->scene.light_count = 0;
   stage_add_spot(set, (vec3){3, -2, 3.5}, (vec3){-0.6, 0.9, -0.5}, 70, 20);
 }
 static void make_spot_in_smoke(stage *set) {
-  /* The cone of a lamp crosses the view, and its edge is sharp. In the second scene the lamp projects an
-   * image. */
+  /* The cone of a lamp crosses the view, and the cone's edge is sharp. In the scene with an image, the lamp
+   * also projects the image. */
   make_smoke(set);
   set->scene.light_count = 0;
   hl_light *light = stage_add_spot(set, (vec3){-30, -16, 12}, (vec3){30, 17, -12}, 24, 0);
@@ -483,10 +485,11 @@ static void make_cut_none(stage *set) {
   set->volumes[0].cut_shading = HL_CUT_SHADING_NONE;
 }
 
-/* Bars below 0.006, and the bars of soft shadows, are about 1.3 times the error at the time when they were
- * set. Two scenes have larger errors: a step of opacity on a wall that light grazes would need shadow pixels
- * well below a voxel, and half a voxel is the least; and the borders of holes lie half way between the empty
- * and the least value in the reference, but nearer to the least value in the sheets. */
+/* Bars below 0.006, and the bars of soft shadows, are about 1.3 times the error that was measured when the
+ * bars were set. Two scenes have larger errors. In one scene, light grazes a wall that has a step of opacity:
+ * exact shadows would need shadow pixels well below a voxel, and the smallest shadow pixel is half a voxel
+ * wide. In the scene of holes, the borders of holes lie half way between the empty value and the least value
+ * in the reference, but nearer to the least value in the sheets. */
 static const scenario SCENARIOS[] = {
     {"balls", make_balls, 0.006, {0}},
     {"balls-medium", make_balls_medium, 0.006, {0}},

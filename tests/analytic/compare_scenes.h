@@ -1,4 +1,4 @@
-/* analytic/compare_scenes.h - the scenes on which the renderer is put beside the reference. */
+/* analytic/compare_scenes.h - the scenes on which the renderer is compared with the reference. */
 #ifndef COMPARE_SCENES_H
 #define COMPARE_SCENES_H
 
@@ -7,9 +7,10 @@
 typedef struct scenario {
   const char *name;
   void (*make)(stage *set);
-  double bar; /* RMSE at sheet spacing 0.5 and 64 pixels or more; 0: none yet */
-  /* the same bars for the cascade, the paper's method and sub-lights, beside a reference with at least 16
-   * points for each light; 0: none */
+  double
+      bar; /* the greatest allowed RMSE at sheet spacing 0.5 and 64 pixels or more; 0: there is no bar yet */
+  /* the greatest allowed RMSE of the cascade, the paper's method and sub-lights, against a reference with at
+   * least 16 points for each light; 0: there is no bar */
   double soft_bars[3];
 } scenario;
 

@@ -1,6 +1,6 @@
-/* analytic/even_light.c - light on a floor or a ball that nothing shades is smooth. An eye sees lines first.
- * So each pixel is compared with the mean of the square of pixels around it, and the difference must be
- * small. The light's own bend within such a square is far below the bars. */
+/* analytic/even_light.c - light on a floor or a ball that nothing shades is smooth. Each pixel is compared
+ * with the mean of the square of pixels around it, and the difference must be small, because eyes notice
+ * lines first. The light's own bend within such a square is far below the bars. */
 #include <math.h>
 #include <setjmp.h>
 #include <stdarg.h>
@@ -16,7 +16,7 @@ enum { SIDE = 200, REACH = 4, INSIDE = 10 };
 
 static float pixels[SIDE * SIDE * 4];
 
-/* The scene of a floor that fills the middle of the picture, or of a ball. */
+/* The scene is a floor that fills the middle of the picture, or a ball. */
 #define FLOOR "{\"shapes\": [{\"type\": \"box\", \"size\": [420, 420, 12]}], \"voxel_size\": 2, " MATERIAL "}"
 #define BALL  "{\"shapes\": [{\"type\": \"sphere\", \"radius\": 45}], \"voxel_size\": 1, " MATERIAL "}"
 #define MATERIAL                                                                                   \
@@ -64,8 +64,9 @@ static int greater_first(const void *a, const void *b) {
   return (x < y) - (x > y);
 }
 
-/* The difference that one pixel in a thousand exceeds: between a pixel and the mean of its surroundings,
- * divided by the pixel's brightness or by half of the brightest surroundings, whichever is greater. */
+/* Returns the difference that one pixel in a thousand exceeds. The difference is between a pixel and the mean
+ * of the pixels around it, divided by the pixel's brightness or by half of the brightest surroundings,
+ * whichever is greater. */
 static double ripple(void) {
   static double differences[SIDE * SIDE], means[SIDE * SIDE];
   size_t count = 0;
@@ -92,15 +93,15 @@ static void assert_even(const char *what, double bar) {
 }
 
 /* A setting of shadows: its name, the bars for floors in far and near light and for balls, and the number of
- * directions to skip after each one that is tried. */
+ * steps from one direction that is tried to the next one. */
 static const char *hard[] = {"\"shadows\": \"hard\"", "hard", "0.001", "0.003", "0.007", "1"};
 static const char *cascade[] = {"\"soft_method\": \"cascade\"", "cascade", "0.005", "0.005", "0.0095", "1"};
 
 static const char *const CAMERA =
     "\"position\": [300, -420, 500], \"target\": [0, 0, 0], \"up\": [0, 0, 1], \"fovy_deg\": 22";
 
-/* Thirty directions of light, of which a setting may skip some. The whole light is at least 10 degrees above
- * the floor, and its middle 25 to 85 degrees. */
+/* Thirty directions of light, of which a setting may skip some. Every point of the light is at least 10
+ * degrees above the floor, and the light's middle is 25 to 85 degrees above the floor. */
 static void test_floors_under_directional_light(void **state) {
   const char *const *method = *state;
   for (int i = 0; i < 30; i += atoi(method[5])) {
@@ -136,8 +137,8 @@ static void test_floors_under_near_lights(void **state) {
   }
 }
 
-/* The root mean square difference between a box on a floor under a soft light and the same scene under 8 x 8
- * sub-lights, as a fraction of the brightest pixel. */
+/* Returns the root mean square difference between a box on a floor under a soft light and the same scene
+ * under 8 x 8 sub-lights, as a fraction of the brightest pixel. */
 static double box_error(const char *light) {
   static const char volume[] =
       "{\"shapes\": [{\"type\": \"box\", \"size\": [420, 420, 12]}, {\"type\": \"box\", \"size\": [60, 60, "
@@ -156,8 +157,8 @@ static double box_error(const char *light) {
   return sqrt(squares / (SIDE * SIDE)) / brightest;
 }
 
-/* The penumbrae of near lights lie where sub-lights have them, and umbrae are nearly black. One light is
- * wide, and one sweep serves it; the other one is nearer, and is cut into sectors. */
+/* The penumbrae of near lights lie where sub-lights have them, and umbrae are nearly black. The first light
+ * is wide, and one sweep serves it. The second light is nearer, and is cut into sectors. */
 static void test_box_under_near_lights(void **state) {
   (void)state;
   double wide = box_error(

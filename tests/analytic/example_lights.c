@@ -1,6 +1,6 @@
 /* analytic/example_lights.c - the example scenes with projected images and beams, against closed forms. Each
- * scene is read from examples/, keeps only the volumes that a measurement needs, and is seen without ambient
- * light from where the measurement asks. */
+ * scene is read from examples/. Only the volumes that a measurement needs are kept. The measurement sets the
+ * camera and turns ambient light off. */
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -94,7 +94,7 @@ static vec3 camera_axes(const hl_camera *camera, vec3 *right, vec3 *up) {
   return forward;
 }
 
-/* The continuous pixel coordinates of a point. Pixel i covers the range from i to i + 1. */
+/* Computes the continuous pixel coordinates of a point. Pixel i covers the range from i to i + 1. */
 static void project(const example *open, vec3 point, double uv[2]) {
   const hl_camera *camera = &open->scene.camera;
   vec3 right, up, forward = camera_axes(camera, &right, &up),
@@ -106,7 +106,8 @@ static void project(const example *open, vec3 point, double uv[2]) {
   uv[1] = open->scene.height / 2.0 - scale * vec3_dot(offset, up);
 }
 
-/* The picture's brightness at continuous coordinates, interpolated linearly between the middles of pixels. */
+/* Returns the picture's brightness at continuous pixel coordinates, interpolated linearly between the middles
+ * of pixels. */
 static double brightness(const example *open, double u, double v, int channel) {
   int x = (int)floor(u - 0.5), y = (int)floor(v - 0.5), width = open->scene.width;
   double fx = u - 0.5 - x, fy = v - 0.5 - y;
@@ -123,8 +124,8 @@ static double brightness_at(const example *open, vec3 point, int channel) {
 
 /* ---- beams through boxes (figs. 12 and 13) ---- */
 
-/* Compares the brightness at two points of a beam's axis, well inside the medium. They are equal if the
- * medium absorbs nothing; else the ratio is exp(-sigma way). */
+/* Compares the brightness at two points of a beam's axis, well inside the medium. The two brightnesses are
+ * equal if the medium absorbs nothing; otherwise their ratio is exp(-sigma way). */
 static void check_beam(example *open, vec3 entry, vec3 exit, int channel, double opacity) {
   double way = vec3_length(vec3_subtract(exit, entry)), sigma = -log(1 - opacity);
   for (int shadows = HL_SHADOWS_OFF; shadows <= HL_SHADOWS_HARD; shadows++) {
@@ -147,8 +148,8 @@ static void test_cube_beams(void **state) {
   for (int beam = 0; beam < 3; beam++) {
     example *open = open_example(beam == 0 ? "fig12-cube-beams-a.json" : "fig12-cube-beams-b.json", cube);
     look_along(open, (vec3){0, 1, 0}, (vec3){0, 0, 0}, 130);
-    /* The middles of the beams are 36 apart. Half of the 90 units of each beam's way lies inside the cube of
-     * 100. */
+    /* The middles of the beams are 36 apart. The two outer beams go through less of the cube, so that their
+     * points are nearer to each other. */
     vec3 middle = vec3_scale(across, 36.0 * (1 - beam));
     double half = 36;
     if (beam != 1) middle = vec3_add(middle, vec3_scale(light, beam == 0 ? 10 : -10)), half = 20;
@@ -175,8 +176,8 @@ static void test_slanted_parallelepiped(void **state) {
 
 /* ---- the grid (fig. 11) ---- */
 
-/* Walks on a plane through the data, half way between two lines of one family, and counts the lines of the
- * other family. */
+/* The test walks on a plane through the data, half way between two lines of one family of the projected grid,
+ * and counts the lines of the other family. */
 static void test_grid_period(void **state) {
   (void)state;
   enum { STEPS = 4000 };
@@ -254,8 +255,8 @@ static void test_grid_period(void **state) {
 
 /* ---- the projector (fig. 10) ---- */
 
-/* Where the brightness passes half of its value inside, on the way from a dark to a lit place; in continuous
- * pixel coordinates. */
+/* Returns the coordinate, in continuous pixels, at which the brightness passes half of the lit place's
+ * brightness on the way from a dark place to the lit place. */
 static double crossing(const example *open, const double dark[2], const double lit[2], int axis) {
   double full = brightness(open, lit[0], lit[1], 2), before = 0;
   for (int i = 0; i <= 200; i++) {
@@ -291,8 +292,8 @@ static void test_logo_corners(void **state) {
   for (int corner = 0; corner < 4; corner++) {
     vec3 here = uv[corner], beside = uv[corner ^ 1], above = uv[corner ^ 2];
     for (int axis = 0; axis < 2; axis++) {
-      /* The way crosses the edge that leaves the corner along the other axis. It lies 2 % of the edge's
-       * length from the corner, inside the image's corner marks. */
+      /* The way from dark to lit crosses one of the image's edges at 2 % of that edge's length from the
+       * corner, where the image's corner marks lie. */
       vec3 along = axis == 0 ? above : beside, inwards = axis == 0 ? beside : above;
       vec3 edge = vec3_add(here, vec3_scale(vec3_subtract(along, here), 0.02));
       vec3 step = vec3_scale(vec3_subtract(inwards, here), 0.025);
@@ -322,8 +323,8 @@ static bool lit_by_window(vec3 point, vec3 way, bool walled) {
 }
 
 /* The light that the haze scatters once towards the eye: the integral of sigma exp(-sigma s) I exp(-sigma d)
- * over the part of a ray within the beam. s: the way along the ray. d: the way of the sun's light in the
- * haze. */
+ * over the part of a ray within the beam. s: the distance along the ray. d: the length of the sunlight's path
+ * in the haze. */
 static double beam_towards_eye(const example *open, vec3 start, vec3 direction, bool walled) {
   vec3 way = vec3_normalise(vec3_of(open->lights[0].direction));
   double sigma = -log(1 - 0.0016), sum = 0, step = 0.1, haze = fmax((-210 - start.y) / direction.y, 0);
@@ -336,7 +337,8 @@ static double beam_towards_eye(const example *open, vec3 start, vec3 direction, 
   return sum * open->lights[0].intensity * open->lights[0].color[0];
 }
 
-/* Rays of the eye that cross the beam and end on the wall beside the window, where the wall is dark. */
+/* Compares the pixels whose rays cross the beam and end on the wall beside the window, where the wall is
+ * dark. */
 static double haze_column(const char *const *kept, bool walled, double *worst) {
   enum { SIDE = 192 };
   example *open = open_example("fig08-room.json", kept);
@@ -356,7 +358,7 @@ static double haze_column(const char *const *kept, bool walled, double *worst) {
       if (fabs(wall.x - 30) < 45 && fabs(wall.z - 105) < 45) continue;
       double expected = beam_towards_eye(open, eye, direction, walled),
              found = (double)open->pixels[4 * (y * SIDE + x)];
-      if (expected < 0.05) continue; /* beside the beam */
+      if (expected < 0.05) continue; /* the ray passes beside the beam */
       sum += found;
       expected_sum += expected;
       *worst = fmax(*worst, fabs(found - expected));
@@ -371,7 +373,7 @@ static double haze_column(const char *const *kept, bool walled, double *worst) {
 }
 
 /* The corners of the window's frame are as sharp as voxels of 1.5 units allow. Their outlines are rounded by
- * a third of a voxel, and the slanting sun passes two of them. */
+ * a third of a voxel, and the slanting sunlight passes two corners. */
 static void test_haze_column(void **state) {
   (void)state;
   static const char *const haze[] = {"haze", NULL}, *const room[] = {"haze", "walls", NULL};
@@ -383,7 +385,8 @@ static void test_haze_column(void **state) {
 
 /* ---- the hole (fig. 23) ---- */
 
-/* The sum and the variance, in world units, of a row of the picture that crosses the beam at a height. */
+/* Measures the sum and the variance, in world units, of a row of the picture that crosses the beam at a
+ * height. */
 static void measure_row(const example *open, double height, double *sum, double *variance) {
   double mean = 0, square = 0, pitch = open->scene.camera.height / open->scene.height;
   int side = open->scene.width, y = (int)(side / 2 - height / pitch);
@@ -399,7 +402,8 @@ static void measure_row(const example *open, double height, double *sum, double 
 
 /* Along the beam, the sum of a row falls by exp(-sigma way). The variance of its profile grows by the
  * variance of the light's disk: D^2 / 16, where D = 2 tan(angle / 2) times the distance from the hole, longer
- * by the light's tilt. Both are tested in the box, and in a box that is so thin that it absorbs nothing. */
+ * by the light's tilt. The sum and the variance are tested in a box that absorbs light, and in a box of
+ * matter so thin that the box absorbs nothing. */
 static void test_beam_through_a_hole(void **state) {
   (void)state;
   static const char *const kept[] = {"occluder", "box", NULL};

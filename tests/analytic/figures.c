@@ -88,7 +88,8 @@ static void bonsai_differs_in_its_shadow_only(void **state) {
       darker += after < before - 0.05;
     }
     assert_true(same > 0.5 * SIZE * SIZE && darker > 0.1 * SIZE * SIZE);
-    /* Pixels of silhouettes may be brighter, since sheets lie in other places without shadows. */
+    /* Pixels of silhouettes may be brighter with shadows, because the sheets lie in other places than without
+     * shadows. */
     assert_true(brighter < 0.012 * SIZE * SIZE);
     /* pixels of the table at the lower left, on the light's side */
     int corner = 4 * (SIZE - 1) * SIZE;
@@ -102,7 +103,7 @@ static void bonsai_differs_in_its_shadow_only(void **state) {
 
 /* ---- figures 4 and 19 ---- */
 
-/* The least distance between a ring's surface and the light's ray to a point of the floor. */
+/* Returns the least distance between a ring's surface and the light's ray to a point of the floor. */
 static double clearance(double x, double y, double height, vec3 towards_light) {
   double least = INFINITY;
   for (double s = height - 10; s < height + 10; s += 0.02) {
@@ -112,8 +113,8 @@ static double clearance(double x, double y, double height, vec3 towards_light) {
   return least;
 }
 
-/* One ring of the figure, over the floor and seen from above. The light comes at 45 degrees, so that the
- * shadow lies beside the ring. */
+/* The scene is one ring of the figure over a floor, seen from above. The light comes at 45 degrees, so that
+ * the shadow lies beside the ring. */
 static void ring_casts_its_outline(void **state) {
   (void)state;
   static const char text[] =
@@ -134,7 +135,7 @@ static void ring_casts_its_outline(void **state) {
   hl_context *context = make_context();
   hl_scene *scene = read_text(context, text);
   render(context, hl_scene_describe(scene), pixels);
-  /* equation (3): ambient light, and diffuse light at 45 degrees */
+  /* by equation (3), lit pixels have ambient light and diffuse light at 45 degrees */
   double lit = 0.2 + 0.7 * sqrt(0.5), dark = 0.2;
   int umbra = 0, light = 0, edge_lit = 0, edge = 0;
   for (int j = 0; j < 160; j++)
@@ -148,14 +149,15 @@ static void ring_casts_its_outline(void **state) {
         assert_near(value, lit, 0.01, "the lit floor");
         light++;
       } else if (fabs(gap) < 0.75) {
-        /* There are as many pixels on either side of the outline. If the outline is in its place, half of
-         * them are lit. */
+        /* There are as many pixels on either side of the outline. If the shadow's outline is in its place,
+         * half of these pixels are lit. */
         edge++;
         edge_lit += value > (lit + dark) / 2;
       }
     }
   assert_true(umbra > 1500 && light > 5000 && edge > 800);
-  /* The edge's pixels are 1.5 units wide. A tenth of them is 0.15 units, which is a third of a voxel. */
+  /* The edge's pixels are 1.5 units wide. So a fraction of 0.1 is an error of 0.15 units, which is a third of
+   * a voxel. */
   assert_near((double)edge_lit / edge, 0.5, 0.1, "the outline");
   hl_scene_release(scene);
   hl_context_destroy(context);
@@ -163,7 +165,7 @@ static void ring_casts_its_outline(void **state) {
 
 /* ---- figure 5 ---- */
 
-/* Amber lobes stay amber in the shadow, blue lobes stay blue, and no pixel becomes brighter by the shadow. */
+/* Amber lobes stay amber in the shadow, blue lobes stay blue, and shadows make no pixel brighter. */
 static void lobes_keep_their_colour(void **state) {
   (void)state;
   hl_context *context = make_context();
@@ -185,7 +187,7 @@ static void lobes_keep_their_colour(void **state) {
     if (before[2] > 2 * before[0]) blue++, wrong += !(after[2] > after[0]);
   }
   assert_true(amber > 500 && blue > 500);
-  /* Only where lobes shade each other: no lobe shades its own lit side. */
+  /* Pixels are darker only where lobes shade each other: no lobe shades its own lit side. */
   assert_true(darker > 10 && darker < 500);
   assert_true(wrong < 20); /* the number of pixels in which two lobes meet */
   hl_scene_release(off);
@@ -266,8 +268,8 @@ static void close_shadow_edges_are_not_blocky(void **state) {
 
 /* ---- figures 20 and 21 ---- */
 
-/* The variance of an edge, in world units squared: of the place at which the brightness of a row rises or
- * falls. */
+/* Returns the variance, in world units squared, of the places at which the brightness of a row rises or falls
+ * at an edge. */
 static double edge_variance(const float *row, int count, double pitch) {
   double weight = 0, first = 0, second = 0;
   for (int i = 0; i + 1 < count; i++) {
@@ -278,8 +280,8 @@ static double edge_variance(const float *row, int count, double pitch) {
   return second / weight - mean * mean;
 }
 
-/* The variance of the shadow's edge of a bar at a height, under the light of figure 20, without the variance
- * that the edge itself has. */
+/* Returns the variance of the edge of the shadow that a bar at a height casts under the light of figure 20.
+ * The variance of the same edge with hard shadows is subtracted. */
 static double penumbra_spread(hl_context *context, double height, double angle_deg) {
   char text[2000];
   double variance[2];
@@ -321,8 +323,8 @@ static void penumbra_grows_with_height(void **state) {
   hl_context_destroy(context);
 }
 
-/* The block of figure 21, seen from the side. A straight edge takes the ring's place. A row of the picture
- * shows the shadow's edge at one depth in the block. */
+/* The block of figure 21 is seen from the side, and a straight edge takes the ring's place. A row of the
+ * picture shows the shadow's edge at one depth in the block. */
 static void shadow_widens_through_the_block(void **state) {
   (void)state;
   hl_context *context = make_context();

@@ -17,9 +17,9 @@
 
 enum { SIDE = 64, PIXELS = SIDE * SIDE, VOXELS = 44 };
 
-/* Voxels whose value is minus the squared distance from `centre`, so that values are greater inside a ball.
- * Distances count in voxels from the grid's middle. Voxels are one unit wide, and the grid's middle is the
- * origin. */
+/* Adds voxels whose value is minus the squared distance from `centre`, so that values are greater inside a
+ * ball. Distances count in voxels from the grid's middle. Voxels are one unit wide, and the grid's middle is
+ * the origin. */
 static hl_scene_volume *add_ball(stage *set, vec3 centre) {
   static float voxels[VOXELS * VOXELS * VOXELS];
   const size_t dimensions[3] = {VOXELS, VOXELS, VOXELS};
@@ -50,8 +50,8 @@ static void open_stage(stage *set) {
 
 /* ---- where the surface lies ---- */
 
-/* The mesh of a scene's only isosurface, in the world. goes_on: whether another volume touches the box's face
- * at the greatest x. */
+/* Extracts the mesh of the scene's only isosurface, in world space. goes_on: whether another volume touches
+ * the box's face at the greatest x. */
 static hl_mesh *mesh_beside(const stage *set, double value, bool goes_on) {
   hl_mesh *mesh = NULL;
   hl_pool *pool = NULL;
@@ -84,7 +84,7 @@ static vec3 point_of(const hl_mesh_description *d, const uint32_t corner[3], con
 }
 
 /* Vertices lie on the sphere to a ten-thousandth of a voxel, and all points of triangles to 0.02 voxels.
- * Normals are the sphere's. The surface is closed, and its volume is the ball's. */
+ * Normals are the sphere's. The surface is closed, and encloses the ball's volume. */
 static void test_ball(void **state) {
   (void)state;
   static const double weights[7][3] = {{1, 0, 0},
@@ -166,8 +166,9 @@ static void test_long_voxels(void **state) {
   check_long_voxels(20, 20);
 }
 
-/* Every pattern of a cell's corners is tried. All edges on which the value is crossed are in its triangles,
- * and the loops close. The pattern with inside and outside exchanged has the same edges. */
+/* Every pattern of a cell's corners is tried. The pattern's triangles have all edges on which the value is
+ * crossed, and the edges form closed loops. The pattern with inside and outside exchanged has the same
+ * edges. */
 static void test_patterns(void **state) {
   (void)state;
   static cube_triangles patterns[CUBE_PATTERNS];
@@ -233,7 +234,8 @@ static void test_caps_close(void **state) {
   stage_close(&set);
 }
 
-/* The cancel callback of test_cancelled(). From the question with a given number on it answers "stop". */
+/* The state of test_cancelled()'s cancel callback. The callback answers "stop" from question number stop_at
+ * on. */
 typedef struct questions {
   int asked, stop_at;
 } questions;
@@ -243,7 +245,7 @@ static int answer(void *user_data) {
   return all->asked++ >= all->stop_at;
 }
 
-/* An extraction that is stopped, at whatever step, reports that and makes no surface. */
+/* An extraction that is cancelled at any step reports the cancellation and makes no surface. */
 static void test_cancelled(void **state) {
   (void)state;
   stage set;
@@ -280,7 +282,8 @@ static void test_cancelled(void **state) {
 
 /* ---- pictures ---- */
 
-/* The silhouette of a surface is an antialiased disk, and is the same at any distance of the sheets. */
+/* The silhouette of a spherical isosurface is an antialiased disk, which is the same at any distance between
+ * sheets. */
 static void test_silhouette(void **state) {
   (void)state;
   static float pixels[PIXELS * 4], coarse[PIXELS * 4];
@@ -307,8 +310,8 @@ static void test_silhouette(void **state) {
 }
 
 /* Translucent surfaces take the same fraction of light at every angle, and each one covers what lies behind
- * it. Three balls within each other are compared with the colours that follow, in the middle and at the rim
- * of the outermost ball. */
+ * it. For three balls within each other, the colours in the middle and at the rim of the outermost ball are
+ * compared with products of the surfaces' opacities. */
 static void test_translucent(void **state) {
   (void)state;
   static float pixels[PIXELS * 4];
@@ -322,8 +325,10 @@ static void test_translucent(void **state) {
     for (int c = 0; c < 3; c++) surfaces[s].color[c] = c == s;
   for (int k = 0; k < 2; k++) {
     set.scene.light_count = 0;
-    (void)stage_add_directional(&set,
-                                k == 0 ? (vec3){0.2, 0.3, -1} : (vec3){0.2, 0.3, 1}); /* before, behind */
+    (void)stage_add_directional(
+        &set,
+        k == 0 ? (vec3){0.2, 0.3, -1}
+               : (vec3){0.2, 0.3, 1}); /* the light is on the eye's side of the balls, or behind the balls */
     stage_render_sheets(&set, pixels);
     const float *middle = pixels + 4 * (SIDE / 2 * SIDE + SIDE / 2), *rim = middle + 4 * 21;
     const float *outer = middle + 4 * 24;
@@ -368,8 +373,8 @@ static void test_shadow(void **state) {
   }
 }
 
-/* Two surfaces of noise in haze, one of them translucent, with hard shadows. The reference finds the surfaces
- * as roots of the field along its rays. */
+/* The scene has two isosurfaces of noise in haze, one of them translucent, with hard shadows. The reference
+ * finds the surfaces as roots of the field along its rays. */
 static void test_against_the_reference(void **state) {
   (void)state;
   static float sheets[PIXELS * 4], exact[PIXELS * 4], voxels[16 * 16 * 16];
@@ -397,7 +402,7 @@ static void test_against_the_reference(void **state) {
   stage_render_sheets(&set, sheets);
   stage_render(&set, &options, exact);
   double squares = 0, sum = 0;
-  for (int i = 0; i < PIXELS; i++) { /* a quarter of the pixels, each with four channels */
+  for (int i = 0; i < PIXELS; i++) { /* these are a quarter of the picture's floats */
     double difference = (double)sheets[i] - (double)exact[i];
     squares += difference * difference;
     sum += difference;
@@ -437,9 +442,9 @@ static void test_threads(void **state) {
   stage_close(&set);
 }
 
-/* A renderer that keeps surfaces draws the bytes of a new renderer after a neighbouring volume has come, a
- * cut has come or gone, or both have moved. The neighbour touches the box where the surface meets it, so that
- * the surface is open there. The neighbour's matter is transparent. */
+/* A renderer that keeps surfaces draws the same bytes as a new renderer after a neighbouring volume or a cut
+ * has come, gone or moved. The neighbour touches the box where the surface meets it, so that the surface is
+ * open there. The neighbour's matter is transparent. */
 static void test_moved_neighbours(void **state) {
   (void)state;
   static const struct {

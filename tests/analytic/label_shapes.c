@@ -30,7 +30,7 @@ static int close_context(void **state) {
   return 0;
 }
 
-/* How far inside the shape a point is; below 0: outside. */
+/* Returns how far inside the shape a point lies; below 0: the point lies outside. */
 typedef double depth_function(const void *shape, vec3 p);
 
 typedef struct ball {
@@ -93,7 +93,7 @@ static double spline(double t) { /* the cubic B-spline */
   return t < 1 ? 2.0 / 3 + t * t * (t / 2 - 1) : (2 - t) * (2 - t) * (2 - t) / 6;
 }
 
-/* The field at a point of the label map. */
+/* Returns the occupancy field's value at a point of the label map. */
 static double field_at(const hl_volume *field, vec3 p) {
   const vec3 origin = field->index_to_world.offset;
   const double at[3] = {p.x - origin.x, p.y - origin.y, p.z - origin.z};
@@ -113,8 +113,8 @@ static double field_at(const hl_volume *field, vec3 p) {
   return sum;
 }
 
-/* The distance from a point of the shape's surface, outwards along its normal, to the place where the field
- * passes 1/2. */
+/* Returns the distance from a point of the shape's surface, outwards along its normal, to the place where the
+ * field passes 1/2. */
 static double surface_offset(const hl_volume *field, vec3 point, vec3 normal) {
   double low = -2, high = 2;
   for (int step = 0; step < 24; step++) {
@@ -141,7 +141,8 @@ static vec3 random_centre(uint32_t *seed) {
   return (vec3){N / 2 + stage_random(seed), N / 2 + stage_random(seed), N / 2 + stage_random(seed)};
 }
 
-/* The volume that a star-shaped surface encloses, from its distance in many directions. */
+/* Returns the volume that a star-shaped surface encloses, computed from the surface's distance in many
+ * directions. */
 static double volume_around(const hl_volume *field, vec3 centre, depth_function *depth, const void *shape) {
   enum { DIRECTIONS = 3000 };
   double sum = 0;
@@ -204,8 +205,8 @@ static void test_boxes(void **state) {
     assert_true(fabs(volume / count - 1) < 0.005);
     hl_volume_release(field);
   }
-  /* Faces move outwards evenly, by as much as rounded edges lose. The steps of voxels, 0.29 voxels high, do
-   * not show. */
+  /* Faces move outwards evenly, which makes up for the volume that rounded edges lose. The steps of voxels,
+   * 0.29 voxels high, do not show. */
   double mean = every.sum / every.count;
   assert_true(fabs(mean) < 0.25);
   assert_true(sqrt(every.squares / every.count - mean * mean) < 0.09);

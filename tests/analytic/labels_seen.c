@@ -11,10 +11,11 @@ enum { SIDE = 160, PIXELS = SIDE * SIDE, N = 40 };
 static unsigned char voxels[N * N * N];
 static float pixels[4 * PIXELS];
 
-/* How far inside a shape a point is; below 0: outside. */
+/* Returns how far inside a shape a point lies; below 0: the point lies outside. */
 typedef double depth_function(const void *shape, vec3 p);
 
-/* Fills the grid, whose middle is the origin; returns the count of the label's voxels. */
+/* Fills the grid, whose middle is the origin, with a shape's voxels. Returns the number of the label's
+ * voxels. */
 static int fill_voxels(depth_function *depth, const void *shape) {
   int count = 0;
   for (int k = 0; k < N; k++)
@@ -26,7 +27,8 @@ static int fill_voxels(depth_function *depth, const void *shape) {
   return count;
 }
 
-/* The picture of label 1, solid, seen orthographically along a direction; `height` voxels high. */
+/* Draws label 1 as solid matter, seen orthographically along a direction. The picture is `height` voxels
+ * high. */
 static void draw(vec3 along, double height) {
   static const hl_label label[] = {{1, NULL, {1, 1, 1}, 1, 1, 0, 0}};
   stage set;
@@ -46,14 +48,15 @@ static void draw(vec3 along, double height) {
   stage_close(&set);
 }
 
-/* The area in which the label covers pixels, in squares of voxels. */
+/* Returns the area that the label covers in the picture, in squared voxels. */
 static double area_seen(double height) {
   double sum = 0;
   for (int n = 0; n < PIXELS; n++) sum += (double)pixels[4 * n + 3];
   return sum * height / SIDE * height / SIDE;
 }
 
-/* Where the picture has a point, in the picture's voxels from its middle. */
+/* Returns the alpha at a point of the picture. x, y: the point's distance from the picture's middle, in
+ * voxels. */
 static double alpha_at(double x, double y, double height) {
   const int column = (int)((x / height + 0.5) * SIDE), row = (int)((0.5 - y / height) * SIDE);
   return (double)pixels[4 * (row * SIDE + column) + 3];
@@ -73,8 +76,8 @@ static double depth_in_plate(const void *shape, vec3 p) {
   return fmin(s->half - fabs(height), s->radius - across);
 }
 
-/* A round plate that is one voxel thin shows .9 of the area that a plate of two voxels shows, seen from in
- * front and from the side. */
+/* A round plate of one voxel's thickness covers at least 0.9 of the area of a plate of two voxels' thickness,
+ * seen from the front and from the side. */
 static void test_plates(void **state) {
   (void)state;
   uint32_t seed = 3;
@@ -185,7 +188,7 @@ static double depth_in_ball(const void *shape, vec3 p) {
 }
 
 /* The outlines of a ball of a few voxels enclose the area of a ball that has the voxels' volume, in the mean
- * over places and views. Small balls are less round, so that the mean is over more views. */
+ * over places and views. Small balls are less round, so that their mean is taken over more views. */
 static void test_outlines_of_balls(void **state) {
   (void)state;
   static const double radii[] = {1.5, 1.75, 2, 2.25, 2.5, 3, 4, 6, 10};
@@ -224,8 +227,8 @@ static void fill_atlas(void) {
   }
 }
 
-/* The picture of the labels, lit from the eye, without shadows. The labels are red and blue in turn, so that
- * each pixel's sum of channels is what a white body sends. cut: may be null. */
+/* Draws the labels, lit from the eye, without shadows. The labels are red and blue in turn, so that the sum
+ * of a pixel's red and blue is the light that a white body sends. cut: may be null. */
 static void draw_lit(vec3 along, int label_count, const hl_cut *cut) {
   static float values[N * N * N];
   hl_label labels[CELLS];
@@ -257,7 +260,7 @@ static double brightness_at(double x, double y) {
   return (double)pixel[0] + (double)pixel[2];
 }
 
-/* A box, half red and half blue, is as bright at the seam as beside it. */
+/* A box, half red and half blue, is as bright at the seam between the colours as beside the seam. */
 static void test_seam(void **state) {
   (void)state;
   for (int at = 0; at < N * N * N; at++) {
@@ -270,7 +273,7 @@ static void test_seam(void **state) {
   assert_near(beside, 1, 0.01);
   for (int n = -40; n <= 40; n++)
     for (int y = -6; y <= 6; y += 3) assert_true(brightness_at(n / 10.0, y) > 0.95 * beside);
-  /* this pixel is red or blue, and not both */
+  /* each of these pixels is red alone or blue alone */
   assert_true(pixels[4 * (SIDE / 2 * SIDE + SIDE / 2 - 12)] > 0.99);
   assert_true(pixels[4 * (SIDE / 2 * SIDE + SIDE / 2 + 12) + 2] > 0.99);
 }

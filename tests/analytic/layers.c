@@ -64,8 +64,8 @@ static double entry(vec3 origin, vec3 direction) {
   return enter;
 }
 
-/* In a box of the length c along the ray, the depth s has the weight exp(-sigma s). Its mean is 1 / sigma - c
- * exp(-e) / (1 - exp(-e)), where e = sigma c. Alpha reaches 0.01 at s = -ln(0.99) / sigma. */
+/* In a box of the length c along the ray, the depth s has the weight exp(-sigma s). The mean depth is 1 /
+ * sigma - c * exp(-e) / (1 - exp(-e)), where e = sigma c. Alpha reaches 0.01 at s = -ln(0.99) / sigma. */
 static void check_depths(const stage *set, const layer_set *layers) {
   int hits = 0, misses = 0;
   for (int i = 0; i < PIXELS; i++) {
@@ -88,8 +88,9 @@ static void check_depths(const stage *set, const layer_set *layers) {
   assert_true(hits > 100 && misses > 50);
 }
 
-/* Three settings: light that travels with the eye's rays; light against them, for which sheets go back to
- * front and one more sweep measures depth; and no light. */
+/* Depths are checked in three settings: under light that travels with the eye's rays; under light that
+ * travels against the eye's rays, for which sheets go back to front and one more sweep measures depth; and
+ * without light. */
 static void check_depths_under_all_lights(stage *set) {
   static const vec3 lights[] = {{0, 0, -1}, {0.3, -0.2, 1}};
   static layer_set layers;
@@ -228,7 +229,7 @@ static void test_normal_of_ramp(void **state) {
                                          voxels);
   ramp->shading = HL_SHADING_PHONG;
   ramp->clipped = 1; /* the clip box leaves out the border, where the ramp ends */
-  /* the normals are those of the ramp, also at the clip box's faces */
+  /* the layer has the ramp's normals, also at the clip box's faces */
   ramp->cut_shading = HL_CUT_SHADING_GRADIENT;
   for (int a = 0; a < 3; a++) ramp->clip_min[a] = -5, ramp->clip_max[a] = 5;
   stage_set_opacity(&set, ramp, 0.3, 1);
@@ -243,7 +244,7 @@ static void test_normal_of_ramp(void **state) {
 
 static const hl_opacity_point SOFT_EDGE[] = {{0, 0}, {0.35, 0}, {0.6, 0.7}, {1, 0.9}};
 
-/* Two volumes, and three lights, one of which needs a sweep of its own. */
+/* The scene has two volumes and three lights. One light needs a sweep of its own. */
 static void build_scene(stage *set) {
   enum { N = 15 };
   static float voxels[N * N * N];
@@ -289,7 +290,7 @@ static double sum_at(const layer_set *layers, size_t lights, int pixel, int c) {
 }
 
 /* A phase function changes the light that a medium sends to the eye, and not the layer of the light's shadow.
- * This holds under lights of several types and by every method of shadows. */
+ * The layer stays the same under lights of several types and by every method of shadows. */
 static void test_scattering_is_no_shadow(void **state) {
   (void)state;
   static layer_set even, scattered;
@@ -334,7 +335,7 @@ static void test_sum_is_the_picture(void **state) {
 }
 
 /* If colours and strengths of lights or the ambient light change, the picture is a sum of the same layers
- * with other factors: nothing is rendered again. */
+ * with other factors, so that no layer is rendered again. */
 static void test_relighting(void **state) {
   (void)state;
   static layer_set layers;
@@ -426,7 +427,7 @@ static void test_same_bytes(void **state) {
   assert_true(is_same(&first, &other));
 }
 
-/* A layer that is rendered alone is the same as beside all others. */
+/* A layer that is rendered alone has the values that it has when all layers are rendered. */
 static void test_some_layers(void **state) {
   (void)state;
   static layer_set all, some;

@@ -42,8 +42,8 @@ static void open_sky(stage *set) {
 /* ---- the shadow ---- */
 
 /* The mean of (E2(t) + E2(T - t)) / 2 over the depth t in a slab of the optical depth T, seen through the
- * slab. E2(t) is the integral of exp(-t / mu) over mu from 0 to 1. cast: the optical depth of matter that
- * hides the sky. */
+ * slab. E2(t) is the integral of exp(-t / mu) over mu from 0 to 1. cast: the factor of the slab's extinction
+ * for shadows. */
 static double shadow_in_slab(double whole, double cast) {
   double sum = 0, weights = 0;
   for (int i = 0; i < 200; i++) {
@@ -109,9 +109,9 @@ static void add_scene(stage *set, hl_shading shading) {
   stage_look(set, (vec3){30, -60, 40}, (vec3){0, 0, -2}, (vec3){0, 0, 1});
 }
 
-/* The sum of the layers has the sky's light once, less what is hidden of it. This holds under an even sky and
- * a gradient, for media and surfaces, by the sheets and the reference, and if another light has a sweep of
- * its own. */
+/* The sum of the layers has the sky's light once, less what is hidden of it. The sum is tested under an even
+ * sky and a gradient, for media and surfaces, on the sheets and the reference, and with another light that
+ * has a sweep of its own. */
 static void test_sum_is_the_picture(void **state) {
   (void)state;
   static sky_layers made;
@@ -138,8 +138,7 @@ static void test_sum_is_the_picture(void **state) {
   }
 }
 
-/* White matter sends the light that it would send if nothing hid the sky, times the layer of the sky's
- * shadow. */
+/* The light of white matter is its light under an unhidden sky, times the layer of the sky's shadow. */
 static void test_shadow_is_a_factor(void **state) {
   (void)state;
   static sky_layers hidden, open;

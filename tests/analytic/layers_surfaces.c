@@ -58,8 +58,8 @@ static void render(stage *set, bool reference, layer_set *made) {
 
 /* ---- depth, normal and object ---- */
 
-/* A slanted board fills the picture. Light travels with the eye's rays, and against them, when another sweep
- * measures. Sheets and reference are tested. */
+/* A slanted board fills the picture. Light travels with the eye's rays or against them. If light travels
+ * against the eye's rays, another sweep measures depth. Sheets and reference are tested. */
 static void test_plane(void **state) {
   (void)state;
   static layer_set made;
@@ -94,8 +94,8 @@ static void test_plane(void **state) {
 
 /* The isosurface of a linear field is a plane of many triangles. However many of them share a pixel, the
  * pixel's depth is that at which its own ray meets the plane. A second plane lies behind the first. Planes
- * are also tested with so low an opacity that the first triangle in a pixel takes less than a hundredth of
- * it. */
+ * are also tested with so low an opacity that the first triangle covers less than a hundredth of a pixel's
+ * light. */
 static void test_depth_of_isosurface(void **state) {
   (void)state;
   enum { N = 28 };
@@ -139,14 +139,14 @@ static void test_depth_of_isosurface(void **state) {
   }
 }
 
-/* The distance at which a ray meets a sphere; infinite if it does not. */
+/* Returns the distance at which a ray meets a sphere; infinite if the ray misses the sphere. */
 static double meet_sphere(vec3 origin, vec3 direction, vec3 centre, double radius) {
   vec3 away = vec3_subtract(origin, centre);
   double along = vec3_dot(away, direction), square = radius * radius - vec3_dot(away, away) + along * along;
   return square < 0 ? INFINITY : -along - sqrt(square);
 }
 
-/* One sphere stands partly before another. Each pixel shows the number, depth and normal of the nearer one.
+/* One sphere stands partly before another. Each pixel has the number, depth and normal of the nearer sphere.
  */
 static void test_two_spheres(void **state) {
   (void)state;
@@ -192,14 +192,14 @@ static void test_two_spheres(void **state) {
   }
 }
 
-/* The mean depth, times alpha, from the place where a ray enters matter of the extinction sigma that is
- * `length` deep: the integral of s sigma exp(-sigma s). */
+/* Returns the mean depth, times alpha, of matter with the extinction sigma. Depth counts from the place where
+ * the ray enters the matter, which is `length` deep. The result is the integral of s sigma exp(-sigma s). */
 static double depth_of_haze(double sigma, double length) {
   return 1 / sigma - exp(-sigma * length) * (length + 1 / sigma);
 }
 
 /* A pane of the opacity o stands in the middle of haze. The mean depth counts the haze before the pane, the
- * pane, and the haze that is seen through the pane. */
+ * pane itself, and the haze that is seen through the pane. */
 static void test_pane_in_haze(void **state) {
   (void)state;
   static layer_set made;
@@ -227,9 +227,9 @@ static void test_pane_in_haze(void **state) {
 
 /* ---- shadow ---- */
 
-/* A slanted floor below a coloured pane that the eye does not see. The angle between floor and light shows in
- * the light's layer, and not in its shadow's layer. The layer of the shadow is 1 under a light without
- * shadows, and on a floor that receives no shadows. */
+/* A slanted floor lies below a coloured pane that the eye does not see. The angle between floor and light
+ * shows in the light's layer, and not in its shadow's layer. The layer of the shadow is 1 under a light
+ * without shadows, and on a floor that receives no shadows. */
 static void test_shadow_of_pane(void **state) {
   (void)state;
   static layer_set made;

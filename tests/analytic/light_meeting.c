@@ -13,7 +13,7 @@
 
 enum { MOST_POSTS = 20000 };
 
-/* What a part of the picture has sent. */
+/* A message that one part of the picture has sent. */
 typedef struct sent_post {
   unsigned char *bytes; /* owned; [count] */
   size_t count;

@@ -9,12 +9,13 @@ enum { MOST_BANDS = 8 }; /* the greatest number of parts of a picture */
 
 typedef struct meeting meeting;
 
-/* A renderer that makes a part of the picture. */
+/* The thread of a renderer that makes a part of the picture. */
 typedef struct part_thread {
   meeting *meeting;
   light_exchange exchange;
   void (*prepare)(stage *set);
-  /* the number of pixels of light that were filled, and of bytes that this part gathered, including its own
+  /* the number of shadow buffer pixels that this part filled, and the number of bytes that it gathered, its
+   * own bytes included
    */
   uint64_t filled, gathered;
   int looks;    /* how often a part looked at messages that were still under way */
@@ -26,8 +27,8 @@ typedef struct part_thread {
 
 enum { TOGETHER_SIDE = 256 };
 
-/* How parts exchange light: each waits for the others; each goes on meanwhile; each sends messages of a few
- * tiles. */
+/* How parts exchange light. WAITING: each part waits for the others. POSTING: each part goes on while
+ * messages are under way. LITTLE_POSTS: each part sends messages of a few tiles. */
 typedef enum exchange_way { WAITING, POSTING, LITTLE_POSTS } exchange_way;
 
 /* Renders a picture by several parts at once. The sum of the parts' pixels is the picture. A second frame

@@ -24,8 +24,9 @@ hl_scene_mesh *mesh_stage_add(mesh_stage *all, hl_mesh *made);
 /* Adds a mesh from a description. The test fails if the description is refused. */
 hl_scene_mesh *mesh_stage_describe(mesh_stage *all, const hl_mesh_description *description);
 
-/* Sets the shadows. kind: 0: hard shadows; 1: soft shadows of the directional light by the cascade; 2: by the
- * paper's method; 3: by sub-lights. The directional light gets the angular diameter. */
+/* Sets the shadows. kind: 0: hard shadows; 1: soft shadows of the directional light by the cascade; 2: soft
+ * shadows by the paper's method; 3: soft shadows by sub-lights. The directional light gets the angular
+ * diameter. */
 void mesh_stage_choose_shadows(mesh_stage *all, hl_light *light, int kind, double diameter_deg);
 
 #endif

@@ -18,7 +18,7 @@ motion motion_of_shift(double x, double y, double z) { return (motion){NO_TURN, 
 motion motion_of_turn(vec3 axis, double angle_deg) {
   return (motion){mat3_rotation(vec3_normalise(axis), angle_deg * HL_PI / 180), 1, {0, 0, 0}};
 }
-/* The matrix of a reflection, I - 2 n n'. */
+/* Returns the motion of a reflection, whose matrix is I - 2 n n'. */
 motion motion_of_mirror(vec3 n) {
   motion mirror = motion_of_scale(1);
   const double c[3] = {n.x, n.y, n.z};
@@ -63,7 +63,7 @@ static void move_light(const motion *by, hl_light *light, double (*vertices)[3])
 }
 
 /* Finds the axis and the angle of a rotation R (derived from Rodrigues's formula). The axis is the longest
- * column of R + R' + (1 - trace) I. The sine of the angle is the axis's part of R - R'. */
+ * column of R + R' + (1 - trace) I. The component of R - R' along the axis gives the sine of the angle. */
 static void axis_of_rotation(mat3 r, double axis[3], double *angle_deg) {
   double trace = r.row[0].x + r.row[1].y + r.row[2].z;
   vec3 rest = {r.row[2].y - r.row[1].z, r.row[0].z - r.row[2].x, r.row[1].x - r.row[0].y},
@@ -115,8 +115,8 @@ static void move_axes(hl_context *context, const motion *by, hl_scene_volume *vo
   memset(volume->translate, 0, sizeof volume->translate);
 }
 
-/* Adapts gradients, which are data units per world unit. points: memory for the volume's gradient opacity. It
- * must last until the scene is created, because the scene copies it. */
+/* Adapts gradients, which are data units per world unit. points: memory for the volume's gradient opacity.
+ * This memory must last until the scene is created, because the scene copies the points. */
 static void move_gradients(const motion *by, hl_transfer_function *function, hl_opacity_point points[4]) {
   if (function->plane.second == HL_SECOND_GRADIENT)
     function->plane.second_scale = by->scale * hl_plane_second_scale(&function->plane);

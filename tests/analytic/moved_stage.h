@@ -18,9 +18,10 @@ motion motion_of_turn(vec3 axis, double angle_deg);
 motion motion_of_mirror(vec3 normal); /* normal: the unit normal of a mirror through the origin */
 
 /* Moves camera, lights and volumes. The motion changes a volume's axes and origin. If the volume has a clip
- * box, or `by_transform` is set, the motion changes the volume's scene transform in place of them, unless it
- * is a reflection. If a light falls with the square of the distance, its intensity is changed to make up for
- * the scale. vertices: memory for all vertices of polygons; it must last until the pictures are made. */
+ * box, or `by_transform` is set, the motion changes the volume's scene transform in place of axes and origin,
+ * unless the motion is a reflection. If a light falls with the square of the distance, its intensity is
+ * changed to make up for the scale. vertices: memory for all vertices of polygons; this memory must last
+ * until the pictures are made. */
 void stage_move(stage *set, const motion *by, int by_transform, double (*vertices)[3]);
 
 #endif

@@ -13,7 +13,7 @@
 static const vec3 LOW = {-3, -2, -4}, HIGH = {5, 2, 3};
 static const double OPACITY = 0.2;
 
-/* A homogeneous box. Alpha along every ray is 1 - (1 - OPACITY)^chord. */
+/* Opens a scene of a homogeneous box. Alpha along every ray is 1 - (1 - OPACITY)^chord. */
 static void open_box(stage *set, int width, int height) {
   stage_open(set);
   set->scene.render.threads = 1;
@@ -23,7 +23,7 @@ static void open_box(stage *set, int width, int height) {
   set->scene.height = height;
 }
 
-/* tolerance: of alpha. */
+/* Compares every pixel's alpha with the closed form. tolerance: the allowed difference of alpha. */
 static void assert_chords(stage *set, double tolerance, const char *what) {
   int width = set->scene.width, height = set->scene.height, seen = 0;
   float *pixels = malloc((size_t)width * (size_t)height * 4 * sizeof *pixels);
@@ -96,7 +96,8 @@ static hl_status render_status(stage *set, hl_error *error) {
   return status;
 }
 
-/* A view is right if there are sheets that all its rays cross, and refused otherwise. */
+/* A wide view is drawn right if there are sheets that all of the view's rays cross, and is refused
+ * otherwise. */
 static void test_wide_views(void **state) {
   (void)state;
   static const double angles[] = {120, 150, 170, 179.999};
@@ -119,7 +120,7 @@ static void test_wide_views(void **state) {
       refused += status == HL_ERROR_UNSUPPORTED;
       stage_close(&set);
     }
-  /* The field of view is 179.999 degrees, or wide with light from the side. */
+  /* The refused views have a field of view of 179.999 degrees, or are wide with light from the side. */
   assert_in_range(refused, 3, 8);
 }
 
@@ -151,7 +152,7 @@ static void test_nothing_ahead(void **state) {
 }
 
 /* If the camera's up is parallel to the line of sight, z replaces it, or y if the line of sight is along z.
- * The reference does the same. */
+ * The reference replaces the useless direction in the same way. */
 static void test_useless_up(void **state) {
   (void)state;
   static float plain[18 * 14 * 4], useless[18 * 14 * 4], exact[18 * 14 * 4];
@@ -204,7 +205,8 @@ static void test_large_picture_under_a_limit(void **state) {
   options.memory_limit = (uint64_t)1 << 30;
   stage_open_with(&set, &options);
   stage_add_box(&set, LOW, HIGH);
-  /* The size is no multiple of a tile's, so that the picture is not made in the caller's pixels. */
+  /* The picture's size is no multiple of a tile's size, so that the picture is not made in the caller's
+   * pixels. */
   set.scene.width = set.scene.height = 16380;
   assert_int_equal(hl_scene_create(set.context, &set.scene, &scene, &error), HL_OK);
   assert_int_equal(hl_renderer_create(set.context, &renderer, &error), HL_OK);

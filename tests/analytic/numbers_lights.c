@@ -78,8 +78,8 @@ static void render_light(make_light *make, double extent, hl_shadows shadows, hl
   stage_close(&set);
 }
 
-/* The soft shadows of a light without extent have the bytes of its hard shadows. Those of a light that is
- * hardly extended are nearly the same. */
+/* The soft shadows of a light without extent have the bytes of its hard shadows. The soft shadows of a light
+ * of tiny extent are nearly the same as its hard shadows. */
 static void test_no_extent(void **state) {
   (void)state;
   static float expected[FLOATS], pixels[FLOATS];
@@ -134,13 +134,14 @@ static void test_lamps_in_odd_places(void **state) {
       stage_add_point(&set, places[p])->radius = soft ? 1 : 0;
       snprintf(what, sizeof what, "%s lamp at %g %g %g", soft ? "soft" : "hard", places[p].x, places[p].y,
                places[p].z);
-      bool border = p == 4; /* at the border of the box, the shares of the lamp's sectors meet */
+      bool border = p == 4; /* the lamp's sectors meet at the border of the box */
       assert_near_reference(&set, soft ? 2e-2 : border ? 8e-3 : 2e-3, what);
       stage_close(&set);
     }
 }
 
-/* One light stands on the line through the eye and the target, and one in the plane of the picture. */
+/* Lights shine along the line through the eye and the target in either direction, or in the plane of the
+ * picture. */
 static void test_aligned_lights(void **state) {
   (void)state;
   static const vec3 ways[] = {{-12, 14, -9}, {12, -14, 9}, {14, 12, 0}};
@@ -183,8 +184,8 @@ static void test_strengths(void **state) {
   }
 }
 
-/* A lamp stands within the data, and its light falls with the square of the distance. The picture is finite,
- * as bright as floats allow. */
+/* A lamp stands within the data, and its light falls with the square of the distance. All pixels are finite,
+ * although light near the lamp is as bright as floats allow. */
 static void test_falloff_at_the_lamp(void **state) {
   (void)state;
   static float pixels[FLOATS];

@@ -15,7 +15,7 @@ enum { WIDTH = 30, HEIGHT = 26, FLOATS = WIDTH * HEIGHT * 4 };
 
 static double vertices[64][3];
 
-/* Each kind of shadows in turn. */
+/* Opens a scene at a small size. The scene's index chooses one of the kinds of shadows in turn. */
 static void open_scene(stage *set, const scenario *from, size_t index) {
   stage_open(set);
   from->make(set);
@@ -67,8 +67,8 @@ typedef struct move_case {
   double mean, greatest; /* the allowed differences; 0: the pictures must have the same bytes */
 } move_case;
 
-/* Moves each scene in each way. If a motion is no power of two, positions are rounded. A light that shines
- * exactly across the view may then get the other one of its two slicing directions, whose picture is as good.
+/* Moves each scene in each way. Motions by powers of two are exact; other motions round positions. A light
+ * that shines exactly across the view may then get another slicing direction, whose picture is as good.
  */
 static void check_moves(const move_case *cases, size_t case_count, bool mirrored) {
   static float expected[FLOATS], pixels[FLOATS];
@@ -78,7 +78,7 @@ static void check_moves(const move_case *cases, size_t case_count, bool mirrored
     stage set;
     open_scene(&set, &all[i], i);
     stage_render_sheets(&set, expected);
-    /* A clip box and cuts follow the volume's transform. The transform mirrors nothing. */
+    /* A clip box and cuts follow the volume's transform. A transform cannot mirror a volume. */
     bool clipped = set.volumes[0].clipped || set.volumes[0].cut_count > 0;
     stage_close(&set);
     for (size_t c = 0; c < case_count && !(mirrored && clipped); c++) {
@@ -128,7 +128,8 @@ static const scenario *scene_named(const char *name) {
   return NULL;
 }
 
-/* From far away, a perspective picture is the orthographic one. Its rays differ by angles of size / distance.
+/* From far away, a perspective picture is the orthographic one. The directions of the perspective camera's
+ * rays differ by angles of size / distance.
  */
 static void test_far_eyes(void **state) {
   (void)state;
@@ -155,7 +156,7 @@ static void test_far_eyes(void **state) {
     }
 }
 
-/* A lamp far away lights as parallel light does. */
+/* The light of a lamp that is far away is the same as parallel light. */
 static void test_far_lamps(void **state) {
   (void)state;
   static float expected[FLOATS], pixels[FLOATS];
@@ -181,7 +182,7 @@ static void test_far_lamps(void **state) {
       }
 }
 
-/* Numbers that floats cannot hold beside the voxels are refused, and the message names them. */
+/* Numbers in which floats cannot tell voxels apart are refused, and the message names the numbers. */
 static void test_beyond_reach(void **state) {
   (void)state;
   stage set;

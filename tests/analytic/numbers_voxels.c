@@ -169,7 +169,7 @@ static void test_units_of_data_under_a_sky(void **state) {
   }
 }
 
-/* Some voxels among the data hold a fill value. Fill values beyond 1e36 are refused. */
+/* A few voxels hold a huge or tiny fill value among ordinary data. Fill values beyond 1e36 are refused. */
 static void test_extremes_among_data(void **state) {
   (void)state;
   static float voxels[VOXELS], pixels[FLOATS];
@@ -187,9 +187,9 @@ static void test_extremes_among_data(void **state) {
 
 /* ---- types ---- */
 
-/* Clumps of voxels hold 0 or the greatest number, so that the weighted sums and slopes are the greatest that
- * whole numbers must hold. Means of differences are compared, since single pixels differ by more if a surface
- * turns away from the light. */
+/* Pictures of voxels of whole numbers and of floats agree. Clumps of voxels hold 0 or the greatest number, so
+ * that the weighted sums and slopes are the greatest that whole numbers must hold. Means of differences are
+ * compared, since single pixels differ by more if a surface turns away from the light. */
 static void test_types_agree(void **state) {
   (void)state;
   static const hl_voxel_type whole[] = {HL_VOXEL_U8, HL_VOXEL_U16};
@@ -214,8 +214,8 @@ static void test_types_agree(void **state) {
 
 /* ---- one voxel along an axis ---- */
 
-/* A layer looks like a stack of thinner layers, because the values at its borders go on beyond them. Shadows
- * are off, since their buffers are as coarse as the voxels. */
+/* One thick layer looks like a stack of thinner layers, because the values at a grid's borders continue
+ * beyond the borders. Shadows are off, because shadow buffers are as coarse as the voxels. */
 static void render_layers(const size_t n[3], int axis, size_t layers, hl_shading shading, float *pixels) {
   static float voxels[12 * 12 * 12];
   static const hl_opacity_point opacity[] = {{0.2, 0}, {0.5, 0.4}, {1, 0.6}};
@@ -235,7 +235,8 @@ static void render_layers(const size_t n[3], int axis, size_t layers, hl_shading
   volume->transfer_function.opacity = opacity;
   volume->transfer_function.opacity_count = 3;
   volume->shading = shading;
-  /* two voxels at a face have other light, and they differ between the layers */
+  /* the gradient shades the volume's faces, because the two voxels at a face otherwise have another light,
+   * which depends on the layers' thickness */
   volume->cut_shading = HL_CUT_SHADING_GRADIENT;
   set.scene.render.shadows = HL_SHADOWS_OFF;
   double smallest = fmin(spacing[0], fmin(spacing[1], spacing[2]));
@@ -259,7 +260,10 @@ static void test_one_voxel_thick(void **state) {
           sum += fabs((double)thin[i] - (double)thick[i]) / FLOATS;
           seen += (double)thick[i] / FLOATS;
         }
-        if (!(sum < (shading == HL_SHADING_NONE ? 1e-5 : 4e-3))) /* normals at borders */
+        if (!(sum <
+              (shading == HL_SHADING_NONE
+                   ? 1e-5
+                   : 4e-3))) /* the bar for shaded pictures is higher because normals at borders differ */
           fail_msg("grid %zu along %d: differs by %.3g of %.3g", g, axis, sum, seen);
         assert_true(seen > 0.05);
       }

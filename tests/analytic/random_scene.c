@@ -65,7 +65,7 @@ static void spoil_voxels(dice *d, size_t count, float *voxels) {
     if (chance(d, 0.1)) voxels[i] = values[below(d, 3)];
 }
 
-/* Draws an opacity that rises with the value; some of them have steps. */
+/* Draws an opacity that rises with the value; some of the opacities have steps. */
 static void draw_points(dice *d, hl_transfer_function *function, hl_opacity_point *opacity,
                         hl_color_point *color) {
   double value = between(d, -0.2, 0.4), densest = chance(d, 0.3) ? 1 : between(d, 0.05, 0.9);
@@ -109,7 +109,7 @@ static hl_volume *make_volume(dice *d, hl_context *context, const hl_volume_desc
   if (description.type == HL_VOXEL_F32 && chance(d, 0.3)) spoil_voxels(d, count, voxels);
   if (description.type == HL_VOXEL_U8) {
     description.value_scale = 1.0 / 255;
-    /* the bytes are written behind the place where floats are still read */
+    /* the bytes are converted in place: a byte is never written over a float that is still to be read */
     for (size_t i = 0; i < count; i++) ((uint8_t *)voxels)[i] = (uint8_t)lrintf(voxels[i] * 255);
   } else if (description.type == HL_VOXEL_U16) {
     description.value_scale = 1.0 / 65535;
@@ -236,7 +236,8 @@ static void draw_light(dice *d, random_scene *scene, double size) {
 
 /* ---- the rest ---- */
 
-/* This is drawn last, so that a number's scene keeps everything that was drawn before. */
+/* Draws emission, flat shading and maximum projections. These are drawn last, so that the scene of a seed
+ * keeps all that older versions of this program drew. */
 static void draw_shine(dice *d, stage *set) {
   for (size_t v = 0; v < set->scene.volume_count; v++) {
     if (chance(d, 0.2)) set->volumes[v].material.emission = between(d, 0, 2);

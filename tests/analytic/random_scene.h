@@ -1,5 +1,5 @@
-/* analytic/random_scene.h - small scenes that are drawn by a number. A number gives the same scene on every
- * machine. */
+/* analytic/random_scene.h - small random scenes, each made from a seed number. A seed gives the same scene on
+ * every machine. */
 #ifndef RANDOM_SCENE_H
 #define RANDOM_SCENE_H
 
@@ -7,7 +7,7 @@
 
 enum { RANDOM_POINTS = 6, RANDOM_TEXTURE = 4, RANDOM_VERTICES = 6 };
 
-/* Memory that a scene borrows. Each stage needs one of its own. */
+/* Memory that a scene borrows. Each stage needs a random_scene of its own. */
 typedef struct random_scene {
   stage set;
   hl_opacity_point opacity[STAGE_VOLUMES][RANDOM_POINTS];

@@ -2,10 +2,10 @@
  *
  *     random_scenes [COUNT [FIRST]]
  *
- * Scene n is the same on every machine: a failure names it, and `random_scenes 1 n` is that scene alone. What
- * is checked: pixels are finite, none is negative, alpha is at most 1; one thread and three give the same
- * bytes; what casts no shadow lets every pixel be as bright or brighter; camera, lights and volumes turned
- * together give the same picture.
+ * Scene n is the same on every machine: a failure names n, and `random_scenes 1 n` renders scene n alone. The
+ * checks: pixels are finite and not negative, and alpha is at most 1; one thread and three threads give the
+ * same bytes; without shadows, every pixel is as bright or brighter; if camera, lights and volumes turn
+ * together, the picture stays the same.
  */
 #include <setjmp.h>
 #include <stdarg.h>
@@ -29,7 +29,7 @@ static uint64_t first_scene = 1, scene_count = 16;
 
 static size_t floats_of(const stage *set) { return (size_t)set->scene.width * (size_t)set->scene.height * 4; }
 
-/* sweeps: may be null. */
+/* Renders a scene. sweeps: gets the number of sweeps; may be null. */
 static hl_status render(stage *set, int threads, float *pixels, int *sweeps, hl_error *error) {
   hl_scene *scene = NULL;
   hl_renderer *renderer = NULL;
@@ -65,8 +65,9 @@ static void check_threads(uint64_t seed, stage *set, const float *expected) {
   set->scene.render.slabs_at_once = 0;
 }
 
-/* The same sheets pass the same matter, so that only rounding may make the shadowed picture brighter. Things
- * that the eye does not see keep their shadows, since otherwise the sheets would not reach as far. */
+/* Checks that shadows only darken. With and without shadows the same sheets pass the same matter, so that
+ * only rounding may make the shadowed picture brighter. Volumes that the eye does not see keep their shadows,
+ * because otherwise the sheets would not reach as far. */
 static void check_shadows_darken(uint64_t seed, stage *set, const float *shadowed) {
   static float pixels[FLOATS];
   hl_error error = {0};
@@ -80,9 +81,9 @@ static void check_shadows_darken(uint64_t seed, stage *set, const float *shadowe
                (double)shadowed[i], (double)pixels[i]);
 }
 
-/* Buffers and sheets turn with the content, but the grids of their pixels do not. So pictures differ by about
- * a pixel's error. If the nearest pixel of a buffer is looked up, or the buffer has few pixels, or a lamp
- * stands within matter, whole pixels differ. */
+/* Shadow buffers and sheets turn with the content, but their grids of pixels do not. So the pictures of a
+ * turned scene differ by about one pixel's error. If the nearest pixel of a buffer is looked up, or the
+ * buffer has few pixels, or a lamp stands within matter, whole pixels differ. */
 static void check_turned(uint64_t seed, const float *expected) {
   static float pixels[FLOATS];
   static random_scene turned;
@@ -113,8 +114,8 @@ static void check_turned(uint64_t seed, const float *expected) {
   stage_close(set);
 }
 
-/* Returns whether the scene is accepted. Sheets parallel to the image are refused for a light along them, as
- * are views that are too wide. */
+/* Returns whether the scene is accepted. Sheets parallel to the image are refused if a light shines along the
+ * sheets. Views that are too wide are refused, too. */
 static bool check_scene(uint64_t seed) {
   static float pixels[FLOATS];
   static random_scene drawn;

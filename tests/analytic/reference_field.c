@@ -45,7 +45,7 @@ static void field_close(field *made) {
   stage_close(&made->set);
 }
 
-/* Point n of a fixed sequence that fills the index-space box, including its faces. */
+/* Returns point n of a fixed sequence that fills the index-space box, including its faces. */
 static vec3 probe(int n) {
   double t[3] = {fmod(n * 0.7548776662, 1), fmod(n * 0.5698402910, 1), fmod(n * 0.8191725134, 1)};
   for (int a = 0; a < 3; a++) t[a] = fmin(fmax(t[a] * 1.1 - 0.05, 0), 1) * (double)SIZE[a] - 0.5;
@@ -64,7 +64,7 @@ static float *make_voxels(float (*value)(double, double, double)) {
 static float ramp(double i, double j, double k) { return (float)(5 + 2 * i - 3 * j + 0.5 * k); }
 static float rough(double i, double j, double k) { return stage_noise(i, j, k); }
 static float constant(double i, double j, double k) { return i + j + k < -1 ? 0 : 7.5f; }
-/* Voxels that are 0 except for a few small blobs. */
+/* Returns a voxel of a field that is 0 except for a few small blobs. */
 static float sparse(double i, double j, double k) {
   double a = hypot(hypot(i - 4, j - 5), k - 3), b = hypot(hypot(i - 22, j - 17), k - 13);
   return (float)fmax(fmax(2.2 - a, 1.2 - b), 0);
@@ -129,7 +129,7 @@ static void test_ramp_is_exact(void **state) {
   free(voxels);
 }
 
-/* A single bright voxel shows the kernel's shape. */
+/* The reconstruction of a single bright voxel has the kernel's shape. */
 static void test_kernel_values(void **state) {
   (void)state;
   float *voxels = calloc(SIZE[0] * SIZE[1] * SIZE[2], sizeof *voxels);
@@ -139,8 +139,8 @@ static void test_kernel_values(void **state) {
   field_open(&f, voxels);
   double e2 = exp(-2), e_half = exp(-0.5), e_far = exp(-4.5);
   double at_voxel = 1 / (1 + 2 * e2), midway = e_half / (2 * e_half + 2 * e_far);
-  const double expected[3][3] = {/* the points lie at the voxel, half a voxel and one and a half voxels beside
-                                    it, along each of two axes */
+  const double expected[3][3] = {/* [kernel][distance]; the kernel's weight along one axis at the bright
+                                  * voxel, half a voxel beside it and one and a half voxels beside it */
                                  {2.0 / 3, 23.0 / 48, 1.0 / 48},
                                  {at_voxel, midway, e_far / (2 * e_half + 2 * e_far)},
                                  {1, 0.5, 0}};
@@ -183,8 +183,8 @@ static void test_gradient_is_the_slope(void **state) {
   free(voxels);
 }
 
-/* On a way that bricks promise to be empty the field shows nothing, and the promised ways are long enough to
- * be useful. */
+/* On the part of a ray that hl_reference_clearance() reports as empty, the field shows nothing. The reported
+ * parts are long enough to be useful. */
 static void test_clear_ways_are_clear(void **state) {
   (void)state;
   field f;
@@ -212,7 +212,8 @@ static void test_clear_ways_are_clear(void **state) {
   free(voxels);
 }
 
-/* Voxels that are not finite are empty. If no value is empty, they are holes in the matter. */
+/* Voxels that are not finite are empty. If the volume has no empty value, voxels that are not finite are
+ * holes in the matter. */
 static void test_nonfinite_voxels(void **state) {
   (void)state;
   float *voxels = make_voxels(constant);

@@ -17,7 +17,7 @@ static double worst_difference(const float *a, const float *b) {
 static const hl_opacity_point RISING[2] = {{0.35, 0}, {0.8, 0.9}};
 static const hl_color_point COLORS[2] = {{0.3, {0.9, 0.3, 0.1}}, {0.8, {0.2, 0.7, 1}}};
 
-/* A lump of noise around the origin with "phong" shading. */
+/* Adds a lump of noise around the origin with "phong" shading. */
 static void stage_lump(stage *set) {
   static float voxels[EDGE * EDGE * EDGE];
   float *out = voxels;
@@ -37,7 +37,8 @@ static void stage_lump(stage *set) {
   set->scene.camera.height = 24;
 }
 
-/* An opaque ramp, seen from its transparent side, has one colour and one known normal. Equations (3) and (4).
+/* An opaque ramp, seen from its transparent side, has one colour and one known normal, so that equations (3)
+ * and (4) give its light.
  */
 static void test_phong_of_a_ramp(void **state) {
   (void)state;
@@ -62,7 +63,7 @@ static void test_phong_of_a_ramp(void **state) {
   set.scene.render.shadows = HL_SHADOWS_OFF;
   hl_light *light = stage_add_directional(&set, (vec3){-0.3, -0.2, -1});
   light->intensity = 1.5;
-  stage_add_directional(&set, (vec3){0, 0.5, 1}); /* from behind: nothing */
+  stage_add_directional(&set, (vec3){0, 0.5, 1}); /* this light comes from behind and adds nothing */
   stage_render(&set, NULL, pixels);
   vec3 towards = vec3_normalise((vec3){0.3, 0.2, 1});
   /* N = E = +z, so that E.R = 2 (N.L) N.E - E.L = N.L */
@@ -158,8 +159,8 @@ static void test_turning_everything(void **state) {
   stage_close(&set);
 }
 
-/* With half of the step the picture is nearer to its limit, and the default step is within a thousandth of
- * the limit. */
+/* A picture with half of the ray march's step is nearer to the limit of small steps. The picture with the
+ * default step is within a thousandth of the limit. */
 static void test_convergence(void **state) {
   (void)state;
   static float pixels[3][PIXEL_FLOATS];

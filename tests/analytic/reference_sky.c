@@ -1,6 +1,6 @@
 /* analytic/reference_sky.c - the reference's light from all directions, against closed forms. The receiver is
- * a small square that faces the eye at (0, 0, 100) or is turned away from it, or a cloud of haze that is so
- * faint that it casts no shadow. */
+ * a small square that faces the eye at (0, 0, 100) or is turned away from the eye, or a cloud of haze that
+ * casts no shadow. */
 #include <stdlib.h>
 #include <string.h>
 
@@ -13,7 +13,7 @@ typedef struct sky_stage {
   double lit[4]; /* RGB and alpha of the middle pixel; the colour is divided by alpha */
 } sky_stage;
 
-/* A scene with a uniform sky and without lights. A transparent volume sets the size of voxels. */
+/* Opens a scene with a uniform sky and without lights. A transparent volume sets the size of voxels. */
 static void open_sky(sky_stage *all) {
   stage_open(&all->set);
   all->set.scene.width = all->set.scene.height = 1;
@@ -27,7 +27,7 @@ static void close_sky(sky_stage *all) {
   stage_close(&all->set);
 }
 
-/* A rectangle around a centre. Two vectors lead from the centre to its edges. */
+/* Adds a rectangle around a centre. u, v: the vectors from the centre to the middles of two edges. */
 static hl_scene_mesh *add_quad(sky_stage *all, vec3 centre, vec3 u, vec3 v) {
   hl_scene_mesh *mesh = &all->meshes[all->set.scene.mesh_count++];
   hl_scene_mesh_defaults(mesh);
@@ -37,13 +37,13 @@ static hl_scene_mesh *add_quad(sky_stage *all, vec3 centre, vec3 u, vec3 v) {
   return mesh;
 }
 
-/* The receiver of most tests: a square at the origin that faces the eye. */
+/* Adds the receiver of most tests, a square at the origin that faces the eye. */
 static hl_scene_mesh *add_square(sky_stage *all) {
   stage_set_opacity(&all->set, stage_add_box(&all->set, (vec3){-1, -1, 40}, (vec3){1, 1, 42}), 0, 1);
   return add_quad(all, (vec3){0, 0, 0}, (vec3){1, 0, 0}, (vec3){0, 1, 0});
 }
 
-/* The receiver of the other tests: haze that hides nothing. */
+/* Adds the receiver of the other tests, haze that hides nothing. */
 static hl_scene_volume *add_haze(sky_stage *all) {
   hl_scene_volume *haze = stage_add_box(&all->set, (vec3){-1, -1, -0.1}, (vec3){1, 1, 0.1});
   stage_set_opacity(&all->set, haze, 0.01, 1);
@@ -80,9 +80,9 @@ static void test_open(void **state) {
   }
 }
 
-/* A great plane below haze hides half of the sky, and a half plane hides a quarter. Above the square, a half
- * plane hides half of its light. A pane hides only the light that it absorbs. Surfaces that receive no shadow
- * get all light. */
+/* A great plane below haze hides half of the sky, and a half plane hides a quarter. A half plane above the
+ * square hides half of the square's light. A pane hides only the light that it absorbs. Surfaces that receive
+ * no shadow get all light. */
 static void test_planes(void **state) {
   (void)state;
   const struct {
@@ -110,7 +110,7 @@ static void test_planes(void **state) {
   }
 }
 
-/* E2(x), the integral of exp(-x / mu) over mu from 0 to 1, by the middles of 2000 steps. */
+/* Returns E2(x), the integral of exp(-x / mu) over mu from 0 to 1, by the midpoint rule with 2000 steps. */
 static double exponential_integral_2(double x) {
   double sum = 0;
   for (int i = 0; i < 2000; i++) sum += exp(-x / ((i + 0.5) / 2000)) / 2000;
@@ -158,9 +158,10 @@ static void test_inside(void **state) {
   close_sky(&all);
 }
 
-/* The radiance is h + (z - h) s above and h - (g - h) s below, where s is the sine of the elevation. Derived:
- * a surface that faces the zenith gets h + 2/3 (z - h), a surface that faces the ground h + 2/3 (g - h), and
- * an upright surface h + 2 / (3 pi) (z + g - 2 h). Haze gets h + (z + g - 2 h) / 4. */
+/* The sky's radiance is h + (z - h) s above the horizon and h - (g - h) s below it, where s is the sine of
+ * the elevation. By integration, a surface that faces the zenith gets h + 2/3 (z - h), a surface that faces
+ * the ground h + 2/3 (g - h), and an upright surface h + 2 / (3 pi) (z + g - 2 h). Haze gets h + (z + g - 2
+ * h) / 4. */
 static void test_gradient(void **state) {
   (void)state;
   const double h = 0.4, z = 1, g = 0.1;
@@ -206,8 +207,9 @@ static void test_hemisphere(void **state) {
 
 enum { COLUMNS = 64, ROWS = 32 };
 
-/* An image of the sky that is red right of its middle and green in its upper half. It is blue up to an eighth
- * of its width from its middle column. The square faces +z; `up` and `rotation` turn the sky around it. */
+/* An image of the sky that is red right of its middle and green in its upper half. The image is blue up to an
+ * eighth of its width from its middle column. The square faces +z; `up` and `rotation` turn the sky around
+ * the square. */
 static void test_image(void **state) {
   (void)state;
   static float pixels[ROWS][COLUMNS][3];
@@ -217,13 +219,14 @@ static void test_image(void **state) {
       pixels[y][x][1] = y < ROWS / 2;
       pixels[y][x][2] = abs(2 * x + 1 - COLUMNS) < COLUMNS / 4;
     }
-  /* The blue part is a lune of 45 degrees to either side of the image's middle. With the middle at +z, the
-   * square gets sin 45 degrees of it. With the middle on the square's horizon, the square gets the part above
-   * the horizon. */
+  /* The blue part is a lune of 45 degrees to either side of the image's middle. With the image's middle at
+   * +z, the blue part gives the square the light sin 45 degrees. With the image's middle on the square's
+   * horizon, the square gets the part of the lune above the horizon. */
   const double lune = sqrt(0.5), half = (1 - lune) / 2;
-  /* The zenith is +z, then the ground is +z. Then `right` is +x with the middle at +z; turned by half, the
-   * middle is -z. Turned counterclockwise, as seen from -y, the image's right stands at +z, and then its
-   * left. */
+  /* In the first case the zenith is +z, and in the second case the ground is +z. In the third case the
+   * image's middle is +z and its right is +x; in the fourth case the image is turned by half, so that its
+   * middle is -z. In the last two cases the image is turned by 90 degrees to either side, so that its right
+   * and then its left stands at +z. */
   const struct {
     double up[3], rotation, expected[3];
   } cases[] = {{{0, 0, 1}, 0, {0.5, 1, 0.25}},    {{0, 0, -1}, 90, {0.5, 0, 0.25}},

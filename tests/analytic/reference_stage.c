@@ -47,7 +47,7 @@ void stage_close(stage *set) {
   hl_context_destroy(set->context);
 }
 
-/* The voxels in the stage's type. The caller frees them. */
+/* Converts voxels to the stage's type. The caller frees the converted voxels. */
 static void *store_voxels(const stage *set, const float *voxels, size_t count, double *value_scale) {
   float *stored = malloc(count * sizeof *stored);
   assert_non_null(stored);
@@ -215,7 +215,7 @@ void stage_look(stage *set, vec3 position, vec3 target, vec3 up) {
   copy_vector(set->scene.camera.up, up);
 }
 
-/* The ray follows from angles and the distance of pixels, and so by other code than the reference's. */
+/* The ray is computed from angles and the distance of pixels, independently of the reference's own code. */
 void stage_eye_ray(const stage *set, int x, int y, vec3 *origin, vec3 *direction) {
   const hl_camera *camera = &set->scene.camera;
   vec3 eye = vec3_of(camera->position), back = vec3_normalise(vec3_subtract(eye, vec3_of(camera->target)));

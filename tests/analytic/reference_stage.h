@@ -1,5 +1,5 @@
-/* analytic/reference_stage.h - small scenes that are built in code, and their pictures by the reference and
- * by the sheets. */
+/* analytic/reference_stage.h - small scenes that are built in code, and functions that render them by the
+ * reference and by the sheets. */
 #ifndef REFERENCE_STAGE_H
 #define REFERENCE_STAGE_H
 
@@ -30,8 +30,8 @@ void stage_open(stage *set);
 void stage_open_with(stage *set, const hl_context_options *options);
 void stage_close(stage *set);
 
-/* Adds a grid along the world's axes, whose box begins at `corner`. voxels: [k][j][i]; null: all are 1. Every
- * value is white, with an opacity of 0.5 per unit of length. The shading is "none". */
+/* Adds a grid along the world's axes, whose box begins at `corner`. voxels: [k][j][i]; null: all voxels are
+ * 1. Every value is white, with an opacity of 0.5 per unit of length. The shading is "none". */
 hl_scene_volume *stage_add_grid(stage *set, const size_t dimensions[3], const double spacing[3], vec3 corner,
                                 const float *voxels);
 /* Adds a grid of one voxel that fills the box. */
@@ -50,7 +50,8 @@ hl_light *stage_add_directional(stage *set, vec3 direction);
 hl_light *stage_add_point(stage *set, vec3 position);
 hl_light *stage_add_spot(stage *set, vec3 position, vec3 direction, double opening_deg, double falloff_deg);
 
-/* Makes a rectangle of two triangles around a centre. u, v: half of its sides. The caller owns it. */
+/* Makes a rectangle of two triangles around a centre. u, v: half of the rectangle's sides. The caller owns
+ * the mesh. */
 hl_mesh *stage_make_quad(stage *set, vec3 centre, vec3 u, vec3 v);
 
 /* pixels: [height][width][3], borrowed until all pictures are made. */
@@ -58,9 +59,9 @@ void stage_set_texture(hl_light *light, int width, int height, const float *pixe
                        vec3 up);
 
 void stage_look(stage *set, vec3 position, vec3 target, vec3 up);
-/* The ray through the centre of the pixel (x, y), as the scene format defines it. */
+/* Computes the ray through the centre of the pixel (x, y), as the scene format defines rays. */
 void stage_eye_ray(const stage *set, int x, int y, vec3 *origin, vec3 *direction);
-/* The length of the ray within the box. */
+/* Returns the length of the ray within the box. */
 double stage_chord(vec3 low, vec3 high, vec3 origin, vec3 direction);
 
 /* Renders by the reference. pixels: [height][width][4]. options: may be null. The test fails if rendering
@@ -68,14 +69,15 @@ double stage_chord(vec3 low, vec3 high, vec3 origin, vec3 direction);
 void stage_render(stage *set, const hl_reference_options *options, float *pixels);
 /* Renders by the reference, with 4 x 4 points on each light, or by the sheets. */
 void stage_render_by(stage *set, bool reference, float *pixels);
-/* Renders by the sheets. The first two functions make a renderer for the picture, and the second one returns
- * the work that was counted. The third uses the caller's renderer. */
+/* Three functions render by the sheets. stage_render_sheets() and stage_render_counted() make a renderer for
+ * the picture, and stage_render_counted() returns the work that was counted. stage_render_with() uses the
+ * caller's renderer. */
 void stage_render_sheets(stage *set, float *pixels);
 hl_render_statistics stage_render_counted(stage *set, float *pixels);
 void stage_render_with(stage *set, hl_renderer *renderer, float *pixels);
 
 /* Renders a picture with layers: by the reference with these options, or by the sheets if the options are
- * null. pixels: as above. */
+ * null. pixels: [height][width][4]. */
 void stage_render_layers(stage *set, const hl_reference_options *options, float *pixels,
                          const hl_layers *wanted);
 
@@ -84,7 +86,8 @@ void stage_refused(stage *set, const char *message);
 
 /* Smooth noise in [0, 1]: a sum of sines with a fixed pattern, the same on every machine. */
 float stage_noise(double x, double y, double z);
-/* A repeatable random number from 0 to 1, and a random unit vector. seed: may begin with any number. */
+/* stage_random() returns a repeatable random number from 0 to 1, and stage_random_direction() a random unit
+ * vector. seed: may begin with any number. */
 double stage_random(uint32_t *seed);
 vec3 stage_random_direction(uint32_t *seed);
 

@@ -14,7 +14,7 @@ static double transmittance(double opacity, double unit, double distance) {
 
 static const vec3 BOX_LOW = {-3, -2.5, -6}, BOX_HIGH = {4, 5, 2};
 
-/* A homogeneous box of several voxels whose edges have different lengths. */
+/* Adds a homogeneous box of several voxels whose edges have different lengths. */
 static void stage_homogeneous(stage *set) {
   hl_scene_volume *box = stage_add_grid(set, (size_t[3]){7, 5, 4}, (double[3]){1, 1.5, 2}, BOX_LOW, NULL);
   stage_set_opacity(set, box, 0.2, 1.7);
@@ -44,7 +44,7 @@ static void test_box_along_axis(void **state) {
   stage_close(&set);
 }
 
-/* An orthographic eye inside the box still sees all of it. */
+/* An orthographic eye inside the box still sees the whole box. */
 static void test_box_around_parallel_eye(void **state) {
   (void)state;
   stage set;
@@ -81,7 +81,7 @@ static void test_box_in_perspective(void **state) {
   set.scene.camera.fovy_deg = 55;
   stage_look(&set, (vec3){9, -8, 7}, (vec3){0, 1, -2}, (vec3){0, 0, 1});
   check_homogeneous(&set);
-  stage_look(&set, (vec3){1, 1, -1}, (vec3){3, 4, -2}, (vec3){0, 0, 1}); /* from within */
+  stage_look(&set, (vec3){1, 1, -1}, (vec3){3, 4, -2}, (vec3){0, 0, 1}); /* the eye is within the box */
   check_homogeneous(&set);
   stage_close(&set);
 }
@@ -136,7 +136,8 @@ static void test_overlapping_volumes(void **state) {
   float pixels[16 * 16 * 4];
   stage_render(&set, NULL, pixels);
   const float *middle = &pixels[4 * (8 * 16 + 8)];
-  /* from front to back: the blue box alone for 3 units, both boxes for 3, the red box alone for 1 */
+  /* from front to back, the ray passes 3 units of the blue box alone, 3 units of both boxes and 1 unit of the
+   * red box alone */
   double r = -log(0.7), b = -log(0.9), after_blue = exp(-3 * b), after_both = after_blue * exp(-3 * (r + b));
   double both = after_blue - after_both, red_alone = after_both * (1 - exp(-r));
   assert_near(middle[3], 1 - after_both * exp(-r), 1e-6);
@@ -172,8 +173,8 @@ static void test_lit_from_the_side(void **state) {
   stage_close(&set);
 }
 
-/* The light comes from the eye. The picture is the integral of sigma exp(-2 sigma z), with an error of the
- * second order in the step. */
+/* The light comes from the eye. The picture is the integral of sigma exp(-2 sigma z). The ray march's error
+ * is of the second order in the step. */
 static void test_lit_from_the_front(void **state) {
   (void)state;
   stage set;
@@ -192,7 +193,7 @@ static void test_lit_from_the_front(void **state) {
   }
   assert_near(error[1], 0, 1e-5);
   assert_near(error[0] / error[1], 4, 0.1);
-  /* the matter is so dense that all that is seen lies within one step */
+  /* the matter is so dense that the eye sees less than one step into it */
   stage_set_opacity(&set, box, 0.99, 0.1);
   stage_render(&set, NULL, pixels);
   assert_near(pixels[4 * (8 * 16 + 8)], 0.5, 1e-3);
@@ -217,8 +218,8 @@ static void test_inverse_square(void **state) {
 
 /* ---- shadows ---- */
 
-/* An opaque receiver with its surface at z = 0, which casts no shadow, and an opaque plate that the eye does
- * not see. */
+/* Adds an opaque receiver with its surface at z = 0, which casts no shadow, and an opaque plate that the eye
+ * does not see. */
 static void stage_plate(stage *set, vec3 low, vec3 high) {
   hl_scene_volume *receiver = stage_add_box(set, (vec3){-16, -16, -1}, (vec3){16, 16, 0});
   hl_scene_volume *plate = stage_add_box(set, low, high);
@@ -242,7 +243,8 @@ static void test_plate_under_point_light(void **state) {
   stage_render(&set, NULL, pixels);
   for (int y = 0; y < 64; y++)
     for (int x = 0; x < 64; x++) {
-      /* the point of the plate's lower and upper face on the way from the receiver's point to the light */
+      /* (pu, pv) and (qu, qv): where the way from the receiver's point to the light crosses the plate's lower
+       * and upper face */
       double u = (x + 0.5 - 32) / 2, v = (32 - y - 0.5) / 2, lower = 0.4, upper = 0.41;
       double pu = u + (1 - u) * lower, pv = v + (-1 - v) * lower;
       double qu = u + (1 - u) * upper, qv = v + (-1 - v) * upper, margin = 0.05;
@@ -254,15 +256,15 @@ static void test_plate_under_point_light(void **state) {
   stage_close(&set);
 }
 
-/* The fraction of a disk of radius 1 that has u < s. */
+/* Returns the fraction of a disk of radius 1 at which u < s. */
 static double disk_below(double s) {
   if (s <= -1) return 0;
   if (s >= 1) return 1;
   return 0.5 + (s * sqrt(1 - s * s) + asin(s)) / HL_PI;
 }
 
-/* A plate at the height 6 fills x < 0. Under its edge, the light's nearer part is hidden; hidden(x) is the
- * fraction. The plate is so thin that its two faces give nearly the same profile. */
+/* A plate at the height 6 fills x < 0. Under the plate's edge, a fraction of the light is hidden. hidden: the
+ * closed form of this fraction at x. The plate is so thin that its two faces give nearly the same profile. */
 static void check_penumbra(stage *set, double (*hidden)(double x), double tolerance) {
   static float pixels[64 * 2 * 4];
   set->scene.render.shadows = HL_SHADOWS_SOFT;
@@ -298,8 +300,8 @@ static void test_penumbra_of_directional_light(void **state) {
 }
 
 /* From here on the light stands around (0, 0, 14). A ray from (x, 0, 0) to (u, v, 14 + w) passes the height 6
- * at x + (u - x) 6 / (14 + w). It passes the edge if x (8 + w) + 6 u = 0. With u = s c and w = s d that is s
- * = -8 x / (6 c + d x). */
+ * at x + (u - x) 6 / (14 + w). The ray passes the plate's edge if x (8 + w) + 6 u = 0. For a point of the
+ * light at u = s c and w = s d, the ray passes the edge at s = -8 x / (6 c + d x). */
 static double edge_on_light(double x, double c, double d) { return -8 * x / (6 * c + d * x); }
 
 /* The disk that faces (x, 0, 0) contains the direction (14, 0, x). */
@@ -332,8 +334,8 @@ static void test_penumbra_of_disk(void **state) {
   stage_close(&set);
 }
 
-/* One edge of the light leaves the horizontal plane by 1 in 4. The other edge is parallel to the plate's
- * edge, so that it does not matter. */
+/* One edge of the light leaves the horizontal plane by 1 in 4. The light's other edge is parallel to the
+ * plate's edge, so that its length does not matter. */
 static double hidden_of_rect(double x) { return fmin(fmax(edge_on_light(x, 8, 2) + 0.5, 0), 1); }
 
 static void test_penumbra_of_rect(void **state) {
@@ -354,7 +356,7 @@ static void test_penumbra_of_rect(void **state) {
   }
 }
 
-/* An L of three squares whose sides are 5, around (0, 0, 14). */
+/* The light is an L of three squares whose sides are 5, around (0, 0, 14). */
 static double hidden_of_polygon(double x) {
   double s = fmin(fmax(edge_on_light(x, 1, 0), -5), 5);
   return s < 0 ? 10 * (s + 5) / 75 : (50 + 5 * s) / 75;

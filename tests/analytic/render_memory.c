@@ -1,5 +1,5 @@
-/* tests/analytic/render_memory.c - the memory of a frame: its estimate is enough and not much too large, and
- * a limit below it is refused before the frame begins. */
+/* tests/analytic/render_memory.c - the memory of a frame: the estimate is enough and not much too large, and
+ * a frame under a limit below the estimate is refused before the frame begins. */
 #include <setjmp.h>
 #include <stdarg.h>
 #include <stdlib.h>
@@ -13,7 +13,7 @@
 
 enum { SIDE = 320, EDGE = 64 };
 
-/* Noise over a plate, with matter everywhere in the picture. */
+/* Opens a scene of noise over a plate, with matter everywhere in the picture. */
 static void open_stage(stage *set, uint64_t limit) {
   static float voxels[EDGE * EDGE * EDGE];
   hl_context_options options;
@@ -53,7 +53,7 @@ static const variant variants[] = {
     {"mesh", HL_SHADOWS_HARD, 0, 1, false, false, false, false, true},
     {"mesh, cascade", HL_SHADOWS_SOFT, HL_SOFT_CASCADE, 1, false, false, false, false, true}};
 
-/* A board of many triangles under the volume. The caller releases it. */
+/* Makes a board of many triangles under the volume. The caller releases the mesh. */
 static hl_mesh *make_board(stage *set) {
   enum { N = 240 };
   static float positions[(N + 1) * (N + 1)][3];
@@ -92,7 +92,8 @@ static void set_up(stage *set, const variant *v) {
   }
 }
 
-/* Renders one frame; estimate and peak in bytes. */
+/* Renders one frame. estimate: the estimated memory, and peak: the most memory that the frame held, in
+ * bytes. */
 static hl_status render(const variant *v, uint64_t limit, uint64_t *estimate, uint64_t *peak,
                         hl_error *error) {
   static float pixels[SIDE * SIDE * 4], picture[SIDE * SIDE * 3], shadow[SIDE * SIDE * 3], depth[SIDE * SIDE],
@@ -126,8 +127,8 @@ static bool is_tight(const variant *v, uint64_t estimate, uint64_t peak) {
   return (double)estimate <= (v->mesh ? 1.5 : 1.25) * (double)peak;
 }
 
-/* On a busy machine a thread may wait through a whole frame, and then holds no fragments. So the estimate is
- * compared with the greatest peak of several frames. */
+/* On a busy machine a thread may wait through a whole frame, so that the thread holds no fragments. So the
+ * estimate is compared with the greatest peak of several frames. */
 static void estimates_hold(void **state) {
   (void)state;
   for (size_t n = 0; n < sizeof variants / sizeof *variants; n++) {
@@ -145,7 +146,8 @@ static void estimates_hold(void **state) {
   }
 }
 
-/* The estimate is enough. A limit below it is refused, with the numbers, before a sheet is begun. */
+/* The estimate is enough. A frame under a limit below the estimate is refused before a sheet is begun, and
+ * the message has both numbers. */
 static void frames_are_refused_beforehand(void **state) {
   (void)state;
   const variant *v = &variants[2];
@@ -161,8 +163,8 @@ static void frames_are_refused_beforehand(void **state) {
   assert_non_null(strstr(error.message, "make the picture smaller"));
 }
 
-/* The estimate for the volumes of a scene, some of which may have been made ready before. Afterwards the
- * volumes are made ready. */
+/* Returns the estimate of memory for the volumes of a scene, some of which may have been made ready before.
+ * Then the function makes the volumes ready. */
 static uint64_t prepare_bytes(stage *set, hl_pool *pool, prepared_volume *prepared) {
   const hot_functions *hot = hl_hot_functions(HL_INSTRUCTION_SET_SCALAR);
   hl_prepared_release_stale(set->context, &set->scene, prepared);
@@ -173,7 +175,8 @@ static uint64_t prepare_bytes(stage *set, hl_pool *pool, prepared_volume *prepar
   return counted.most;
 }
 
-/* If a volume's kernel or clip box changes, the volume is made ready anew. The estimate includes that memory.
+/* If a volume's kernel or clip box changes, the volume is made ready anew. The estimate includes the memory
+ * for the new preparation.
  */
 static void changed_volumes_count(void **state) {
   (void)state;

@@ -1,6 +1,6 @@
-/* analytic/sheets_bricks.c - fields in bricks that have the coefficients of a dense volume at level 0. They
- * give the dense volume's bytes by every method, also with masks, functions of two numbers, colours and
- * layers. */
+/* analytic/sheets_bricks.c - fields in bricks that have the coefficients of a dense volume at level 0.
+ * Pictures of such fields have the bytes of the dense volume's pictures by every method, also with masks,
+ * functions of two numbers, colours and layers. */
 #include <math.h>
 #include <setjmp.h>
 #include <stdarg.h>
@@ -20,8 +20,8 @@ enum { WIDE = 40, MOST_VOXELS = WIDE * WIDE * WIDE };
 
 /* ---- a dense volume in bricks ---- */
 
-/* The volume's voxel for a lattice point. Voxel n belongs to the point n + 1. Beyond the volume's faces, the
- * border voxels go on. */
+/* Fills a lattice's points with the volume's voxels. Voxel n belongs to the point n + 1. Beyond the volume's
+ * faces, the border voxels are repeated. */
 static void fill_from_voxels(void *data, int level, const ptrdiff_t first[3], const size_t count[3],
                              float *out) {
   const hl_volume *volume = data;
@@ -63,14 +63,14 @@ static hl_volume *in_bricks(hl_context *context, hl_volume *volume, int shift) {
   for (int a = 0; a < 3; a++) bricks.origin[a] = 1;
   assert_int_equal(hl_volume_take_bricks(context, &bricks, &grid, "bricks", &made, NULL), HL_OK);
   assert_null(bricks.directory);
-  made->colors = volume->colors; /* they are moved */
+  made->colors = volume->colors; /* the colours now belong to the new volume */
   volume->colors = NULL;
   return made;
 }
 
-/* Noise in a box of 20 units. blank: the number of layers of voxels at each face that are 0. A dense volume
- * adds weights of repeated voxels before it multiplies, so that its sums at the faces would be rounded
- * otherwise. */
+/* Adds noise in a box of 20 units. blank: the number of layers of voxels at each face that are 0. A dense
+ * volume adds the weights of repeated voxels before it multiplies. Without blank layers, its sums at the
+ * faces would be rounded in another way than the sums of bricks. */
 static hl_scene_volume *add_noise(stage *set, const size_t n[3], size_t blank) {
   static float voxels[MOST_VOXELS];
   double spacing[3];
@@ -87,7 +87,7 @@ static hl_scene_volume *add_noise(stage *set, const size_t n[3], size_t blank) {
   return made;
 }
 
-/* All voxels, rows and statistics are the same. */
+/* A volume in bricks has the same voxels, rows and statistics as the dense volume. */
 static void test_voxels(void **state) {
   (void)state;
   stage set;
@@ -125,8 +125,8 @@ static void draw_two(stage *set) {
   add_noise(set, (const size_t[3]){23, 40, 21}, 3);
 }
 
-/* Renders a scene with voxels and then with bricks. close: whether the pictures may differ as pictures of two
- * distances of sheets do. */
+/* Renders a scene with voxels and then with bricks. close: whether the pictures may differ by as much as
+ * pictures with two distances of sheets differ. */
 static void assert_same_in_bricks(stage *set, int shift, bool close, const char *what) {
   static float packed[FLOATS], made[FLOATS];
   set->scene.width = set->scene.height = SIDE;
@@ -183,8 +183,8 @@ static void test_layers(void **state) {
   stage_close(&set);
 }
 
-/* While a cut stays in its place, the tables that follow from it are kept for the next frame. They must be
- * right also if the lattice of the bricks lies half a voxel beside the voxels. */
+/* While a cut stays in its place, the tables that follow from it are kept for the next frame. These tables
+ * must be right also if the lattice of the bricks lies half a voxel beside the voxels. */
 static void test_kept_cut(void **state) {
   (void)state;
   static const hl_cut CUT = {.type = HL_CUT_PLANE, .normal = {0, 0, 1}};

@@ -1,5 +1,5 @@
 /* analytic/sheets_colour.c - the colours of pictures: flat shading, emission, scattering, and volumes that
- * are stretched along three axes. Closed forms, each tested on the sheets and on the reference. */
+ * are stretched along three axes. Each closed form is tested on the sheets and on the reference. */
 #include <stdlib.h>
 #include <string.h>
 
@@ -79,7 +79,7 @@ static void test_flat_casts_and_receives_no_shadow(void **state) {
 }
 
 /* All of a flat volume's colour is in its emission layer. Lights and ambient light add nothing, and no shadow
- * falls on it. */
+ * falls on a flat volume. */
 static void test_layers_of_flat_colours(void **state) {
   (void)state;
   static float pixels[PIXELS * 4], ambient[PIXELS * 3], emission[PIXELS * 3], picture[2][PIXELS * 3],
@@ -119,7 +119,8 @@ static void test_layers_of_flat_colours(void **state) {
 
 /* ---- emission ---- */
 
-/* No light shines on the medium. Its colour is c (ke + ka Ia) (1 - T), also if there are several sweeps. */
+/* No light shines on the medium. The medium's colour is c (ke + ka Ia) (1 - T), also if there are several
+ * sweeps. */
 static void test_emission_of_a_medium(void **state) {
   (void)state;
   static float pixels[PIXELS * 4];
@@ -170,8 +171,8 @@ static void test_emission_adds_to_light(void **state) {
 
 static const double STRETCH[3] = {1, 1.5, 0.5};
 
-/* A cut ball in a grid whose voxels have the given edges. The clip box is in the file's own world, so that it
- * is given in voxels there. */
+/* Adds a cut ball in a grid whose voxels have the given edges. The clip box is in the coordinates of the
+ * volume's file, so that it is multiplied by the voxels' edges. */
 static hl_scene_volume *add_ball(stage *set, const double spacing[3]) {
   enum { N = 16 };
   static float voxels[N * N * N];
@@ -215,7 +216,7 @@ static void test_three_scales_are_another_spacing(void **state) {
       for (int a = 0; a < 3; a++) spacing[a] = scaled ? 1 : (k == 3 ? 2 : 1) * STRETCH[a];
       hl_scene_volume *ball = add_ball(&set, spacing);
       if (scaled) memcpy(ball->axis_scale, STRETCH, sizeof STRETCH);
-      if (scaled && k == 3) ball->scale = 2; /* this scale multiplies each of the three */
+      if (scaled && k == 3) ball->scale = 2; /* the uniform scale multiplies each of the three scales */
       stage_render_by(&set, k == 2, pixels[scaled]);
       stage_close(&set);
     }
@@ -228,7 +229,8 @@ static void test_three_scales_are_another_spacing(void **state) {
 
 /* ---- colours that change within a slab ---- */
 
-/* A homogeneous medium whose values are the height z: green above STEP and red below, in ambient light alone.
+/* A homogeneous medium has the height z as its values. The medium is green above STEP and red below it, in
+ * ambient light alone.
  */
 static const double STEP = 0.3, TOP = 5, BOTTOM = -5;
 
@@ -255,8 +257,8 @@ static void open_two_colors(stage *set, double opacity, double from_behind) {
 }
 
 /* Green shows by the fraction 1 - T of the matter above the step, and red by the rest, wherever the step lies
- * between two sheets, from front to back and from back to front. The error is the one that equal weights
- * within the slab with the step give. */
+ * between two sheets, from front to back and from back to front. The tolerances are the errors that follow
+ * from equal weights of matter within the slab that contains the step. */
 static void test_step_of_colour_within_a_slab(void **state) {
   (void)state;
   static float pixels[PIXELS * 4];
@@ -281,7 +283,7 @@ static void test_step_of_colour_within_a_slab(void **state) {
 
 /* ---- the phase function ---- */
 
-/* Light is parallel, and so are the eye's rays. The light of a medium is then p = (1 - g^2) / (1 + g^2 - 2 g
+/* Light and the eye's rays are parallel. The light of a medium is then p = (1 - g^2) / (1 + g^2 - 2 g
  * cos)^1.5 times the light of a medium that scatters evenly, also in shadow. */
 static void test_phase_function_of_a_medium(void **state) {
   (void)state;

@@ -1,5 +1,5 @@
 /* analytic/sheets_contact.c - walls that stand on a floor. Behind a wall the floor is dark from the wall's
- * foot on. Before the wall it is lit up to the foot. The eye looks from above and from either side. */
+ * foot on. Before the wall the floor is lit up to the foot. The eye looks from above and from either side. */
 #include <string.h>
 
 #include "../asserts.h"
@@ -15,7 +15,7 @@ typedef enum wall { SHEET, BOX_WITHOUT_BOTTOM, CUT_BOX, THROUGH_THE_FLOOR, JOINE
 
 static bool is_box(wall kind) { return kind == BOX_WITHOUT_BOTTOM || kind == CUT_BOX; }
 
-/* The direction of a sun, or the place of a lamp. */
+/* A light of the test: a sun or a lamp. */
 typedef struct shining {
   vec3 at; /* a sun's direction or a lamp's place */
   bool parallel;
@@ -91,9 +91,9 @@ static void add_wall(mesh_stage *all, wall kind) {
   mesh_stage_describe(all, &d)->smooth = kind != JOINED;
 }
 
-/* The light that is known at the point where a ray of the eye ends; -1: it is not known. */
+/* Returns the light that the point at the end of an eye ray must have; -1: the light there is not known. */
 static double expected(const shining *light, wall kind, double margin, vec3 eye, vec3 way) {
-  /* side: of the wall, that the eye sees */
+  /* side: -1 or 1, the side of the wall that the eye sees */
   const double thick = is_box(kind) ? THIN : 0, side = way.y > 0 ? -1 : 1;
   double to_wall = (PLACE + side * thick - eye.y) / way.y, to_floor = -eye.z / way.z;
   vec3 met = vec3_add(eye, vec3_scale(way, to_wall)), at = vec3_add(eye, vec3_scale(way, to_floor));
@@ -112,9 +112,9 @@ static double expected(const shining *light, wall kind, double margin, vec3 eye,
   return vec3_normalise(to).z;
 }
 
-/* Asserts that a pixel is lit, or dark, if that is known at its middle and its four corners. If a wall goes
- * through the floor, the wall's two triangles and the floor cross in one pixel. Samples of the pixel may then
- * go to the wrong one, so that such pixels are left out. */
+/* Asserts that a pixel is lit or dark, if its light is known at its middle and its four corners. If a wall
+ * goes through the floor, the wall's two triangles and the floor cross in one pixel. Samples of such a pixel
+ * may go to the wrong triangle, so that these pixels are left out. */
 static void check(const stage *set, const shining *light, wall kind, double margin, const float *pixels) {
   int dark = 0, lit = 0, crossed = 0;
   for (int i = 0; i < PIXELS; i++) {
@@ -165,7 +165,7 @@ static vec3 direction(double elevation_deg, double azimuth_deg) {
   return (vec3){sin(a) * cos(e), cos(a) * cos(e), sin(e)};
 }
 
-/* Hard shadows of walls of every kind, under suns that stand behind the wall and beside it. */
+/* Walls of every kind cast hard shadows under suns that stand behind the wall and beside it. */
 static void test_hard(void **state) {
   (void)state;
   for (int kind = 0; kind < WALLS; kind++)
@@ -175,7 +175,7 @@ static void test_hard(void **state) {
     }
 }
 
-/* The same walls under a near light. */
+/* Walls cast hard shadows under a near lamp. */
 static void test_near_light(void **state) {
   (void)state;
   for (int k = 0; k < 4; k++) {
@@ -184,7 +184,7 @@ static void test_near_light(void **state) {
   }
 }
 
-/* The same walls with soft shadows, by each method. */
+/* Walls cast soft shadows, by each method. */
 static void test_soft(void **state) {
   (void)state;
   for (int shadows = 1; shadows <= 3; shadows++)

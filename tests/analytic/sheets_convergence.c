@@ -10,7 +10,7 @@
 
 enum { N = 24, SIDE = 48, FLOATS = SIDE * SIDE * 4 };
 
-/* A blob that fades out well inside its box, with a smooth transfer function. */
+/* Adds a blob that fades out well inside its box, with a smooth transfer function. */
 static void stage_blob(stage *set) {
   static const hl_opacity_point ramp[] = {{0, 0}, {1, 0.25}};
   static const hl_color_point color[] = {{0, {0.9, 0.5, 0.3}}, {1, {0.4, 0.7, 0.9}}};
@@ -34,7 +34,7 @@ static void stage_blob(stage *set) {
   set->scene.ambient[0] = set->scene.ambient[1] = set->scene.ambient[2] = 0.1;
 }
 
-/* The root mean square difference from a picture whose sheets are sixteen times finer than the voxels. */
+/* Returns the root mean square difference from a picture with sixteen sheets for each voxel. */
 static double error_at(stage *set, double spacing, const float *finest) {
   static float pixels[FLOATS];
   double sum = 0;

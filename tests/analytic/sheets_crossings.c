@@ -12,14 +12,14 @@ typedef struct line {
   double nx, ny, x0, y0;
 } line;
 
-/* The distance by which a point lies in front of the line, in world units. column, row: in pixels, which are
- * half a unit wide. */
+/* Returns the distance by which a point lies in front of the line, in world units. column, row: in pixels,
+ * which are half a unit wide. */
 static double ahead_of(const line *line, double column, double row) {
   return line->nx * ((column - SIDE / 2) * 0.5 - line->x0) + line->ny * ((SIDE / 2 - row) * 0.5 - line->y0);
 }
 
-/* The fraction of the square [0, 1]^2 that has a x + b y > c, for a and b that are not negative. Derived: the
- * area below the line is a triangle without its parts beyond the square. */
+/* Returns the fraction of the square [0, 1]^2 in which a x + b y > c. a, b: not negative. The area below the
+ * line is a triangle without its parts beyond the square. */
 static double fraction_beyond(double a, double b, double c) {
   if (a < 1e-9 || b < 1e-9) return fmin(fmax(1 - c / (a + b), 0), 1);
   double below = fmax(c, 0) * fmax(c, 0) - fmax(c - a, 0) * fmax(c - a, 0) - fmax(c - b, 0) * fmax(c - b, 0) +
@@ -27,18 +27,19 @@ static double fraction_beyond(double a, double b, double c) {
   return 1 - below / (2 * a * b);
 }
 
-/* The fraction of a pixel in front of a line. */
+/* Returns the fraction of a pixel that lies in front of a line. */
 static double fraction_of_pixel(const line *line, int x, int y) {
   return fraction_beyond(fabs(line->nx) * 0.5, fabs(line->ny) * 0.5,
                          -ahead_of(line, x + (line->nx < 0), y + (line->ny > 0)));
 }
 
-/* If a sample is nearer to a line than this, rounding decides on which side it lies; world units. Corners lie
- * on a grid of 256 parts of a pixel. The corners of the boards of two triangles lie on it exactly. */
+/* Returns the distance from a line, in world units, within which rounding decides on which side of the line a
+ * sample lies. Corners of triangles are rounded to a grid of 1/256 of a pixel. The corners of boards of two
+ * triangles lie on this grid exactly. */
 static double doubt(int fine) { return fine > 1 ? 3e-3 : 1e-4; }
 
-/* The same fraction by the pixel's sixteen samples. *sure: whether all samples are farther from the line than
- * `doubt`. */
+/* Returns the fraction of the pixel's sixteen samples that lie in front of a line. *sure: whether all samples
+ * are farther from the line than `doubt`. */
 static double fraction_of_samples(const line *line, int x, int y, double doubt, bool *sure) {
   double count = 0;
   *sure = true;
@@ -50,7 +51,8 @@ static double fraction_of_samples(const line *line, int x, int y, double doubt, 
   return count / 16;
 }
 
-/* A board of n by n squares, each of two triangles, through a point. by_x, by_y: the slopes of its height. */
+/* Adds a board of n by n squares, each of two triangles, through a point. by_x, by_y: the slopes of the
+ * board's height. */
 static hl_scene_mesh *add_board(mesh_stage *all, int n, vec3 at, double by_x, double by_y) {
   size_t vertices = (size_t)(n + 1) * (size_t)(n + 1), count = 2 * (size_t)n * (size_t)n;
   float(*positions)[3] = malloc(vertices * sizeof *positions);
@@ -120,15 +122,15 @@ static void test_two_boards(void **state) {
       crossed++;
     }
     assert_true(crossed > 40);
-    /* with stairs in place of a smooth line this would be 0.25 or more */
+    /* a line with stairs would have an error of 0.25 or more */
     assert_near(sqrt(squares / crossed), 0, 0.06);
     assert_near(sum, expected_sum, 1.5);
     mesh_stage_close(&all);
   }
 }
 
-/* The colour of a sample of three boards, each of which has one channel, composited in the order of their
- * heights at this sample. */
+/* Computes the colour of a sample of three boards, each of which has one channel. The boards are composited
+ * in the order of their heights at the sample. */
 static void composite_boards(const double height[3], const double opacity[3], double color[3]) {
   double left = 1;
   bool done[3] = {false, false, false};
@@ -189,8 +191,9 @@ static void test_three_boards(void **state) {
   }
 }
 
-/* A white and a black triangle lie in one plane along the sheets. Their fragments have the same height. They
- * share pixels by samples, wherever the sheets begin. */
+/* A white and a black triangle lie in one plane along the sheets. The fragments of the triangles have the
+ * same height. Each pixel at the triangles' common edge is divided by its samples, wherever the sheets
+ * begin. */
 static void test_one_height(void **state) {
   (void)state;
   static float pixels[PIXELS * 4];
@@ -222,10 +225,10 @@ static void test_one_height(void **state) {
   }
 }
 
-/* A black board hangs from the edge of a white one, nearly along the view's rays. The places of its corners
- * in the picture are rounded, so that it may cover samples of the white board. There it is behind the white
- * board, whatever heights its plane has so far from its own triangles. The white board's edge lies on the
- * grid to which corners are rounded. */
+/* A black board hangs from the edge of a white one, nearly along the view's rays. The black board's corners
+ * in the picture are rounded, so that the black board may cover samples of the white board. At such samples
+ * the black board counts as behind the white board, whatever height its extended plane has there. The white
+ * board's edge lies on the grid to which corners are rounded. */
 static void test_fold(void **state) {
   (void)state;
   static float pixels[PIXELS * 4];

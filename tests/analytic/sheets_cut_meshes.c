@@ -28,7 +28,7 @@ static hl_scene_mesh *add_sphere(mesh_stage *all, double radius) {
   return mesh_stage_add(all, made);
 }
 
-/* A closed ball of triangles: rings of latitude, with the poles at +-z. */
+/* Adds a closed ball of triangles in rings of latitude, with the poles at +-z. */
 static hl_scene_mesh *add_ball(mesh_stage *all, double radius) {
   enum { RINGS = 32, ROUND = 64 };
   static float positions[(RINGS - 1) * ROUND + 2][3];
@@ -63,7 +63,7 @@ static double pixel_y(int i) { return -(i / SIDE + 0.5 - SIDE / 2) * 0.5; }
 
 /* ---- coverage ---- */
 
-/* The area of the part of a disk beyond a line at the distance x from its middle. */
+/* Returns the area of the part of a disk beyond a line at the distance x from the disk's middle. */
 static double segment(double radius, double x) {
   return radius * radius * acos(x / radius) - x * sqrt(radius * radius - x * x);
 }
@@ -102,7 +102,7 @@ static void test_half_a_ball(void **state) {
 }
 
 /* A translucent sphere is cut by a sphere around its front pole, by a box, or by all but a box. Pixels within
- * the cut show one side of the sphere, or none if both sides are cut. */
+ * the cut show one side of the sphere, or nothing if both sides are cut. */
 static void test_holes(void **state) {
   (void)state;
   static float pixels[PIXELS * 4];
@@ -133,8 +133,8 @@ static void test_holes(void **state) {
 
 /* ---- light ---- */
 
-/* A bowl, half of an opaque ball, shows its inside to the eye and the light. The inside is lit by N.L, and
- * does not shade itself. */
+/* A bowl, half of an opaque ball, shows its inside to the eye and the light. The brightness of the inside is
+ * N.L: the bowl does not shade itself. */
 static void test_inside_of_a_bowl(void **state) {
   (void)state;
   static float pixels[PIXELS * 4];
@@ -157,9 +157,9 @@ static void test_inside_of_a_bowl(void **state) {
   }
 }
 
-/* Slanting light falls into a bowl. A point of its wall is lit as N.L says if the ray to the light leaves
- * through the opening, and dark if the ray meets the wall. Derived: a ray from a point of a ball at which N.L
- * = s meets the ball again after 2 R s. */
+/* Slanting light falls into a bowl. A point of the bowl's wall has the brightness N.L if the ray to the light
+ * leaves through the opening, and is dark if the ray meets the wall. Derived: a ray from a point of a ball at
+ * which N.L = s meets the ball again after 2 R s. */
 static void test_wall_within(void **state) {
   (void)state;
   static float pixels[PIXELS * 4];
@@ -199,8 +199,8 @@ static void test_wall_within(void **state) {
   }
 }
 
-/* A sphere lets a part of the light through. It looks the same whether its own colour says so or its mesh's
- * opacity. */
+/* A sphere lets a part of the light through. The sphere looks the same whether the alpha of its own colour or
+ * the mesh's opacity makes it translucent. */
 static void test_wall_of_a_clear_sphere(void **state) {
   (void)state;
   static float pixels[2][PIXELS * 4];
@@ -273,7 +273,7 @@ static void test_light_of_fields(void **state) {
       stage_add_directional(&all.set, (vec3){0, 0.1, -1});
       all.set.scene.render.shadows = HL_SHADOWS_HARD;
       if (k == 0) all.set.scene.sky.type = HL_SKY_UNIFORM;
-      cut(&all, &plane, 1); /* the haze ends at the cut, so that no haze is cut */
+      cut(&all, &plane, 1); /* the haze ends at the cut, so that the cut removes no haze */
       stage_render_sheets(&all.set, pixels[run]);
       mesh_stage_close(&all);
     }
@@ -290,8 +290,8 @@ static void test_light_of_fields(void **state) {
 /* ---- scenes that cuts leave whole ---- */
 
 /* One plane cuts two boards over a floor into halves. The first board and the floor are set not to be cut.
- * The eye sees the floor everywhere and the boards nowhere. By the sheets and by the reference, one board
- * shades the floor with its whole area, and the other with half of it. */
+ * The eye sees the floor everywhere and the boards nowhere. By the sheets and by the reference, the uncut
+ * board shades the floor with its whole area, and the cut board with half of its area. */
 static void test_whole_meshes(void **state) {
   (void)state;
   static float pixels[PIXELS * 4];
@@ -341,7 +341,7 @@ static void open_scenery(mesh_stage *all, int side) {
   all->meshes[2].translate[0] = -7;
   stage_add_directional(&all->set, (vec3){0.3, -0.4, -1});
   all->set.scene.render.shadows = HL_SHADOWS_HARD;
-  /* with fine pixels the strip near the mesh in which shade begins late is thin */
+  /* shadows begin a little behind a mesh, and fine shadow pixels make this strip thin */
   all->set.scene.render.shadow_resolution = 512;
   all->set.scene.camera.type = HL_CAMERA_PERSPECTIVE;
   all->set.scene.camera.fovy_deg = 25;
@@ -373,7 +373,7 @@ static void test_against_the_reference(void **state) {
 }
 
 /* One renderer draws a scene whole, cut, cut elsewhere, with one mesh that is not cut, and whole again, by
- * one thread or seven. Each picture is the one that a new renderer makes. */
+ * one thread or seven. Each picture has the bytes of a new renderer's picture. */
 static void test_kept_between_frames(void **state) {
   (void)state;
   static float fresh[PIXELS * 4], kept[PIXELS * 4], before[PIXELS * 4];

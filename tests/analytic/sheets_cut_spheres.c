@@ -7,13 +7,13 @@ enum { SIDE = 128, PIXELS = SIDE * SIDE };
 
 static const double RADIUS = 12, FLOOR_EDGE = 40, BAND = 9;
 
-/* A cut ball: the height of its middle above the floor, and its cuts. */
+/* A cut ball: the height of the ball's middle above the floor, and the cut. */
 typedef struct cut_ball {
   double height;
   hl_cut cut;
 } cut_ball;
 
-/* A bowl, half of a ball, most of a ball with a slanted cut, and a dome. */
+/* The balls are a bowl, half of a ball, most of a ball with a cut by a sphere, and a dome. */
 static const cut_ball BALLS[] = {
     {12, {.type = HL_CUT_PLANE, .point = {0, 0, 14}, .normal = {0, 0, 1}}},
     {12, {.type = HL_CUT_PLANE, .point = {0.3, 0, 0}, .normal = {1, 0.3, 0}}},
@@ -43,8 +43,8 @@ static bool is_left(const hl_cut *cut, vec3 point) {
   return vec3_dot(vec3_subtract(point, vec3_of(cut->point)), vec3_of(cut->normal)) <= 0;
 }
 
-/* The distance along a ray of unit direction at which it meets the rest of the ball; infinite if it meets
- * nothing. */
+/* Returns the distance along a ray of unit direction at which the ray meets the rest of the ball; infinite if
+ * the ray misses the ball. */
 static double distance_to(const cut_ball *ball, vec3 from, vec3 way) {
   vec3 away = vec3_subtract(from, (vec3){0, 0, ball->height});
   double along = vec3_dot(away, way), square = along * along - vec3_dot(away, away) + RADIUS * RADIUS;
@@ -55,7 +55,7 @@ static double distance_to(const cut_ball *ball, vec3 from, vec3 way) {
   return INFINITY;
 }
 
-/* Whether all of the floor's points within a margin of a point are dark, all are lit, or neither. */
+/* Whether the floor's points within a margin of a point are all dark, all lit, or of either kind. */
 typedef enum shade { DARK, LIT, UNKNOWN } shade;
 
 static shade shade_of(const cut_ball *ball, vec3 at, vec3 sun, double margin) {
@@ -67,8 +67,8 @@ static shade shade_of(const cut_ball *ball, vec3 at, vec3 sun, double margin) {
   return lit == 0 ? DARK : lit == 8 ? LIT : UNKNOWN;
 }
 
-/* The point of the floor that a pixel shows, if it is near the place of the ball and the whole pixel shows
- * the floor; else returns false. */
+/* Finds the point of the floor that a pixel shows. Returns false if this point is not near the ball or the
+ * pixel shows other things than the floor. */
 static bool floor_of_pixel(const stage *set, const cut_ball *ball, int x, int y, vec3 *at) {
   for (int k = 0; k < 5; k++) {
     vec3 eye, right, down, way, unused;
@@ -137,7 +137,7 @@ static void test_hard(void **state) {
   assert_near(render_all(0).most, 0, 1e-6);
 }
 
-/* Soft shadows by the cascade and by sub-lights. */
+/* The cascade's and the sub-lights' soft shadows leave the dark pixels dark. */
 static void test_soft(void **state) {
   (void)state;
   for (int shadows = 1; shadows <= 3; shadows += 2) assert_near(render_all(shadows).most, 0, 0.02);

@@ -1,6 +1,6 @@
 /* analytic/sheets_cuts.c - planes, boxes and spheres that cut a volume, by the sheets and by the reference.
- * What is left of even matter is known by its length along rays. Cut faces under light, and shadows of matter
- * that is cut away. */
+ * The alpha of even matter follows from the length that cuts leave of each ray. Other tests are about cut
+ * faces under light, and about shadows of matter that is cut away. */
 #include <setjmp.h>
 #include <stdarg.h>
 #include <stdlib.h>
@@ -21,7 +21,7 @@ static void open_stage(stage *set, const hl_context_options *options) {
   stage_look(set, (vec3){23, 41, 60}, (vec3){0, 0, 0}, (vec3){0, 1, 0});
 }
 
-/* A cube of even matter around the origin. */
+/* Adds a cube of even matter around the origin. */
 static hl_scene_volume *add_cube(stage *set, double opacity) {
   hl_scene_volume *cube = stage_add_grid(set, (size_t[3]){VOXELS, VOXELS, VOXELS}, (double[3]){1, 1, 1},
                                          (vec3){-HALF, -HALF, -HALF}, NULL);
@@ -107,7 +107,7 @@ static void test_lengths(void **state) {
 
 /* ---- the same box by a clip box and by cuts ---- */
 
-/* The root mean square difference of two pictures. If two scenes have other content, their sheets lie
+/* Returns the root mean square difference of two pictures. If two scenes have other content, their sheets lie
  * elsewhere, and single pixels at edges differ by more. */
 static double difference(const float *a, const float *b) {
   double sum = 0;
@@ -166,7 +166,7 @@ static void test_as_a_clip_box(void **state) {
     stage_close(&set);
     print_message("# method %d, shading %d: planes differ from a clip box by %.5f, a box by %.5f\n", method,
                   shading, difference(planes, clipped), difference(box, clipped));
-    /* by the gradient, normals change within a voxel */
+    /* normals of gradients change within a voxel */
     double most = shading == HL_CUT_SHADING_GRADIENT ? 0.003 : 0.004;
     assert_true(difference(planes, clipped) < most);
     assert_true(difference(box, clipped) < most);
@@ -183,7 +183,7 @@ static void turn(hl_scene_volume *volume) {
   memcpy(volume->translate, aside, sizeof aside);
 }
 
-/* The place of a point of the world in the file of a turned volume. */
+/* Converts a point of the world to the file coordinates of a turned volume. */
 static vec3 unturned(const hl_scene_volume *volume, vec3 p) {
   vec3 axis = vec3_normalise(vec3_of(volume->rotate_axis));
   mat3 back = mat3_rotation(axis, -volume->rotate_angle_deg * HL_PI / 180);
@@ -195,8 +195,8 @@ static const hl_cut IN_WORLD[] = {
     {.type = HL_CUT_SPHERE, .center = {-3, 4, -5}, .radius = 4},
     {.type = HL_CUT_BOX, .min = {-9, -7, -11}, .max = {7, 11, 9}, .keep = HL_CUT_KEEP_INSIDE}};
 
-/* Shapes that stand straight in the world, among them a box, cut a turned cube of even matter. The lengths of
- * rays are counted by points. */
+/* Shapes that stand straight in the world, among them a box, cut a turned cube of even matter. The length of
+ * matter along a ray is found by counting points. */
 static void test_scene_cuts_in_the_world(void **state) {
   (void)state;
   enum { STEPS = 20000 };
@@ -227,8 +227,8 @@ static void test_scene_cuts_in_the_world(void **state) {
   stage_close(&set);
 }
 
-/* Two volumes, one of them turned. The scene's cuts and the same cuts of each volume give the same picture
- * and shadows, except for rounding. */
+/* The scene has two volumes, one of them turned. The scene's cuts and the same cuts of each volume give the
+ * same picture and shadows, except for rounding. */
 static void test_scene_cuts_as_cuts_of_each_volume(void **state) {
   (void)state;
   static float by_scene[FLOATS], by_volumes[FLOATS];
@@ -267,9 +267,10 @@ static void test_scene_cuts_as_cuts_of_each_volume(void **state) {
 
 /* ---- light ---- */
 
-/* Dense even matter has no gradient, so that only cut faces give it a normal. A medium is lit by the light
- * that is left where the eye sees it: 1 / (1 + r), r = c / g, with the cosines c of the eye and g of the
- * light (derived, as in sheets_faces.c). A face is a surface, lit by all of the light at its outside. */
+/* Dense even matter has no gradient, so that only cut faces give it a normal. Matter without faces is a
+ * medium, whose brightness is 1 / (1 + r), r = c / g, with the cosines c of the eye and g of the light
+ * (derived as in sheets_faces.c). A face is a surface, which gets all of the light that arrives at its
+ * outside. */
 static void test_faces_by_their_own_normal(void **state) {
   (void)state;
   static float pixels[FLOATS];
@@ -304,7 +305,7 @@ static int by_size(const void *a, const void *b) {
 }
 
 /* A face that cuts dense matter is evenly lit at any angle to the eye, down to 5 degrees. Without shadows,
- * its brightness is the cosine of its angle to the light. */
+ * the face's brightness is the cosine of its angle to the light. */
 static void test_even_at_any_angle(void **state) {
   (void)state;
   enum { FINE = 96 };
@@ -347,7 +348,7 @@ static void test_even_at_any_angle(void **state) {
   }
 }
 
-/* A cube of matter with noise (standard deviation 3 %), cut by a plane. opacity: [2]. */
+/* Adds a cube of matter with noise (standard deviation 3 %), cut by a plane. opacity: [2]. */
 static hl_scene_volume *add_noisy_cube(stage *set, const hl_opacity_point *opacity, const hl_cut *plane) {
   static float voxels[VOXELS * VOXELS * VOXELS];
   uint32_t seed = 7;
@@ -389,8 +390,8 @@ static void stage_face(stage *set, const lit_face *face, const hl_opacity_point 
   set->scene.render.soft_method = (hl_soft_method)face->method;
 }
 
-/* The greatest deviation of the face's pixels from the cosine of its angle to the light, as a fraction of the
- * cosine. The thousandth of the pixels that deviates most is left out. */
+/* Returns the greatest deviation of the face's pixels from the cosine of its angle to the light, as a
+ * fraction of the cosine. The thousandth of the pixels that deviates most is left out. */
 static double deviation_of_face(const lit_face *face, const hl_opacity_point *opacity, bool reference) {
   static float pixels[FACE_SIDE * FACE_SIDE * 4];
   static double errors[FACE_SIDE * FACE_SIDE];
@@ -431,8 +432,9 @@ static void test_even_in_grazing_light(void **state) {
   assert_true(deviation_of_face(&(lit_face){70, 15, -1}, functions[1], true) < 0.03);
 }
 
-/* A border of the grid is such a face, too. Without shadows, each side of a cube of even matter is evenly as
- * bright as its cosine to the light. So is each side of a cube that is cropped out of a larger grid of noise.
+/* A border of the grid counts as a face, too. Without shadows, the brightness of each side of a cube of even
+ * matter is the cosine of its angle to the light. The same holds for each side of a cube that is cropped out
+ * of a larger grid of noise.
  */
 static void test_border_of_the_grid(void **state) {
   (void)state;
@@ -472,8 +474,8 @@ static void test_border_of_the_grid(void **state) {
   }
 }
 
-/* Thin matter, seen along -z and lit along x. The half at lower x is cut away. The eye sees a sample at x
- * through the light's way x, or x + HALF if the cut matter casts its shadow. */
+/* Thin matter is seen along -z and lit along x, and its half at lower x is cut away. The light passes a
+ * length x of matter before it arrives at a sample at x, or x + HALF if the cut matter casts its shadow. */
 static void test_shadow_of_what_is_cut_away(void **state) {
   (void)state;
   static float pixels[FLOATS];
@@ -504,9 +506,9 @@ static void test_shadow_of_what_is_cut_away(void **state) {
 
 /* ---- isosurfaces ---- */
 
-/* The faces of cuts close a ball's surface. With an opacity of one half, the eye looks through a near and a
- * far part, 1 - 0.5^2, wherever the ball is cut. If the ball is opaque, a face is as bright as the cosine of
- * its own normal. */
+/* The faces of cuts close a ball's surface. With an opacity of one half, the eye's ray crosses the closed
+ * surface twice, so that alpha is 1 - 0.5^2 wherever the ball is cut. If the ball is opaque, a face is as
+ * bright as the cosine of its own normal. */
 static void test_isosurface(void **state) {
   (void)state;
   static float voxels[VOXELS * VOXELS * VOXELS], pixels[FLOATS];
@@ -547,7 +549,7 @@ static void test_isosurface(void **state) {
       const double expected = opaque ? cosine : 0.75, found = (double)pixels[4 * p + (opaque ? 0 : 3)];
       if (!(fabs(found - expected) <= (!opaque ? 0.002
                                        : k < 2 ? 0.01
-                                               : 0.02))) /* a pixel is the mean over its width of 0.95 */
+                                               : 0.02))) /* a pixel, 0.95 wide, is the mean over its area */
         fail_msg("cut %zu, reference %d, (%.2f, %.2f): %.4f is not %.4f", k, by_reference, origin.x, origin.y,
                  found, expected);
     }

@@ -1,5 +1,5 @@
-/* analytic/sheets_edges.c - a long box without normals has edges, although its short faces are a small part
- * of the area at its corners. So its faces are evenly lit. */
+/* analytic/sheets_edges.c - a long box without normals has creases, although its short faces are a small part
+ * of the area at its corners. So the box's faces are evenly lit. */
 #include "../asserts.h"
 #include "mesh_stage.h"
 

@@ -8,7 +8,8 @@
 
 enum { WIDE = 160, ROWS = 6, SIDE = 48, SMALL = 16, IMAGE = 32 };
 
-/* An opaque floor with its surface at z = 0, seen from straight above. It casts no shadow. */
+/* Opens a scene of an opaque floor with its surface at z = 0, seen from straight above. The floor casts no
+ * shadow. */
 static void stage_floor(stage *set, int width, int height, double across) {
   hl_scene_volume *floor = stage_add_grid(set, (size_t[3]){40, 40, 2}, (double[3]){1, 1, 1},
                                           (vec3){-20, -20, -2}, NULL);
@@ -22,14 +23,15 @@ static void stage_floor(stage *set, int width, int height, double across) {
   stage_look(set, (vec3){0, 0, 100}, (vec3){0, 0, 0}, (vec3){0, 1, 0});
 }
 
-/* The distance of the sheets, in thicknesses of the plates, if light from straight above makes sheets
- * parallel to the plates: a plate that is thinner than a slab counts as if it filled the slab. With sheets 2,
- * 1 and 0.5 thicknesses apart, the errors of the two colours were .032, .026 and .024 (cascade) and .018,
- * .011 and .009 (sub-lights). The colours behind the pin hole, which should be 1, were 1.06 to 1.07, 1.01
- * to 1.04 and .97 to .99 (cascade). */
+/* The distance of the sheets, in thicknesses of the plates, for light from straight above. Sheets are then
+ * parallel to the plates, and a plate that is thinner than a slab counts as if it filled the slab. With
+ * sheets 2, 1 and 0.5 thicknesses apart, the errors of the two colours were .032, .026 and .024 (cascade) and
+ * .018, .011 and .009 (sub-lights). With these distances, the colours behind the pin hole, which should be 1,
+ * were 1.06 to 1.07, 1.01 to 1.04 and .97 to .99 (cascade). */
 static const double PARALLEL_SPACING = 0.5;
 
-/* An opaque plate that the eye does not see, an eighth of a unit thick. height: of its middle. */
+/* Adds an opaque plate that the eye does not see, an eighth of a unit thick. height: of the plate's
+ * middle. */
 static void add_plate(stage *set, double x0, double x1, double y0, double y1, double height) {
   hl_scene_volume *plate = stage_add_grid(
       set, (size_t[3]){(size_t)ceil(x1 - x0), (size_t)ceil(y1 - y0), 1},
@@ -52,8 +54,8 @@ static void set_emission(hl_light *light, int side, const float *pixels) {
   light->emission.width = light->emission.height = side;
 }
 
-/* An image with a red and a blue half, or with quarters of red, green, blue and white in the order of
- * reading. */
+/* halves() returns an image with a red and a blue half. quarters() returns an image with a red, a green, a
+ * blue and a white quarter, in rows from the upper left. */
 static const float *halves(void) {
   static float pixels[IMAGE * IMAGE * 3];
   for (int i = 0; i < IMAGE * IMAGE; i++) pixels[3 * i + (i % IMAGE < IMAGE / 2 ? 0 : 2)] = 1;
@@ -69,9 +71,9 @@ static const float *quarters(void) {
   return pixels;
 }
 
-/* Beyond the edge of a plate, the light's right half, which is blue, rises on one side, and the left half on
- * the other. Each rises over half of the width of equation (5). The light is 6 wide at the height 24, and the
- * plate is at 8. From x, the part of the light right of -2 x is seen. */
+/* Beyond the edge of a plate, the light's right half, which is blue, rises on one side, and the light's left
+ * half rises on the other side. Each colour rises over half of the width of equation (5). The light is 6 wide
+ * at the height 24, and the plate is at the height 8. From x, the part of the light right of -2 x is seen. */
 static void check_two_colors(hl_soft_method method, int samples, bool reference, double tolerance) {
   static float pixels[WIDE * ROWS * 4];
   int wide = reference ? WIDE / 4 : WIDE;
@@ -110,8 +112,8 @@ static void test_two_colors_over_an_edge(void **state) {
 }
 
 /* A pin hole shows the light upside down and half as large. The light is 12 wide at 24, and the hole is 1
- * wide at 8. From the middle of a quarter's picture, the hole shows 3 x 3 units of the light, which is about
- * nine of its 12 x 12 parts. */
+ * wide at 8. From the middle of a quarter's picture, the hole shows 3 x 3 units of the light, which are about
+ * nine of its 12 x 12 sub-lights. */
 static void render_camera(hl_soft_method method, int samples, const float *image, float *pixels) {
   stage set;
   stage_open(&set);
@@ -148,15 +150,16 @@ static void check_camera(hl_soft_method method, int samples) {
     }
   }
   for (int i = 0; i < SIDE; i++) {
-    /* beyond 4.25: half of the picture, 3, its blur by the hole, 0.75, and by a twelfth of the light, 0.5 */
+    /* beyond 4.25 the floor is dark: half of the picture is 3, the hole blurs it by 0.75, and a twelfth of
+     * the light blurs it by 0.5 */
     double x = fabs(-6 + (i + 0.5) * 12 / SIDE);
     for (int c = 0; c < 3 && x > 4.25; c++)
       assert_near((double)pixels[4 * (SIDE * SIDE / 2 + i) + c], 0, 0.03);
   }
 }
 
-/* The paper's convolutions add variances, so that the picture is too small. But they add means rightly: the
- * middle of each colour lies 1.5 from the hole's middle. */
+/* The paper's convolutions add variances, so that the picture is too small. But the convolutions add means
+ * rightly, so that the middle of each colour lies 1.5 from the hole's middle. */
 static void check_camera_of_paper(void) {
   static float pixels[SIDE * SIDE * 4];
   double light[2] = {0, 0}, middle[2] = {0, 0};
@@ -180,7 +183,7 @@ static void test_a_pin_hole_shows_the_light(void **state) {
   check_camera_of_paper();
 }
 
-/* A plate over a quarter of the floor, so that the light's image matters in both directions. */
+/* Adds a plate over a quarter of the floor, so that the light's image matters in both directions. */
 static void stage_corner(stage *set, int side) {
   stage_floor(set, side, side, 12);
   add_plate(set, -20, 0, -20, 0, 9);
@@ -211,7 +214,7 @@ static void test_an_even_image_is_none(void **state) {
   }
 }
 
-/* Without soft shadows, the light has the mean of its image. */
+/* Without soft shadows, the light has the mean colour of its image. */
 static void test_hard_shadows_have_the_mean(void **state) {
   (void)state;
   static float pixels[SMALL * SMALL * 4];
@@ -238,8 +241,8 @@ static void turn_rect(hl_light *light) {
   memcpy(light->edge2, (double[3]){1, 6, -1}, sizeof light->edge2);
 }
 
-/* Lights of every kind with an image of four coloured quarters. Right, left, up and down of the image are in
- * their places. */
+/* Adds a light with an image of four coloured quarters. The test checks that the image's right, left, top and
+ * bottom are in their places for every kind of light. */
 static hl_light *add_light(stage *set, hl_light_type type) {
   if (type == HL_LIGHT_DIRECTIONAL) {
     hl_light *light = stage_add_directional(set, (vec3){0.2, 0.1, -1});
@@ -293,7 +296,8 @@ static void test_every_kind_of_light_against_the_reference(void **state) {
       assert_true(error < 0.03);
     }
     light->emission.pixels = NULL;
-    light->intensity = 0.5; /* a grey light of the same brightness has the same error as the colours */
+    light->intensity =
+        0.5; /* a grey light of the same brightness differs from the coloured light by more than the bar */
     stage_render_sheets(&set, pixels);
     assert_true(difference(expected, pixels) > 0.045);
     stage_close(&set);

@@ -1,5 +1,5 @@
 /* analytic/sheets_faces.c - faces of a box that light grazes, and the normals of clipped faces, against
- * closed forms. Balls with a corner or a half cut away: light that leaves matter through a face. */
+ * closed forms. Balls with a corner or a half cut away show light that leaves matter through a face. */
 #include <setjmp.h>
 #include <stdarg.h>
 #include <stdint.h>
@@ -14,12 +14,14 @@ enum { VOXELS = 32, SIDE = 72, RADIUS = 13 };
 
 static const double OPACITY = 0.95, HALF = VOXELS / 2.0, INSIDE = 7;
 
-/* The light that the eye sees from even matter under a face. For each length s / c of the eye's way, the
- * light's way is s / g, where c and g are the cosines of the eye and of the light to the face's normal. With
- * the extinction x it is the integral of x exp(-x s) exp(-x s c / g) ds = 1 / (1 + c / g) (derived). */
+/* Returns the light that the eye sees from even matter under a face. A point at the depth s lies s / c behind
+ * the face along the eye's ray and s / g along the light's ray, where c and g are the cosines of the eye's
+ * and the light's angles to the face's normal. With the extinction x and the distance t = s / c, the light is
+ * the integral of x exp(-x t) exp(-x t c / g) dt = 1 / (1 + c / g) (derived). */
 static double brightness(vec3 eye, vec3 light) { return 1 / (1 + fabs(eye.z) / fabs(light.z)); }
 
-/* elevation: of the light above the face, in degrees. diameter: of the light, in degrees; 0: hard shadows. */
+/* A light on a face. elevation: of the light above the face, in degrees. diameter: of the light, in degrees;
+ * 0: hard shadows. */
 typedef struct face_case {
   double elevation, diameter, spacing, most_mean, most;
 } face_case;
@@ -87,7 +89,7 @@ static void make_noisy_ball(void) {
   }
 }
 
-/* The part of the ball that lies from low to high along z. */
+/* Adds the part of the ball that lies from low to high along z. */
 static void add_part(stage *set, double low, double high) {
   static const hl_opacity_point opacity[] = {{0.3, 0}, {0.6, 0.98}};
   hl_scene_volume *part = stage_add_grid(set, (size_t[3]){VOXELS, VOXELS, VOXELS}, (double[3]){1, 1, 1},
@@ -143,8 +145,8 @@ static void test_normal_of_a_cut(void **state) {
   stage_close(&set);
 }
 
-/* Seen from behind, the cut is a part of the outline and does not show: with the face's normals and with the
- * data's gradients the picture is the same. */
+/* Seen from behind, the cut does not show: the picture with the face's normals is the same as the picture
+ * with the data's gradients. */
 static void test_cut_behind(void **state) {
   (void)state;
   static float pixels[2][SIDE * SIDE * 4];
@@ -188,8 +190,8 @@ static void test_joined_parts(void **state) {
 
 /* ---- light that leaves matter through a face ---- */
 
-/* A scene of an opaque ball around the origin, or of a layer below the height RADIUS, with a cut and a light.
- * The edge of the matter is two voxels wide. */
+/* Opens a scene of an opaque ball around the origin, or of a layer below the height RADIUS, with a cut and a
+ * light. The edge of the matter is two voxels wide. */
 static void open_cut_matter(stage *set, int layer, const hl_cut *cut, vec3 light) {
   static float voxels[VOXELS * VOXELS * VOXELS];
   static const hl_opacity_point opacity[] = {{0, 0}, {1, 0.999}};
@@ -284,9 +286,9 @@ static void test_rim(void **state) {
   assert_true(greatest < 0.02);
 }
 
-/* A layer, up to two voxels thick, hangs above a floor. The sheets are parallel to its cut. For some heights
- * of the cut a sheet lies in the cut, and the light leaves the layer at the end of a slab. The floor gets the
- * light that the layer lets through. */
+/* A layer, up to two voxels thick, hangs above a floor. The sheets are parallel to the layer's cut. At some
+ * heights of the cut, a sheet lies in the cut, and the light leaves the layer at the end of a slab. The floor
+ * gets the light that the layer lets through. */
 static void test_cut_at_a_sheet(void **state) {
   (void)state;
   static float pixels[SIDE * SIDE * 4];

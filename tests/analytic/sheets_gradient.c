@@ -1,6 +1,6 @@
-/* analytic/sheets_gradient.c - gradient opacity. The length of the gradient of a ramp and of a paraboloid is
- * known everywhere, and so are the picture and the light that passes. Tested on the sheets and on the
- * reference. */
+/* analytic/sheets_gradient.c - gradient opacity. The gradient's length in a ramp and in a paraboloid is known
+ * everywhere, so that the picture and the light that passes are known. Each closed form is tested on the
+ * sheets and on the reference. */
 #include <stdlib.h>
 #include <string.h>
 
@@ -11,8 +11,8 @@ enum { SIDE = 24, PIXELS = SIDE * SIDE, N = 24 };
 
 typedef double field_function(double x, double y, double z);
 
-/* A cube of N^3 voxels around the origin. The field is a function of the place in the world. edge: of a
- * voxel. */
+/* Adds a cube of N^3 voxels around the origin. field: the value at a position in the world. edge: a voxel's
+ * edge, in world units. */
 static hl_scene_volume *add_cube(stage *set, field_function *field, double edge) {
   static float voxels[N * N * N];
   float *out = voxels;
@@ -39,7 +39,8 @@ static double ramp(double x, double y, double z) {
   return 3 * x;
 }
 
-static const hl_opacity_point HALF_AT_THREE[] = {{1, 0}, {4, 0.75}}; /* 1/2 at 3 */
+static const hl_opacity_point HALF_AT_THREE[] = {
+    {1, 0}, {4, 0.75}}; /* the factor is 1/2 at a gradient of the length 3 */
 
 /* The opacity is 0.1 per unit over the 12 units of the cube, and half of the extinction counts: alpha = 1 -
  * 0.9^(12 / 2). */
@@ -74,13 +75,14 @@ static double paraboloid(double x, double y, double z) { return x * x + y * y + 
 enum { SHELL_POINTS = 4 };
 static const hl_opacity_point SHELL[SHELL_POINTS] = {{0, 0}, {10, 0}, {13, 1}, {16, 0}};
 
-/* The factor of the gradient opacity SHELL at a distance from the middle. */
+/* Returns the factor that the gradient opacity SHELL has at a distance from the middle. */
 static double factor_at(double distance) {
   double gradient = 2 * distance;
   return fmax(0, fmin((gradient - 10) / 3, (16 - gradient) / 3));
 }
 
-/* The integral of the factor along a ray parallel to z that passes the middle at the distance `beside`. */
+/* Returns the integral of the factor along a ray parallel to z that passes the middle at the distance
+ * `beside`. */
 static double way_through_shell(double beside) {
   enum { STEPS = 4000 };
   double sum = 0;
@@ -121,8 +123,8 @@ static void test_ball(void **state) {
 
 /* ---- shadows: light loses to the ramp what the factor leaves of its extinction ---- */
 
-/* The light on a plate under the ramp, seen from below. The eye sees the plate alone, and the ramp casts its
- * shadow on it. */
+/* Returns the light on a plate under the ramp, seen from below. The eye sees the plate alone, and the ramp
+ * casts its shadow on the plate. */
 static double light_below_ramp(bool reference, int method, const hl_opacity_point *points, double intensity) {
   static float pixels[PIXELS * 4];
   stage set;
@@ -165,7 +167,8 @@ static void test_ramp_shadow(void **state) {
     }
 }
 
-/* The root mean square over the middle of the picture. At the faces of the cube the ramp's gradient ends. */
+/* Returns the root mean square difference over the middle of the picture. The borders are left out because
+ * the ramp's gradient ends at the faces of the cube. */
 static double difference_inside(const float *a, const float *b) {
   double sum = 0;
   for (int y = 6; y < SIDE - 6; y++)
@@ -196,7 +199,7 @@ static void test_halved_ramp_is_a_thinner_one(void **state) {
       stage_set_opacity(&set, cube, half ? thin : thick, 4);
       if (half == 0) set_gradient(cube, HALF_AT_THREE, 2);
       if (k >= 4) cube->shading = HL_SHADING_PHONG;
-      /* the surface is that of the ramp, and not that of the grid's faces */
+      /* the ramp's gradient shades the surface, and the grid's faces do not */
       cube->cut_shading = HL_CUT_SHADING_GRADIENT;
       stage_add_directional(&set, (vec3){-0.6, -0.3, -1});
       if (k % 4 > 0) set.lights[0].angular_diameter_deg = 12;
@@ -221,8 +224,9 @@ static void light_from_everywhere(stage *set, bool sky, hl_scene_volume *cube) {
   }
 }
 
-/* The same for the light of a sky and for light that is scattered repeatedly. A renderer does not take what
- * it kept of the cube without gradient opacity for the cube with it. */
+/* The halved ramp looks like the thinner ramp also in the light of a sky and in light that is scattered
+ * repeatedly. A renderer does not reuse the data that it kept of the cube without gradient opacity for the
+ * cube with gradient opacity. */
 static void test_light_from_everywhere(void **state) {
   (void)state;
   static float pixels[3][PIXELS * 4];

@@ -5,7 +5,7 @@
 
 enum { SIDE = 96, PIXELS = SIDE * SIDE };
 
-/* A closed box around the origin, with the fronts of its triangles outwards. */
+/* Adds a closed box around the origin, with the fronts of its triangles outwards. */
 static hl_scene_mesh *add_box(mesh_stage *all, vec3 half) {
   static const uint32_t triangles[12][3] = {{0, 2, 1}, {1, 2, 3}, {4, 5, 6}, {5, 7, 6}, {0, 1, 4}, {1, 5, 4},
                                             {2, 6, 3}, {3, 6, 7}, {0, 4, 2}, {2, 4, 6}, {1, 3, 5}, {3, 7, 5}};
@@ -32,8 +32,8 @@ static hl_scene_mesh *add_sphere(mesh_stage *all, double radius) {
   return mesh_stage_describe(all, &d);
 }
 
-/* The normal, inwards, at the point where a ray from within a box meets it. *second: how much farther the
- * plane of the next wall is. */
+/* Returns the inward normal at the point where a ray from within a box meets the box. *second: how much
+ * farther the ray goes to the plane of the next wall. */
 static vec3 leave_box(vec3 half, vec3 from, vec3 way, vec3 *at, double *second) {
   const double h[3] = {half.x, half.y, half.z}, o[3] = {from.x, from.y, from.z}, d[3] = {way.x, way.y, way.z};
   double nearest = INFINITY;
@@ -57,15 +57,15 @@ static void look_from_within(mesh_stage *all, vec3 eye, vec3 target) {
   stage_look(&all->set, eye, target, (vec3){0, 0, 1});
 }
 
-/* A lamp with shadows of a kind of mesh_stage_choose_shadows(): a point, or a ball. */
+/* Adds a lamp, a point or a ball, with shadows of a kind of mesh_stage_choose_shadows(). */
 static void add_lamp(mesh_stage *all, vec3 at, int kind) {
   hl_light *light = stage_add_point(&all->set, at);
   mesh_stage_choose_shadows(all, light, kind, 0);
   light->radius = kind == 0 ? 0 : 1;
 }
 
-/* The walls of a closed room with a lamp in it are as bright as the cosine of the lamp's light. So are those
- * of a room with one open side. The walls take no light from themselves. */
+/* The walls of a closed room with a lamp in it are as bright as the cosine of the lamp's light. The same
+ * holds for a room with one open side. The walls do not shade themselves. */
 static void test_lamp_in_room(void **state) {
   (void)state;
   static float pixels[PIXELS * 4];
@@ -108,9 +108,9 @@ static void test_lamp_in_ball(void **state) {
   }
 }
 
-/* A box has the opacity 1/2, so that half of the light enters through whichever wall. Its floor is seen
- * through its ceiling with half of that, times its own opacity and the cosine. Soft light deviates a little
- * where the ceiling meets the walls. */
+/* A box has the opacity 1/2, so that half of the light enters through whichever wall. The floor is seen
+ * through the ceiling, which halves the light again, and the floor's own opacity and the cosine multiply the
+ * light. Soft light deviates a little where the ceiling meets the walls. */
 static void test_glass_box(void **state) {
   (void)state;
   static float pixels[PIXELS * 4];
@@ -127,8 +127,8 @@ static void test_glass_box(void **state) {
   }
 }
 
-/* The number of tiles of a lamp's buffers in which work is done. A board hides everything else from the eye.
- * second: whether another board stands behind it. */
+/* Returns the number of tiles of a lamp's buffers in which work is done. A board hides everything else from
+ * the eye. second: whether another board stands behind the first board. */
 static uint64_t tiles_between_boards(bool second, float *pixels) {
   mesh_stage all;
   mesh_stage_open(&all, SIDE, 48);
@@ -155,8 +155,8 @@ static void test_hidden_from_eye(void **state) {
   assert_true(alone > 0 && both < alone + alone / 2);
 }
 
-/* A lamp stands within the content. The cascade has no chunks that are shorter than a pixel. If all chunks
- * were a fixed fraction of the lamp's width, as the buffer sees it, threads would wait twice as often. */
+/* A lamp stands within the content. The cascade has no chunks that are shorter than a pixel. If the length of
+ * every chunk were a fixed fraction of the lamp's width in the buffer, threads would wait twice as often. */
 static void test_few_chunks(void **state) {
   (void)state;
   static float pixels[PIXELS * 4];

@@ -23,10 +23,11 @@ typedef struct watch {
   int allocations_at_report;
   int allocations_in_loop; /* the number of allocations between two reports of the sheet loop */
   double last_fraction;
-  int falls; /* the number of reports whose fraction is smaller than the one before */
+  int falls; /* the number of reports whose fraction is smaller than the fraction of the report before */
   /* the picture's number of sweeps; each has a loop and an equal share of the fraction */
   int sweeps;
-  int questions, cancel_after; /* 0: never */
+  int questions, cancel_after; /* the number of cancel questions; the question from which on the answer is
+                                  "stop", 0: never */
 } watch;
 
 static void *watched_allocate(void *data, size_t size, size_t alignment) {
@@ -39,7 +40,7 @@ static void watched_release(void *data, void *memory) {
   free(memory);
 }
 
-/* The number of the sweep whose share of the picture contains a fraction. */
+/* Returns the number of the sweep whose share of the picture contains a fraction. */
 static int share_of(const watch *w, double fraction) { return (int)(fraction * w->sweeps + 1e-9); }
 
 static void watched_progress(void *data, const char *name, double fraction) {
@@ -47,7 +48,7 @@ static void watched_progress(void *data, const char *name, double fraction) {
   if (strcmp(name, "render") != 0) return;
   int allocations = atomic_load(&w->allocations);
   /* Two fractions below 1 in one sweep's share are reports of one sheet loop. Nothing may be allocated
-   * between them. */
+   * between two such reports. */
   if (w->reports > 0 && fraction < 1 && share_of(w, fraction) == share_of(w, w->last_fraction))
     w->allocations_in_loop += allocations - w->allocations_at_report;
   w->falls += fraction < w->last_fraction;
@@ -113,7 +114,8 @@ static void build_scene(stage *set, hl_shadows shadows, hl_soft_method method, h
   add_noise(set, 15, (vec3){-9, -8, -8}, HL_VOXEL_U8);
   add_noise(set, 8, (vec3){-1, -2, -1}, HL_VOXEL_F32)->attenuation_color[0] = 0.3;
   stage_add_directional(set, (vec3){-1, 0.5, -1})->angular_diameter_deg = 12;
-  stage_add_directional(set, (vec3){1, 1, 0.2})->angular_diameter_deg = 5; /* a sweep of its own */
+  stage_add_directional(set, (vec3){1, 1, 0.2})->angular_diameter_deg =
+      5; /* this light has a sweep of its own */
   hl_light *projector = stage_add_point(set, (vec3){25, 5, 30});
   projector->radius = 3;
   stage_set_texture(projector, 2, 2, QUARTERS, (vec3){12, 2, 15}, (vec3){3, 4, -2}, (vec3){1, -3, 4});
@@ -186,7 +188,8 @@ static void test_threads(void **state) {
   }
 }
 
-/* All numbers of slabs at once, and of threads, up to seven, with hard shadows and with the cascade. */
+/* Pictures have the same bytes with several numbers of slabs at once and with one to seven threads, with hard
+ * shadows and with the cascade. */
 static void test_stretches(void **state) {
   (void)state;
   static float one[MOST_FLOATS], more[MOST_FLOATS];
@@ -254,8 +257,8 @@ static void test_instruction_sets(void **state) {
     }
 }
 
-/* The volume's voxels with gaps between rows and between slices; borrowed. The gaps hold bytes that are not
- * finite floats, and nothing follows the last row. *memory: the caller frees it. */
+/* Makes a volume that borrows voxels with gaps between rows and between slices. The gaps hold bytes that are
+ * not finite floats, and nothing follows the last row. *memory: the caller frees it. */
 static hl_volume *with_gaps(hl_context *context, const hl_volume *volume, void **memory) {
   const size_t *n = volume->dimension, bytes = hl_storage_bytes(volume->storage);
   size_t row = (n[0] + 3) * bytes, slice = (n[1] + 2) * row, end = n[0] * bytes;
@@ -312,8 +315,8 @@ static void test_rows_that_lie_apart(void **state) {
   }
 }
 
-/* Renders a scene again: by the same renderer, by a new one, and by one whose buffers another scene of
- * another size has used. */
+/* Renders a scene again: by the same renderer, by a new renderer, and by a renderer whose buffers another
+ * scene of another size has used. */
 static void test_history(void **state) {
   (void)state;
   static float first[MOST_FLOATS], again[MOST_FLOATS];
@@ -353,7 +356,7 @@ static void test_history(void **state) {
   }
 }
 
-/* One renderer makes pictures of many sizes. Each is the one that a new renderer makes. */
+/* One renderer makes pictures of many sizes. Each picture has the bytes of a new renderer's picture. */
 static void test_sizes(void **state) {
   (void)state;
   static const int sizes[][2] = {{1, 1}, {96, 7}, {16, 16}, {17, 65}, {8, 8}, {64, 48}};
@@ -405,8 +408,8 @@ static void test_small_pictures_are_averaged(void **state) {
   stage_close(&set);
 }
 
-/* The reference averages as many rays. One ray through each pixel's centre would make another picture. Two
- * volumes overlap. */
+/* The reference averages as many rays in a pixel as the sheets average pixels. One ray through each pixel's
+ * centre would make another picture. Two volumes overlap. */
 static void test_reference_of_small_pictures(void **state) {
   (void)state;
   enum { SIDE = 24 };
@@ -514,7 +517,7 @@ static void test_cancel(void **state) {
 }
 
 /* Only the picture's part of each row is written. A picture of whole tiles, which is made in the caller's
- * memory, has the bytes of one that is made elsewhere. */
+ * memory, has the bytes of a picture that is made in the renderer's memory. */
 static void test_row_stride(void **state) {
   (void)state;
   static _Alignas(64) float packed[MOST_FLOATS];
@@ -542,8 +545,8 @@ static void test_row_stride(void **state) {
   stage_close(&set);
 }
 
-/* With ambient light alone, the order of the sheets does not matter, except for the matter behind opaque
- * matter that is left out: up to 1/2048 of the light. */
+/* With ambient light alone, the order of the sheets changes pixels by at most 1/2048 of the light, because
+ * matter behind nearly opaque matter is left out. */
 static void test_order_of_sheets(void **state) {
   (void)state;
   enum { WIDTH = 272, HEIGHT = 200, FLOATS = WIDTH * HEIGHT * 4 };

@@ -1,5 +1,5 @@
-/* analytic/sheets_labels.c - pictures of label maps: the light that skins and solid matter take, and which
- * labels show. Tested on the sheets and on the reference. */
+/* analytic/sheets_labels.c - pictures of label maps: the light that skins and solid matter absorb, and which
+ * labels show. The sheets and the reference are tested. */
 #include <stdlib.h>
 #include <string.h>
 
@@ -8,7 +8,8 @@
 
 enum { SIDE = 32, PIXELS = SIDE * SIDE, N = 40 };
 
-/* Two balls of the radius 7 side by side, label 1 on the left and label 2 on the right, seen along -z. */
+/* Opens a scene of two balls of the radius 7 side by side, label 1 on the left and label 2 on the right, seen
+ * along -z. */
 static hl_scene_volume *open_balls(stage *set, const hl_label *labels, size_t count) {
   static float voxels[N * N * N];
   for (int k = 0; k < N; k++)
@@ -30,7 +31,7 @@ static hl_scene_volume *open_balls(stage *set, const hl_label *labels, size_t co
   return map;
 }
 
-/* The pixel at a world position. */
+/* Returns the pixel at a world position. */
 static const float *pixel_at(const float *pixels, double x, double y) {
   int column = (int)((x / N + 0.5) * SIDE), row = (int)((0.5 - y / N) * SIDE);
   return &pixels[4 * (row * SIDE + column)];
@@ -79,7 +80,7 @@ static void test_hidden_labels_are_not_there(void **state) {
   }
 }
 
-/* Labels with shadows look nearly like the reference's picture of them. */
+/* Pictures of labels with shadows by the sheets are near the reference's pictures. */
 static void test_labels_against_the_reference(void **state) {
   (void)state;
   static float pixels[2][PIXELS * 4];
@@ -100,8 +101,8 @@ static void test_labels_against_the_reference(void **state) {
   assert_near(sqrt(sum), 0, 0.012);
 }
 
-/* In a scene with the interpolating kernel, labels keep the B-spline, for which their fields are made, by the
- * sheets and the reference. */
+/* In a scene with the interpolating kernel, the sheets and the reference still draw labels with the B-spline,
+ * for which the labels' fields are made. */
 static void test_labels_keep_their_kernel(void **state) {
   (void)state;
   static float pixels[2][PIXELS * 4];

@@ -1,6 +1,7 @@
-/* analytic/sheets_levels.c - fields at random levels. By every way to draw, they give the picture of the
- * dense volume of their coefficients, the reference's picture, and the same bytes with any instruction set. A
- * homogeneous field follows the law of Beer and Lambert. The borders of levels do not show. */
+/* analytic/sheets_levels.c - fields at random levels. By every way to draw, the picture of such a field is
+ * near the picture of the dense volume of its coefficients and near the reference's picture, and has the same
+ * bytes with any instruction set. A homogeneous field follows the law of Beer and Lambert. The borders of
+ * levels do not show. */
 #include <math.h>
 #include <setjmp.h>
 #include <stdarg.h>
@@ -23,7 +24,7 @@
 
 enum { CELLS = 32, LEVELS = 4 };
 
-/* A field at random levels. Its box has 20 units where the lattice's cells are voxels. */
+/* A field at random levels. The field's box has 20 units where the lattice's cells are voxels. */
 typedef struct field_kind {
   octree_value *value;
   int shift, levels;
@@ -83,7 +84,7 @@ static void test_homogeneous(void **state) {
   }
 }
 
-/* The sheets against the reference, which has its own evaluation. */
+/* The sheets' pictures are near the pictures of the reference, which evaluates fields by code of its own. */
 static void test_against_reference(void **state) {
   (void)state;
   for (int n = 0; n < 7; n++) {
@@ -142,7 +143,8 @@ static void test_same_bytes(void **state) {
 
 /* ---- against one level ---- */
 
-/* A random field that is 0 wherever a B-spline of any level reaches one unit from the box's border. */
+/* Returns a value of a random field that is 0 wherever a B-spline of any level reaches one unit from the
+ * box's border. */
 static double inner_random_value(uint64_t seed, int level, const ptrdiff_t point[3]) {
   for (int a = 0; a < 3; a++) {
     ptrdiff_t at = point[a] * ((ptrdiff_t)1 << level);
@@ -162,7 +164,7 @@ static void make_dense(stage *set) {
       hl_volume_row_in(field, j, k, voxels + (k * field->dimension[1] + j) * field->dimension[0]);
   grid.voxels = voxels;
   assert_int_equal(hl_volume_create(set->context, &grid, &dense, NULL), HL_OK);
-  dense->colors = field->colors; /* they are moved */
+  dense->colors = field->colors; /* the colours now belong to the dense volume */
   field->colors = NULL;
   for (size_t v = 0; v < set->scene.volume_count; v++) {
     if (set->volumes[v].volume != field) continue;
@@ -179,9 +181,9 @@ static double greatest(const float *pixels) {
   return most;
 }
 
-/* Asserts that two maximum projections are the same. A value counts if its opacity is above 0. The tables of
- * the two volumes tell that to a step of their ranges, so that one of a pixel's four samples may show such a
- * value in one of the pictures alone. */
+/* Asserts that two maximum projections are the same. A value counts if its opacity is above 0. The two
+ * volumes' tables of opacity are exact to one step of their ranges, so that a sample may show such a value in
+ * one of the pictures alone. */
 static void assert_same_projections(const float *levels, const float *dense) {
   int apart = 0;
   for (int i = 0; i < FLOATS; i += 4) {
@@ -208,8 +210,8 @@ static void test_ways_against_dense(void **state) {
     stage_render_sheets(&set, levels);
     make_dense(&set);
     stage_render_sheets(&set, dense);
-    /* the places of sheets follow from what may be visible, and bricks of coarse levels tell that less
-     * exactly than voxels */
+    /* the sheets lie where matter may be visible, which bricks of coarse levels bound less exactly than
+     * voxels do */
     if (ways[n].draw == draw_maximum) assert_same_projections(levels, dense);
     else if (!(difference(levels, dense) < 2e-3))
       fail_msg("%s: the picture at levels differs from the dense one by %.4g", ways[n].name,
@@ -223,9 +225,10 @@ static void test_ways_against_dense(void **state) {
 
 enum { WIDE = 96, REACH = 2 };
 
-/* Smooth fields. A cubic B-spline of spacing s on coefficients c is c + s^2 / 6 times c's Laplacian, and
- * terms of s^4 (derived: the B-spline's variance along an axis is s^2 / 3). So the coefficients f - s^2 / 6
- * times f's Laplacian give a quadratic field exactly, whatever the spacing is, and waves up to terms of s^4.
+/* Two smooth fields follow. A cubic B-spline of spacing s on coefficients c is c plus s^2 / 6 times c's
+ * Laplacian plus terms of s^4 (derived: the B-spline's variance along an axis is s^2 / 3). So the
+ * coefficients f - s^2 / 6 times f's Laplacian give a quadratic field exactly, whatever the spacing is, and
+ * waves up to terms of s^4.
  */
 static double quadratic_value(uint64_t seed, int level, const ptrdiff_t point[3]) {
   (void)seed;
@@ -266,8 +269,8 @@ static void draw_wide(octree_value *value, int levels, float spoil, hl_shadows s
   stage_close(&set);
 }
 
-/* The greatest difference that is left of two pictures' difference after its mean over (2 REACH + 1)^2 pixels
- * is subtracted. */
+/* Returns the greatest value of the high-passed difference of two pictures: the difference minus its mean
+ * over (2 REACH + 1)^2 pixels. */
 static double high_passed(const float *a, const float *b) {
   const int around = (2 * REACH + 1) * (2 * REACH + 1);
   double most = 0;
@@ -285,9 +288,9 @@ static double high_passed(const float *a, const float *b) {
   return most;
 }
 
-/* The picture of a smooth field at random levels shows no borders, with hard and with soft shadows. From the
- * picture of the field at one level it differs by less than .1 % from pixel to pixel. If coefficients at the
- * borders of bricks were wrong by 1 %, the test would fail. */
+/* The picture of a smooth field at random levels shows no borders, with hard and with soft shadows. The
+ * difference from the picture of the field at one level changes by less than 0.1 % from pixel to pixel. If
+ * coefficients at the borders of bricks were wrong by 1 %, the test would fail. */
 static void test_borders(void **state) {
   (void)state;
   octree_value *values[] = {quadratic_value, wave_value};
@@ -303,13 +306,13 @@ static void test_borders(void **state) {
       assert_true(high_passed(levels, one) < 1e-3);
       assert_true(high_passed(spoiled, one) > 2e-3);
       if (kind == 0) memcpy(hard, one, sizeof hard);
-      else assert_true(high_passed(hard, one) > 2e-5); /* the shadows are others */
+      else assert_true(high_passed(hard, one) > 2e-5); /* soft shadows differ from hard shadows */
     }
 }
 
 /* ---- the box's faces ---- */
 
-/* There is matter at the far end of x, and none at the far end of y. */
+/* The field has matter at the far end of x, and no matter at the far end of y. */
 static double far_value(uint64_t seed, int level, const ptrdiff_t point[3]) {
   (void)seed;
   const ptrdiff_t scale = (ptrdiff_t)1 << level;
@@ -353,8 +356,8 @@ static double with_holes(uint64_t seed, int level, const ptrdiff_t point[3]) {
   return place % 64 < 24 ? (double)NAN : octree_random_value(seed, level, point);
 }
 
-/* Coefficients that are not finite are empty space, for the sheets and for the reference. They do not count
- * in the statistics. */
+/* Coefficients that are not finite are empty space, for the sheets and for the reference. Such coefficients
+ * do not count in the statistics. */
 static void test_holes(void **state) {
   (void)state;
   stage set;

@@ -1,6 +1,6 @@
-/* analytic/sheets_mask.c - a label map as the mask of a volume. The extinction and colour that labels and the
- * rest leave of the volume are known in closed form, far from borders and as a sum across borders. Tested on
- * the sheets and on the reference. */
+/* analytic/sheets_mask.c - a label map as the mask of a volume. The extinction and colour of masked matter
+ * are known in closed form far from the labels' borders, and as a mean across borders. Each closed form is
+ * tested on the sheets and on the reference. */
 #include <stdlib.h>
 #include <string.h>
 
@@ -12,8 +12,8 @@
 
 enum { SIDE = 32, PIXELS = SIDE * SIDE, N = 32, HALF = 16 };
 
-/* A label map of 16^3 voxels around the origin, each two units long. For |y| < 8 the label is 1 where x < 0
- * and 2 where x > 0; else it is 0. */
+/* Makes a label map of 16^3 voxels around the origin, each two units long. For |y| < 8 the label is 1 where x
+ * < 0 and 2 where x > 0; for other y the label is 0. */
 static hl_volume *make_map(stage *set) {
   static unsigned char voxels[HALF * HALF * HALF];
   hl_volume_description d;
@@ -34,8 +34,8 @@ static hl_volume *make_map(stage *set) {
   return map;
 }
 
-/* A cube of 32^3 voxels, seen along -z, with the same extinction of 0.05 a unit everywhere, and the mask. The
- * caller releases volume->mask.volume. */
+/* Opens a scene of a cube of 32^3 voxels with a mask, seen along -z. The cube's opacity is 0.05 a unit
+ * everywhere. The caller releases volume->mask.volume. */
 static hl_scene_volume *open_masked(stage *set, const hl_label *labels, size_t count, double rest) {
   stage_open(set);
   set->scene.width = set->scene.height = SIDE;
@@ -67,7 +67,7 @@ static const hl_label LABELS[] = {
     {.value = 1, .color = {0.81, 0.09, 0.25}, .opacity = 0.5, .visible = 1, .tint = 1},
     {.value = 2, .color = {0.04, 0.64, 0.16}, .opacity = 1, .visible = 1, .tint = 0}};
 
-/* The factor and the colour of each label and of the rest, far from borders. */
+/* Far from borders, each label's matter and the rest of the matter have their own factor and colour. */
 static void test_factors_and_colors(void **state) {
   (void)state;
   static float pixels[PIXELS * 4];
@@ -89,8 +89,9 @@ static void test_factors_and_colors(void **state) {
   }
 }
 
-/* Across a border, the factor changes from one label's to the other's. Its mean over a line that is symmetric
- * to the border is the mean of the two factors. So the border lies where the labels meet. */
+/* Across a border, the factor changes smoothly from one label's factor to the other label's. The mean over a
+ * line that is symmetric to the border is the mean of the two factors. So the border lies where the labels
+ * meet. */
 static void test_border_is_smooth_and_in_place(void **state) {
   (void)state;
   static float pixels[PIXELS * 4];
@@ -110,7 +111,7 @@ static void test_border_is_smooth_and_in_place(void **state) {
   }
 }
 
-/* Returns whether all points of a brick of the lattice have the bytes of the first one. */
+/* Returns whether all points of a brick of the lattice have the bytes of the brick's first point. */
 static bool brick_is_even(const void *values, size_t bytes, const size_t brick[3]) {
   const unsigned char *from = values, *one = NULL;
   for (int n = 0; n < 5 * 5 * 5; n++) {
@@ -124,7 +125,7 @@ static bool brick_is_even(const void *values, size_t bytes, const size_t brick[3
   return true;
 }
 
-/* A label map of 32^3 voxels: label 1 in one half, label 2 in a corner, and 0 elsewhere. */
+/* Makes a label map of 32^3 voxels: label 1 in one half, label 2 in a corner, and 0 elsewhere. */
 static hl_volume *make_large_map(stage *set) {
   static unsigned char voxels[N * N * N];
   hl_volume_description d;
@@ -142,8 +143,8 @@ static hl_volume *make_large_map(stage *set) {
   return map;
 }
 
-/* The lattice's bricks that are marked as even have one value, and the mark holds it. Some bricks are even
- * and some are not. */
+/* Each brick of the lattice that is marked as even has one value, and the mark holds this value. Some bricks
+ * are even and some are not. */
 static void test_bricks_are_told(void **state) {
   (void)state;
   stage set;
@@ -176,7 +177,8 @@ static void test_bricks_are_told(void **state) {
   stage_close(&set);
 }
 
-/* Bricks that are marked as even are not read. The picture is the same, except for the rounding of colours.
+/* The voxels of bricks that are marked as even are not read. The marks change the picture only by the
+ * rounding of colours.
  */
 static void test_bricks_change_nothing(void **state) {
   (void)state;
@@ -224,7 +226,8 @@ static void test_hidden(void **state) {
   }
 }
 
-/* The mask moves with the volume. If both are turned and moved with the camera, the picture stays the same.
+/* The mask moves with the volume. If mask and volume are turned and moved together with the camera, the
+ * picture stays the same.
  */
 static void test_moves_with_the_volume(void **state) {
   (void)state;
@@ -244,7 +247,8 @@ static void test_moves_with_the_volume(void **state) {
   for (int i = 0; i < 4 * PIXELS; i++) assert_near((double)pixels[1][i], (double)pixels[0][i], 2e-3);
 }
 
-/* A label map of the same size as make_map()'s, with label 1 everywhere except between two heights. */
+/* Makes a label map of the same size as make_map() does, with label 1 everywhere except between two
+ * heights. */
 static hl_volume *make_layer(stage *set) {
   static unsigned char voxels[HALF * HALF * HALF];
   hl_volume *map = make_map(set);
@@ -257,9 +261,9 @@ static hl_volume *make_layer(stage *set) {
   return map;
 }
 
-/* A ball above a floor. more: adds a sheet of matter between them, in the layer that the mask hides. The
- * mask's factor is 0 there, but the sheet does not lie in a brick that is left out because the mask hides it
- * and its neighbours. */
+/* Fills voxels with a ball above a floor. more: adds a sheet of matter between ball and floor, in the layer
+ * that the mask hides. The mask's factor is 0 in the sheet, but the sheet's bricks are kept, because the mask
+ * does not hide their neighbours. */
 static void fill_ball_and_floor(float *voxels, bool more) {
   for (int n = 0; n < N * N * N; n++) {
     const int i = n % N - 16, j = n / N % N - 16, k = n / (N * N) - 16;
@@ -269,8 +273,8 @@ static void fill_ball_and_floor(float *voxels, bool more) {
   }
 }
 
-/* Matter that a mask hides absorbs no light. So it does not change the soft shadows of surfaces, to the last
- * bit. */
+/* Matter that a mask hides absorbs no light. So hidden matter does not change the soft shadows of surfaces by
+ * a single bit. */
 static void test_hidden_matter_leaves_no_trace(void **state) {
   (void)state;
   static float pixels[2][PIXELS * 4], voxels[N * N * N];
@@ -304,7 +308,7 @@ static void test_hidden_matter_leaves_no_trace(void **state) {
 
 enum { COARSE = 12 };
 
-/* The masked cube as a lit medium, in a picture of 12 x 12 pixels. method: -1: hard shadows. */
+/* Renders the masked cube as a lit medium, in a picture of 12 x 12 pixels. method: -1: hard shadows. */
 static void render_lit(int method, bool reference, float *pixels) {
   stage set;
   hl_scene_volume *cube = open_masked(&set, LABELS, 2, 0.1);
@@ -317,8 +321,8 @@ static void render_lit(int method, bool reference, float *pixels) {
   close_masked(&set, cube);
 }
 
-/* Light that passes the mask's parts loses what their factors say. By every method of shadows, the picture is
- * near the reference's. */
+/* Light in masked matter is absorbed according to the labels' factors. By every method of shadows, the
+ * picture is near the reference's. */
 static void test_shadows_against_the_reference(void **state) {
   (void)state;
   static float expected[COARSE * COARSE * 4], pixels[COARSE * COARSE * 4];
@@ -338,8 +342,8 @@ static void test_shadows_against_the_reference(void **state) {
 
 static const hl_label KNIFE[] = {{.value = 2, .opacity = 1}};
 
-/* Even, dense matter. The mask takes away the half with x > 0, and the eye looks from that side. Shadows are
- * off. */
+/* Opens a scene of even, dense matter without shadows. The mask removes the half with x > 0, and the eye
+ * looks from the side of the removed half. */
 static hl_scene_volume *open_cut(stage *set) {
   hl_scene_volume *cube = open_masked(set, KNIFE, 1, 1);
   stage_set_opacity(set, cube, 0.9, 1);
@@ -352,8 +356,8 @@ static hl_scene_volume *open_cut(stage *set) {
 }
 
 /* The matter itself has no gradient. With shading by faces, the matter is lit at the label's border as a
- * surface, by the cosine of the border's normal to the light. With shading by the data's gradient it is a
- * medium, which looks the same from any side. */
+ * surface, by the cosine of the border's normal to the light. With shading by the data's gradient, the matter
+ * is a medium, which looks the same from any side. */
 static void test_faces_of_a_knife(void **state) {
   (void)state;
   static float pixels[PIXELS * 4];
@@ -373,8 +377,9 @@ static void test_faces_of_a_knife(void **state) {
       }
 }
 
-/* Bricks that the mask hides are left out unless they are neighbours of visible matter: two fifths of the
- * half with x > 0, if the label there is hidden. If the rest shows, all bricks are kept. */
+/* Bricks that the mask hides are left out unless they are neighbours of visible matter: if the label in the
+ * half with x > 0 is hidden, two fifths of this half are left out. If the matter outside of all labels shows,
+ * all bricks are kept. */
 static void test_hidden_voxels_are_not_kept(void **state) {
   (void)state;
   static float pixels[PIXELS * 4];
@@ -389,8 +394,8 @@ static void test_hidden_voxels_are_not_kept(void **state) {
   }
 }
 
-/* Waves in 32^3 voxels. If sheets lay elsewhere, their surfaces would look different. The mask shows all of
- * them, or the half with x < 0. */
+/* Renders waves in 32^3 voxels. If sheets lay elsewhere, the waves' surfaces would look different. The mask
+ * shows all waves, or the half with x < 0. */
 static void render_waves(bool masked, float *pixels) {
   static float voxels[N * N * N];
   static const hl_opacity_point steep[] = {{0.45, 0}, {0.55, 0.9}};
@@ -432,8 +437,8 @@ static void test_no_mask_moves_the_sheets(void **state) {
   assert_true(seen > 2 * SIDE);
 }
 
-/* Haze at x < -4 scatters light repeatedly, and the rest is nearly transparent. The mask shows all, or the
- * half with x < 0. */
+/* Renders haze that scatters light repeatedly at x < -4 and nearly transparent matter elsewhere. The mask
+ * shows everything, or the half with x < 0. */
 static void render_haze(bool masked, float *pixels) {
   static float voxels[N * N * N];
   static const hl_opacity_point faint[] = {{0.3, 1e-7}, {0.4, 1e-7}, {0.5, 0.2}};
@@ -469,7 +474,7 @@ static void test_no_mask_moves_the_nodes(void **state) {
 }
 
 /* A scene with the same map, labels and rest uses the lattice that an earlier scene has made. A scene with a
- * changed label makes another. */
+ * changed label makes a new lattice. */
 static void test_lattice_is_kept(void **state) {
   (void)state;
   hl_label labels[2] = {LABELS[0], LABELS[1]};

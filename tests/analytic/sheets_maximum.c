@@ -1,5 +1,6 @@
 /* analytic/sheets_maximum.c - maximum projections: fields whose greatest value along a ray is known, and
- * noise beside the reference. Each closed form is tested on the sheets and on the reference. */
+ * fields of noise that are compared with the reference. Each closed form is tested on the sheets and on the
+ * reference. */
 #include <stdlib.h>
 #include <string.h>
 
@@ -22,7 +23,7 @@ static void set_function(hl_scene_volume *volume, const hl_opacity_point *opacit
 
 typedef double field_function(double x, double y, double z);
 
-/* A cube of N voxels of edge 1 about the origin. */
+/* Adds a cube of N^3 voxels of edge 1 around the origin. */
 static hl_scene_volume *add_field(stage *set, field_function *field) {
   static float voxels[N * N * N];
   for (int i = 0; i < N * N * N; i++)
@@ -55,7 +56,7 @@ static void render(stage *set, bool reference, float *pixels) {
 
 static double ramp(double x, double y, double z) { return 0.5 + (x + 2 * y - z) * 0.01; }
 
-/* Sets the distances at which the ray enters and leaves the box. Returns false if it misses the box. */
+/* Sets the points at which the ray enters and leaves the box. Returns false if the ray misses the box. */
 static bool ends(const stage *set, int pixel, vec3 low, vec3 high, vec3 end[2]) {
   vec3 origin, direction;
   stage_eye_ray(set, pixel % SIDE, pixel / SIDE, &origin, &direction);
@@ -111,7 +112,7 @@ static void test_ramp_in_a_clip_box(void **state) {
 static double blob(double x, double y, double z) { return exp(-(x * x + y * y + z * z) / 50); }
 
 /* The B-spline widens a blob, by a variance of 1/3 of a voxel. So the blob's values are (v / (v + 1/3))^1.5
- * exp(-r^2 / (2 v + 2/3)) with v = 25 (derived; the rest is below 1e-3). */
+ * exp(-r^2 / (2 v + 2/3)) with v = 25 (derived; the neglected terms are below 1e-3). */
 static void test_blob(void **state) {
   (void)state;
   static float pixels[PIXELS * 4];
@@ -120,7 +121,7 @@ static void test_blob(void **state) {
     stage set;
     open_maximum(&set);
     (void)add_field(&set, blob);
-    /* distances of more than half a voxel count as half a voxel */
+    /* a maximum projection takes a sheet distance of more than half a voxel as half a voxel */
     set.scene.render.sheet_spacing = k % 2 ? 2 : 0.25;
     set.scene.render.reconstruction = k / 4 ? HL_RECONSTRUCTION_GATHER : HL_RECONSTRUCTION_SPLAT;
     if (k % 4 == 3) look_in_perspective(&set);
@@ -157,7 +158,7 @@ static void test_hidden_values_do_not_count(void **state) {
       double r = vec3_length(vec3_add(origin, vec3_scale(direction, -vec3_dot(origin, direction))));
       double greatest = pow(25 / (25 + 1.0 / 3), 1.5) * exp(-r * r / (50 + 2.0 / 3));
       const float *pixel = &pixels[4 * i];
-      if (greatest > 0.61) { /* the value passes 0.6 on its way up */
+      if (greatest > 0.61) { /* the field passes 0.6 along the ray */
         inner++;
         for (int c = 0; c < 3; c++) assert_near((double)pixel[c], c == 1 ? 1 : c == 2 ? 0.2 : 0, 2e-3);
       } else if (greatest > 0.31 && greatest < 0.59) {
@@ -173,7 +174,8 @@ static void test_hidden_values_do_not_count(void **state) {
   }
 }
 
-/* A background of the opacity 0 does not show. Values beside it do, down to the next whole value. */
+/* Three regions have neighbouring values. A background of the opacity 0 does not show, but the next whole
+ * value does. */
 static double steps(double x, double y, double z) {
   (void)z;
   return (x < 0 ? 38 : y < 0 ? 39 : 41) / 255.0;
@@ -208,15 +210,16 @@ static void test_the_background_is_not_shown(void **state) {
 
 static double shifted_blob(double x, double y, double z) { return blob(x - 4, y + 2, z); }
 
-/* If there are several volumes, each is projected alone. A pixel then has the greatest of each channel.
- * Hidden volumes do not count, and the order of volumes does not matter. */
+/* If there are several volumes, each is projected alone. Each channel of a pixel then has the greatest value
+ * of all projections. Hidden volumes do not count, and the order of volumes does not matter. */
 static void test_several_volumes(void **state) {
   (void)state;
   static float pixels[4][PIXELS * 4];
   static const hl_color_point red[] = {{0, {0, 0.1, 0}}, {1, {1, 0.1, 0}}},
                               green[] = {{0, {0, 0, 0}}, {1, {0.2, 1, 0}}};
   for (int reference = 0; reference < 2; reference++) {
-    for (int k = 0; k < 4; k++) { /* the first volume, the second, both, and both in the other order */
+    for (int k = 0; k < 4; k++) { /* the scenes have the first volume, the second volume, both volumes, and
+                                     both volumes in the other order */
       stage set;
       open_maximum(&set);
       for (int n = 0; n < 2; n++) {
@@ -242,7 +245,7 @@ static double noise(double x, double y, double z) {
   return fmax(0.05, (double)((hash ^ hash >> 16) & 0xffff) / 65535);
 }
 
-/* The greatest errors are at peaks between sheets: the voxels are independent random numbers. */
+/* The voxels are independent random numbers. The greatest errors are at peaks that lie between sheets. */
 static void test_noise_against_the_reference(void **state) {
   (void)state;
   static float sheets[PIXELS * 4], reference[PIXELS * 4];
@@ -283,16 +286,16 @@ static void test_noise_against_the_reference(void **state) {
 
 static double ridge_height, beside_ridge;
 
-/* For x < 4, a ridge crosses the rays along z, and its middle is at another depth in each row. For x > 4
- * there is one value, and a strip of ones gives all fields the same range of values. */
+/* For x < 4, a ridge crosses the rays along z at another depth in each row. For x > 4 the field has one
+ * value, and a strip of ones gives all fields the same range of values. */
 static double ridge(double x, double y, double z) {
   const double off = z - 0.17 * y;
   return x < 4 ? ridge_height * exp(-off * off / 4) : y > 10 ? 1 : beside_ridge;
 }
 
 /* The ridge is about as high as the least value that is shown. Between two sheets a ray may meet a greater
- * value than on any sheet. Whether the pixel shows it must not depend on whether other pixels of its block
- * show anything. */
+ * value than on any sheet. Whether a pixel shows such a value must not depend on whether other pixels of its
+ * block show anything. */
 static void test_pixels_beside_do_not_matter(void **state) {
   (void)state;
   static float pixels[2][PIXELS * 4];

@@ -1,12 +1,12 @@
-/* analytic/sheets_near_surfaces.c - haze close behind a pane gets the light that the pane lets through, and
- * no more. */
+/* analytic/sheets_near_surfaces.c - haze close behind a pane gets only the light that the pane lets
+ * through. */
 #include "../asserts.h"
 #include "mesh_stage.h"
 
 enum { SIDE = 24, PIXELS = SIDE * SIDE };
 
-/* A block of haze, 24 x 24 x 24, in a picture of the width 16, with a light on its far side, and in it a wide
- * pane without colour. point: whether the light is a point. */
+/* A scene of a block of haze, 24 x 24 x 24, with a wide pane without colour in the haze and a light on the
+ * far side, in a picture of the width 16. point: whether the light is a point. */
 typedef struct pane_scene {
   double opacity, height, tilt, diameter;
   int kind; /* of shadows */
@@ -35,8 +35,9 @@ static void render_pane(const pane_scene *pane, float *pixels) {
   mesh_stage_close(&all);
 }
 
-/* A pane across all of the haze halves the light that comes to the eye, wherever it stands: half of the light
- * arrives before it, and the eye sees half of what is behind it. An opaque pane leaves nothing. */
+/* A pane of the opacity 1/2 across all of the haze halves the light that comes to the eye, wherever the pane
+ * stands. Half of the light arrives at the haze before the pane, and the eye sees half of the light of the
+ * haze behind the pane. Behind an opaque pane no light is left. */
 static void test_pane_in_haze(void **state) {
   (void)state;
   static float open[4 * PIXELS], pixels[4 * PIXELS];
@@ -63,16 +64,16 @@ static void test_pane_in_haze(void **state) {
   }
 }
 
-/* The light that haze between two heights sends to the eye above. The light comes from below, in a direction
- * whose part along z is `climb`. Derived: the eye sees the fraction e exp(-e (12 - z)) of the height z, and
- * the light there is exp(-e (z + 12) / climb). */
+/* Returns the light that haze between two heights sends to the eye above. The light comes from below, in a
+ * direction with the z component `climb`. Derived: the eye sees the fraction e exp(-e (12 - z)) of the height
+ * z, and the light there is exp(-e (z + 12) / climb). */
 static double light_of_haze(double from, double to, double climb) {
   const double e = -log(0.9), rate = e * (1 - 1 / climb), way = exp(-12 * e * (1 + 1 / climb));
   return e * way * (fabs(rate) < 1e-12 ? to - from : (exp(rate * to) - exp(rate * from)) / rate);
 }
 
-/* A pane that the eye does not see lets a fraction of the light through; haze behind it has that fraction,
- * from the pane on. At the picture's lower edge, some light enters through the haze's side. */
+/* A pane that the eye does not see lets a fraction of the light through. The haze behind the pane gets this
+ * fraction, up to the pane itself. At the picture's lower edge, some light enters through the haze's side. */
 static void test_unseen_pane(void **state) {
   (void)state;
   static float open[4 * PIXELS], pixels[4 * PIXELS];

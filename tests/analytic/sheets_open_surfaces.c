@@ -1,6 +1,6 @@
 /* analytic/sheets_open_surfaces.c - a volume's surface is lit by the light at its outside. A white surface is
- * as bright as the cosine of the light's angle, whatever its edge, its transfer function, the eye and the
- * method of shadows are. A layer shades the matter behind it. */
+ * as bright as the cosine of the light's angle, at any width of the surface's edge, under any transfer
+ * function, from any view and by every method of shadows. A layer shades the matter behind it. */
 #include "../asserts.h"
 #include "reference_stage.h"
 
@@ -8,7 +8,7 @@ enum { SIDE = 12, PIXELS = SIDE * SIDE, GRID = 48 };
 
 static const double DEGREE = HL_PI / 180;
 
-/* A wide floor at z = 0. Its values fall from 1 to 0 over `edge` voxels. */
+/* Adds a wide floor at z = 0, whose values fall from 1 to 0 over `edge` voxels. */
 static hl_scene_volume *add_floor(stage *set, double edge) {
   static float voxels[16 * 16 * GRID];
   for (int i = 0; i < 16 * 16 * GRID; i++) {
@@ -75,7 +75,8 @@ static void test_floors(void **state) {
   }
 }
 
-/* The same floor lit by sub-lights. There are fewer trials, because each has many lights. */
+/* The floor of test_floors() is as bright as N.L also under sub-lights. There are fewer trials, because each
+ * trial has many lights. */
 static void test_floors_by_sublights(void **state) {
   (void)state;
   static float pixels[PIXELS * 4];
@@ -93,8 +94,9 @@ static void test_floors_by_sublights(void **state) {
   }
 }
 
-/* White bone lies below black skin, and the two have neighbouring values. Returns the brightness of the bone,
- * divided by its brightness without shadows: the light that the skin lets pass. Eye and light are above. */
+/* Returns the fraction of light that skin lets pass. White bone lies below black skin of neighbouring values,
+ * and eye and light are above. The fraction is the bone's brightness divided by its brightness without
+ * shadows. */
 static double light_on_bone(const hl_opacity_point *function, size_t count, double skin) {
   static float pixels[PIXELS * 4], voxels[16 * 16 * GRID];
   static const hl_color_point colors[] = {
@@ -123,8 +125,8 @@ static double light_on_bone(const hl_opacity_point *function, size_t count, doub
   return sent[1] / sent[0];
 }
 
-/* Without skin, the bone's blurred edge has values of skin. They do not shade the bone. A skin that is voxels
- * thick does. */
+/* Without skin, the bone's blurred edge has values of skin. These values do not shade the bone. A skin that
+ * is several voxels thick shades the bone. */
 static void test_layers(void **state) {
   (void)state;
   static const hl_opacity_point stair[] = {{0.3, 0}, {0.32, 0.3}, {0.6, 0.3}, {0.7, 0.999}, {1, 0.999}};
@@ -146,7 +148,7 @@ static double greatest(const float *pixels) {
   return most;
 }
 
-/* A wall on a floor. Its first voxel is 4 voxels below the origin. */
+/* Adds a wall on a floor. The wall's first voxel is 4 voxels below the origin. */
 static void add_wall(stage *set, int thickness, const hl_opacity_point *function) {
   static float voxels[64 * 8 * GRID];
   for (int i = 0; i < 64 * 8 * GRID; i++) {
@@ -175,7 +177,8 @@ static void test_wall_on_a_floor(void **state) {
     add_wall(&set, thickness, FUNCTIONS[f]);
     stage_add_directional(&set, way_from(light, HL_PI));
     set.scene.camera.height = 6;
-    for (int side = 0; side < 2; side++) { /* 5 to 11 voxels before the wall, 0 to 6 behind it */
+    for (int side = 0; side < 2; side++) { /* the pictures show the floor 5 to 11 voxels before the wall, and
+                                              0 to 6 voxels behind the wall */
       double x = side == 0 ? -12 : thickness - 0.5;
       stage_look(&set, (vec3){x, 0, 300}, (vec3){x, 0, 0}, (vec3){0, 1, 0});
       stage_render_sheets(&set, pixels);

@@ -23,8 +23,8 @@ static const int LIGHTS_IN_ORDER[LIGHT_ORDERS][LIGHTS] = {{0, 1, 2}, {0, 2, 1}, 
 
 static const hl_opacity_point EDGE[] = {{0.3, 0}, {0.7, 0.9}};
 
-/* Two overlapping blobs, a floor and a board of triangles, and three lights, two of which may share sheets.
- * alike: whether the blobs have the same place and the same colour. */
+/* Builds a scene of two overlapping blobs, a floor and a board of triangles, and three lights, two of which
+ * may share sheets. alike: whether the blobs have the same place and the same colour. */
 static void build(mesh_stage *all, bool alike) {
   stage *set = &all->set;
   float voxels[2][10 * 10 * 10];
@@ -54,7 +54,7 @@ static void build(mesh_stage *all, bool alike) {
   for (int l = 0; l < LIGHTS; l++) set->lights[l].color[l] = 0.37;
 }
 
-/* The places in the built scene of the things that the ordered scene lists. */
+/* The order of a scene's lists: the index in the built scene of each object that the ordered scene lists. */
 typedef struct order {
   int lights[LIGHTS], volumes[VOLUMES], meshes[MESHES];
 } order;
@@ -82,7 +82,7 @@ typedef struct frame_made {
       object[PIXELS];
 } frame_made;
 
-/* The number in the built scene of an object of the ordered scene. */
+/* Returns the number that an object of the ordered scene has in the built scene. */
 static float object_in_built(const order *by, float object) {
   const int number = (int)object;
   if (number == 0) return 0;
@@ -105,7 +105,7 @@ static void render(mesh_stage *all, const order *by, frame_made *made) {
   for (int p = 0; p < PIXELS; p++) made->object[p] = object_in_built(by, made->object[p]);
 }
 
-/* Shadows are off, hard, and soft by each method. Hard ones are tested under a sky, too. */
+/* Shadows are off, hard, and soft by each method. "sky" has hard shadows under a sky. */
 static const char *const KINDS[] = {"off", "hard", "sky", "cascade", "paper", "sublights"};
 enum { KIND_COUNT = sizeof KINDS / sizeof *KINDS };
 
@@ -142,7 +142,7 @@ static void test_orders(void **state) {
     }
 }
 
-/* Volumes that differ in their voxels, but not in their histograms. */
+/* The order does not matter for volumes that differ in their voxels, but not in their histograms. */
 static void test_alike(void **state) {
   (void)state;
   for (int number = 0; number < ORDERS; number += LIGHT_ORDERS) {

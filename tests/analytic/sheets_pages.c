@@ -19,7 +19,7 @@ enum { SIDE = 24, FLOATS = SIDE * SIDE * 4, MOST_VOXELS = 40 * 40 * 40 };
 
 /* ---- the same volume in pages ---- */
 
-/* Stores the voxels in pieces that begin and end within rows. */
+/* Stores a volume's voxels in pages, in pieces that begin and end within rows. */
 static hl_volume *in_pages(hl_context *context, const hl_volume *volume, int shift) {
   hl_volume_description description = stage_describe_volume(volume);
   hl_pages *pages;
@@ -58,7 +58,7 @@ static const size_t shapes[][3] = {{1, 1, 1},   {2, 3, 1},   {3, 40, 5},   {4, 4
 enum { SHAPES = sizeof shapes / sizeof *shapes };
 static const hl_voxel_type types[] = {HL_VOXEL_U8, HL_VOXEL_U16, HL_VOXEL_F32};
 
-/* All voxels, rows and statistics are the same. */
+/* A volume in pages has the same voxels, rows and statistics as the volume in memory. */
 static void test_voxels(void **state) {
   (void)state;
   stage set;
@@ -107,7 +107,7 @@ static void assert_same_in_pages(stage *set, int shift, const char *what) {
   assert_true(any);
 }
 
-/* Noise in a box of 20 units, seen obliquely; the voxels' values differ from neighbour to neighbour. */
+/* Adds noise in a box of 20 units, seen obliquely. Neighbouring voxels have different values. */
 static hl_scene_volume *add_noise(stage *set, const size_t n[3], hl_voxel_type type) {
   static float voxels[MOST_VOXELS];
   double spacing[3];
@@ -169,7 +169,8 @@ static void draw_sky(stage *set) {
   set->scene.sky.type = HL_SKY_UNIFORM;
   for (int c = 0; c < 3; c++) set->scene.sky.color[c] = 0.7;
 }
-/* Cells in which single voxels are visible, but the values that the kernel makes of them are not. */
+/* In some cells, single voxels have visible values, but the values that the kernel reconstructs are
+ * invisible. */
 static void draw_noise_under_a_sky(stage *set) {
   static const hl_opacity_point opacity[] = {{0.6, 0}, {0.9, 0.9}};
   set->scene.sky.type = HL_SKY_UNIFORM;
@@ -238,7 +239,7 @@ static void make_room_again(hl_context *context) {
   atomic_store(&context->paged, 0);
 }
 
-/* The number of bytes of a mapping that are in memory, by the system's own count. */
+/* Returns how many bytes of a mapping are in memory, by the system's own count. */
 static size_t resident_bytes(const unsigned char *mapping) {
   FILE *maps = fopen("/proc/self/smaps", "r");
   char line[512];
@@ -263,7 +264,8 @@ static void assert_held(const hl_pages *pages, size_t most) {
   assert_in_range(held, 0, most * pages->page_bytes);
 }
 
-/* If there is room for few pages, few are in memory, with the same voxels. After all are forgotten, none is.
+/* If there is room for few pages, few pages are in memory, and the voxels stay the same. After all pages are
+ * forgotten, no page is in memory.
  */
 static void test_few_pages(void **state) {
   (void)state;
@@ -291,7 +293,7 @@ static void test_few_pages(void **state) {
   hl_context_destroy(context);
 }
 
-/* The bytes that a pass over 8 million voxels leaves in memory. */
+/* Passes over 8 million voxels leave only a bounded number of bytes in memory. */
 static void test_resident_bytes(void **state) {
   (void)state;
   enum { WIDE = 200, WINDOW = 1 << 16, ROWS_AND_HALF = 5 * WIDE / 2 };
@@ -425,8 +427,8 @@ static void test_no_room(void **state) {
 
 /* ---- other values than the voxels' ---- */
 
-/* Values that are not finite are replaced, and the interpolating kernel's coefficients are computed, as in
- * memory. */
+/* In volumes in pages, values that are not finite are replaced, and the interpolating kernel's coefficients
+ * are computed, as in volumes in memory. */
 static void test_other_values(void **state) {
   (void)state;
   static const size_t sizes[][3] = {{40, 38, 39}, {9, 9, 2}, {12, 9, 1}, {4, 30, 21}};

@@ -11,8 +11,8 @@
 
 enum { BALL = 44, SIDE = 80, PIXELS = SIDE * SIDE };
 
-/* The greatest difference between parts and the whole, as a fraction of full brightness, in all pixels but
- * one of a thousand. */
+/* The greatest allowed difference between the pictures of the parts and of the whole, as a fraction of full
+ * brightness. One pixel of a thousand may differ by more. */
 static const double GREATEST = 0.005;
 
 typedef enum layout { WHOLE, EIGHTHS, SLICES, OVERLAP, NESTED } layout;
@@ -20,7 +20,7 @@ typedef enum layout { WHOLE, EIGHTHS, SLICES, OVERLAP, NESTED } layout;
 typedef struct setting {
   const char *name;
   hl_light_type light;
-  double size; /* degrees, or a radius */
+  double size; /* the light's angular diameter in degrees, or the light's radius */
   hl_soft_method method;
   bool behind; /* light from behind the ball */
 } setting;
@@ -36,8 +36,9 @@ static const setting SETTINGS[] = {
 };
 enum { SETTINGS_COUNT = sizeof SETTINGS / sizeof *SETTINGS };
 
-/* A ball whose edge is four voxels wide, or waves that fill their grid. The matter of all parts together
- * reaches the outermost faces of the whole, so that sheets and shadow buffers lie in the same places. */
+/* Makes a ball whose edge is four voxels wide, or waves that fill their grid. The matter of all parts
+ * together reaches the outermost faces of the whole, so that sheets and shadow buffers lie in the same
+ * places. */
 static float *make_voxels(layout layout) {
   float *voxels = malloc((size_t)BALL * BALL * BALL * sizeof *voxels);
   assert_non_null(voxels);
@@ -69,8 +70,8 @@ static hl_scene_volume *add_ball(stage *set, const float *voxels, double opacity
   return volume;
 }
 
-/* Thin matter in slices, twice with half of the density, or with a hole that holds a box. The light that
- * passes is 1 - o to the power of the density. */
+/* Adds thin matter in slices, as two copies of half the density, or with a hole that holds a box. The light
+ * that passes is 1 - o to the power of the density. */
 static void add_thin(stage *set, const float *voxels, layout layout) {
   static const double FACES[5] = {-22, -9, 3, 15, 22};
   if (layout == OVERLAP)

@@ -7,8 +7,8 @@
 
 enum { SIDE = 4, PIXELS = SIDE * SIDE, MIDDLE = SIDE / 2 * SIDE + SIDE / 2, ANGLES = 20, STEPS = 100 };
 
-/* A small cube of thin even matter around the origin, seen along -z without ambient light; one light, which
- * casts no shadows. */
+/* Opens a scene of a small cube of thin even matter around the origin, seen along -z without ambient light.
+ * The scene's one light casts no shadows. */
 static hl_scene_volume *open_stage(stage *set, double anisotropy) {
   stage_open(set);
   set->scene.width = set->scene.height = SIDE;
@@ -24,19 +24,20 @@ static hl_scene_volume *open_stage(stage *set, double anisotropy) {
   return volume;
 }
 
-/* The way to a light, at an angle from the direction in which the light would shine straight into the eye. */
+/* Returns the direction to light number k. The angle counts from the direction in which the light would shine
+ * straight into the eye. */
 static vec3 at_angle(int k) {
   double angle = (k < ANGLES / 2 ? 5.0 * k : 50 + 13 * (k - ANGLES / 2)) * HL_PI / 180;
   return (vec3){0.6 * sin(angle), 0.8 * sin(angle), -cos(angle)};
 }
 
-/* The phase function for light from a direction that is scattered into the eye at +z. */
+/* Returns the phase function for light from a direction that is scattered into the eye at +z. */
 static double phase(double g, vec3 towards) {
   vec3 unit = vec3_normalise(towards);
   return (1 - g * g) / pow(1 + g * g + 2 * g * unit.z, 1.5);
 }
 
-/* The light from the middle of the cube, divided by the light of a cube that scatters evenly. */
+/* Returns the light from the middle of the cube, divided by the light of a cube that scatters evenly. */
 static double measure(void (*add_light)(stage *set, int k), int k, double g, bool reference) {
   static float pixels[PIXELS * 4];
   double sent[2];
@@ -60,8 +61,8 @@ static void add_sun(stage *set, int k) {
   stage_add_directional(set, vec3_scale(at_angle(k), -1))->angular_diameter_deg = diameter;
 }
 
-/* The mean over rings around the cone's axis, weighted by their solid angles. Rings are narrower near the
- * axis, where p may be sharp. */
+/* Returns the mean of the phase function p over a cone, from rings around the cone's axis that are weighted
+ * by their solid angles. Rings are narrower near the axis, where p may be sharp. */
 static double mean_over_cone(double g, vec3 axis, double half) {
   vec3 u = vec3_perpendicular(axis), v = vec3_cross(axis, u);
   double sum = 0;
@@ -76,7 +77,7 @@ static double mean_over_cone(double g, vec3 axis, double half) {
   return sum / (STEPS * STEPS);
 }
 
-/* At twenty angles, the picture has the mean of p over the light's cone. */
+/* At twenty angles, the picture has the mean of the phase function over the light's cone. */
 static void test_mean_over_a_cone(void **state) {
   (void)state;
   static const double diameters[] = {0.5, 20, 60, 120}, anisotropies[] = {0.5, 0.8, 0.95, -0.6};
@@ -98,7 +99,8 @@ static near_shape shape;
 static double size; /* the size of the lights of add_near() */
 static const double DISTANCE = 200;
 
-/* The axes of the light's plane, of the length `size`, across the way to the light. Some shapes are tilted.
+/* Finds the axes of the light's plane. The axes have the length `size`, and lie across the way to the light.
+ * Some shapes are tilted.
  */
 static void axes_at(int k, vec3 *u, vec3 *v) {
   vec3 way = at_angle(k);
@@ -130,7 +132,7 @@ static void add_near(stage *set, int k) {
   light->vertex_count = 4;
 }
 
-/* The mean over points that cover the light evenly. */
+/* Returns the mean of the phase function over points that cover the light evenly. */
 static double mean_over_shape(double g, int k) {
   vec3 u, v, place = vec3_scale(at_angle(k), DISTANCE);
   double sum = 0;
@@ -147,9 +149,9 @@ static double mean_over_shape(double g, int k) {
   return sum / (STEPS * STEPS);
 }
 
-/* The renderer sees parts of a light as round caps, so that p deviates at most by these fractions (g = 0.5,
- * 0.8) for lights that are half and a third as wide as they are far away. The reference uses points on the
- * light itself. */
+/* The renderer takes parts of a light as round caps, so that the phase function deviates by up to the
+ * fractions `bars` (for g = 0.5 and 0.8). The lights' widths are half and a third of their distance. The
+ * reference uses points on the light itself. */
 static void test_mean_over_near_lights(void **state) {
   (void)state;
   static const double bars[SHAPES][2] = {{0.002, 0.004}, {0.002, 0.022}, {0.002, 0.006},
@@ -169,7 +171,8 @@ static void test_mean_over_near_lights(void **state) {
   assert_true(most_reference < 0.01);
 }
 
-/* A point light has no extent: the picture has p of its direction. */
+/* A point light has no extent, so that the picture has the phase function's value for the light's
+ * direction. */
 static void test_points_stay_points(void **state) {
   (void)state;
   static float pixels[2][PIXELS * 4];
@@ -193,9 +196,9 @@ static void add_half_sky(stage *set, int k) {
   store(set->scene.sky.up, at_angle(k));
 }
 
-/* Half of an even sky: the picture has the mean of p over that half, even if the lobe points away from it and
- * p is a twentieth of its value towards the half's middle. The sky is cut into squares, so that p deviates at
- * most by these fractions. */
+/* Under half of an even sky, the picture has the mean of the phase function p over this half, even if the
+ * lobe points away from the bright half and p is small there. The sky is cut into squares, so that p deviates
+ * by up to the fractions `bars`. */
 static void test_mean_over_half_a_sky(void **state) {
   (void)state;
   static const double anisotropies[] = {0.5, 0.8, -0.6}, bars[] = {0.015, 0.045, 0.02};
@@ -209,8 +212,8 @@ static void test_mean_over_half_a_sky(void **state) {
 
 enum { NARROW = 48 };
 
-/* A wide light before a thin cube gives the mean of narrow lights over its cone. This holds for light that is
- * scattered more than once, too, which has p of g^2 at first. */
+/* A wide light before a thin cube gives the mean of narrow lights over its cone. The mean is the same for
+ * light that is scattered more than once, for which the first phase function has g^2 in place of g. */
 static void test_scattered_again(void **state) {
   (void)state;
   static float pixels[PIXELS * 4];

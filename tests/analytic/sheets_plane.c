@@ -1,6 +1,6 @@
 /* analytic/sheets_plane.c - transfer functions of two numbers: value and gradient of a ramp, or the values of
- * two volumes. Both numbers are known everywhere, and so are the picture and the light that passes. Tested on
- * the sheets and on the reference. */
+ * two volumes. The two numbers are known everywhere, so that the picture and the light that passes are known.
+ * The sheets and the reference are tested. */
 #include <stdlib.h>
 #include <string.h>
 
@@ -22,7 +22,7 @@ static double rising_along_y(double x, double y, double z) {
 }
 static double paraboloid(double x, double y, double z) { return x * x + y * y + z * z; }
 
-/* A cube of N^3 voxels of edge 1 around the origin with a field. */
+/* Adds a cube of N^3 voxels of edge 1 around the origin with a field. */
 static hl_scene_volume *add_cube(stage *set, field_function *field) {
   static float voxels[N * N * N];
   float *out = voxels;
@@ -60,7 +60,7 @@ static void assert_seen(const float *pixel, const double color[3], double alpha,
 
 static const double RED[3] = {0.9, 0.2, 0.1}, BLUE[3] = {0.1, 0.3, 0.8};
 
-/* The values within the boxes are those of x from -8 to -2 and from 2 to 8. */
+/* The boxes hold the ramp's values where x is from -8 to -2 and from 2 to 8. */
 static void test_ramp_shows_the_box_with_its_gradient(void **state) {
   (void)state;
   static float pixels[PIXELS * 4];
@@ -114,8 +114,8 @@ static void test_gradients_are_of_the_world(void **state) {
 
 /* ---- weights ---- */
 
-/* A box with soft edges, a polygon's cone and an image, each with the gradient 3 in its middle. The weight is
- * a known function of x. */
+/* The shapes of the function are a box with soft edges, a polygon's cone and an image, each with the gradient
+ * 3 in its middle. These functions return a shape's weight at x. */
 static double weight_of_edges(double x) { return fmin(fmax((24 - fabs(3 * x)) / 12, 0), 1); }
 static double weight_of_cone(double x) { return fmax(1 - fabs(3 * x) / 24, 0); }
 
@@ -156,7 +156,8 @@ static void test_weights(void **state) {
     stage_render_by(&set, k >= 3, pixels);
     for (int x = -8; x < 8; x++) {
       double weight = shape == 0 ? weight_of_edges(x + 0.5) : weight_of_cone(x + 0.5);
-      /* in an image, the opacity is linear between the middles of pixels, and not the extinction */
+      /* an image interpolates opacity linearly between the middles of pixels, and the other shapes
+       * interpolate extinction */
       double opacity = shape == 2 ? 0.1 * weight : 1 - pow(0.9, weight);
       /* the sheets' table has 256 rows for four units, so that a ridge is lower by 1/250 */
       assert_seen(pixel_at(pixels, x + 0.5, 0.5), RED, 1 - pow(1 - opacity, 10),
@@ -173,7 +174,10 @@ static void test_overlaps(void **state) {
   static float pixels[PIXELS * 4];
   const hl_function_box boxes[] = {
       {.low = {-24, 2}, .high = {12, 4}, .color = {1, 0, 0}, .opacity = 0.1},
-      {.low = {-12, 1}, .high = {24, 5}, .color = {0, 0, 1}, .opacity = 0.19}}; /* twice the extinction */
+      {.low = {-12, 1},
+       .high = {24, 5},
+       .color = {0, 0, 1},
+       .opacity = 0.19}}; /* this box has twice the extinction of the other box */
   for (int reference = 0; reference < 2; reference++) {
     stage set;
     open_from_z(&set);
@@ -194,12 +198,12 @@ static void test_two_volumes(void **state) {
   (void)state;
   static float pixels[PIXELS * 4];
   const hl_function_box boxes[] = {
-      /* the values of y from 2 to 8 */
+      /* the box holds the second volume's values where y is from 2 to 8 */
       {.low = {-24, 104}, .high = {0, 116}, .color = {0.9, 0.2, 0.1}, .opacity = 0.1},
       {.low = {0, 84},
        .high = {24, 96},
        .color = {0.1, 0.3, 0.8},
-       .opacity = 0.2}}; /* the values of y from -8 to -2 */
+       .opacity = 0.2}}; /* the box holds the second volume's values where y is from -8 to -2 */
   for (int k = 0; k < 6; k++) {
     stage set;
     open_from_z(&set);
@@ -209,7 +213,7 @@ static void test_two_volumes(void **state) {
     cube->transfer_function.unit_distance = 2;
     hl_scene_volume *other = add_cube(&set, rising_along_y);
     if (k % 3 == 1) {
-      /* the second volume is half as large and turned; its scale in the scene makes up for that */
+      /* the second volume is half as large and turned; its scale in the scene makes up for the size */
       other->scale = 2;
       other->translate[1] = -12; /* 2 (y + 12) / 2 + 100 = 2 (y / 2) + 112 */
     }
@@ -218,7 +222,7 @@ static void test_two_volumes(void **state) {
     set_boxes(cube, HL_SECOND_VOLUME, boxes, 2);
     cube->transfer_function.plane.volume = "other";
     double shift = 0, factor = 1;
-    if (k % 3 == 1) shift = -12, factor = 2; /* the value at y is that of (y + 12) / 2 */
+    if (k % 3 == 1) shift = -12, factor = 2; /* the second volume has at y the value of (y + 12) / 2 */
     stage_render_by(&set, k >= 3, pixels);
     for (int y = -10; y < 10; y++) {
       double own = (y + 0.5 - shift) / factor;
@@ -233,7 +237,7 @@ static void test_two_volumes(void **state) {
 }
 
 /* The function follows the second volume from frame to frame. A renderer that has drawn another second
- * volume, or the same one at another place, makes the bytes of a new renderer. */
+ * volume, or the same second volume at another place, makes the bytes of a new renderer. */
 static void test_second_volume_changes(void **state) {
   (void)state;
   static float pixels[2][PIXELS * 4];
@@ -268,9 +272,9 @@ static void test_second_volume_changes(void **state) {
 static const hl_function_box HALF[] = {
     {.low = {-1000, 2}, .high = {1000, 4}, .color = {1, 1, 1}, .opacity = 0}};
 
-/* A ramp is a medium of even opacity, by its value alone, or by a box around its gradient below another box
- * that shows more and has another gradient. The two pictures are the same under each method, under a sky, and
- * with light that is scattered repeatedly. */
+/* A ramp is drawn as a medium of even opacity in two ways: by its value alone, or by a box around its
+ * gradient, beside a box of other gradients with more opacity. The two pictures are the same under each
+ * method, under a sky, and with light that is scattered repeatedly. */
 static void test_light(void **state) {
   (void)state;
   static float pixels[2][PIXELS * 4];
@@ -381,7 +385,7 @@ static classifier classifier_of(stage *set, const hl_scene_volume *volume) {
 
 /* One box covers all gradients of values below 0, and another box covers some gradients of values above 20.
  * For values up to 20 no gradient is needed. If the first box covers some gradients only, gradients are
- * needed from its lower edge on. If there is no other box, they are needed nowhere. */
+ * needed from its lower edge on. If there is no other box, gradients are needed nowhere. */
 static void test_even_columns_are_known(void **state) {
   (void)state;
   const hl_function_box boxes[] = {{.low = {-30, -1}, .high = {0, 1e4}, .color = {1, 1, 1}, .opacity = 0.5},

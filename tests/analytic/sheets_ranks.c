@@ -1,5 +1,6 @@
 /* analytic/sheets_ranks.c - volumes over the ranks of an MPI job give the bytes of volumes in memory, on
- * every rank, whatever blocks the ranks hold, by every method of shadows. Run by over_ranks.sh. */
+ * every rank, whatever blocks the ranks hold, by every method of shadows. The script over_ranks.sh runs this
+ * program. */
 #include <math.h>
 #include <setjmp.h>
 #include <stdarg.h>
@@ -23,10 +24,10 @@ static hl_ranks *ranks;
 
 /* ---- a volume's blocks ---- */
 
-/* a seed of part_of(): each rank has its share of whole slices, in the order of ranks */
+/* a seed with which part_of() gives each rank its share of whole slices, in the order of ranks */
 enum { BY_SLICES = 1u << 31 };
 
-/* Cuts a box into as many parts as there are ranks: again and again, along another axis and at another place.
+/* Cuts a box into as many parts as there are ranks, by repeated cuts along changing axes at random places.
  * Returns the part of a rank. Parts may be empty. */
 static hl_box part_of(const size_t n[3], int rank, int size, unsigned seed) {
   hl_box box = {{0, 0, 0}, {n[0], n[1], n[2]}};
@@ -57,7 +58,7 @@ typedef struct held_block {
   unsigned char *memory;
 } held_block;
 
-/* How a block lies in memory: packed; with ghost layers; with ghost layers and gaps between all voxels. */
+/* How a block lies in memory: packed, with ghost layers, or with ghost layers and gaps between all voxels. */
 enum { PACKED = 0, WITH_GHOSTS = 1, WITH_GAPS = 2, LAYOUTS = 3 };
 
 static held_block hold_block(const hl_volume *volume, const hl_box *box, int layout) {
@@ -73,7 +74,7 @@ static held_block hold_block(const hl_volume *volume, const hl_box *box, int lay
     count *= around[a];
   }
   held.memory = malloc(count + 1);
-  /* if bytes of ghost layers and gaps were read, the picture would show it */
+  /* if bytes of ghost layers or gaps were read, the picture would change */
   memset(held.memory, 0xa5, count + 1);
   for (size_t k = 0; k < box->count[2]; k++)
     for (size_t j = 0; j < box->count[1]; j++)
@@ -89,7 +90,8 @@ static held_block hold_block(const hl_volume *volume, const hl_box *box, int lay
   return held;
 }
 
-/* The same volume over ranks, with small pages. *held: released after the volume. */
+/* Makes a copy of a volume that lies over the ranks, with small pages. *held: this rank's block, to be
+ * released after the volume. */
 static hl_volume *over_ranks(const hl_volume *volume, const hl_box *box, int layout, int shift,
                              held_block *held) {
   hl_volume_description whole = stage_describe_volume(volume);
@@ -160,7 +162,8 @@ static hl_volume *noisy_volume(const size_t n[3], hl_voxel_type type) {
   return made;
 }
 
-/* All voxels and the statistics are the same, for blocks of every shape and layout. */
+/* A volume over ranks has the same voxels and statistics as the volume in memory, for blocks of every shape
+ * and layout. */
 static void test_voxels(void **state) {
   (void)state;
   for (int n = 0; n < 3 * SHAPES; n++) {
@@ -187,8 +190,8 @@ static void test_voxels(void **state) {
   }
 }
 
-/* A label map with 64-bit numbers that floats would round, in blocks of any shape. Its labels, and the voxels
- * of its copy in memory, are exact. */
+/* In a label map over ranks with 64-bit numbers that floats would round, the labels and the voxels of the
+ * copy in memory are exact, for blocks of any shape. */
 static void test_label_shapes(void **state) {
   (void)state;
   static int64_t voxels[MOST_VOXELS];
@@ -231,7 +234,7 @@ static void test_label_shapes(void **state) {
 
 /* ---- pictures ---- */
 
-/* Noise in a box of 20 units about the origin, seen obliquely. */
+/* Adds noise in a box of 20 units around the origin, seen obliquely. */
 static hl_scene_volume *add_noise(stage *set, const size_t n[3], hl_voxel_type type) {
   static float voxels[MOST_VOXELS];
   double spacing[3];
@@ -281,7 +284,7 @@ static void draw_scattering(stage *set) {
 static void (*const ways[])(stage *set) = {draw_hard,      draw_splat, draw_paper,     draw_cascade,
                                            draw_sublights, draw_two,   draw_scattering};
 
-/* Four lights of every kind, one of them within a block, by every method. */
+/* Pictures under four lights, one of them within a block, have the same bytes by every method. */
 static void test_ways(void **state) {
   (void)state;
   for (size_t n = 0; n < sizeof ways / sizeof *ways; n++) {
@@ -300,7 +303,8 @@ static void test_ways(void **state) {
   }
 }
 
-/* One visible voxel lies where the blocks of eight ranks meet, or of as many as there are. */
+/* One visible voxel lies where the blocks of eight ranks meet, or where the blocks of all ranks meet if there
+ * are fewer. */
 static void test_corner(void **state) {
   (void)state;
   enum { N = 16 };
@@ -342,7 +346,7 @@ static void test_corner(void **state) {
 
 /* ---- memory ---- */
 
-/* Renders on several threads while pages come and go. There is room for LEAST_PAGES alone. */
+/* Renders on several threads while pages come and go. There is room for LEAST_PAGES pages alone. */
 static void test_few_pages(void **state) {
   (void)state;
   context->options.memory_limit = (uint64_t)1 << 40;
@@ -446,7 +450,7 @@ static int compare_doubles(const void *a, const void *b) {
   return x < y ? -1 : x > y;
 }
 
-/* Prints the time that rank 0 takes for a page of 67^3 voxels: from another rank, if there are two or more.
+/* Prints the time in which rank 0 gets a page of 67^3 voxels, from another rank if there is one.
  */
 static void print_times(void) {
   enum { N = 258, PAGES = 4 * 4 * 4, ROUNDS = 20, MEASURED = PAGES * ROUNDS };
@@ -489,7 +493,7 @@ static hl_status join(bool by_communicator, mpi *mpi, hl_error *error) {
   return hl_ranks_join(context, world, &ranks, error);
 }
 
-/* A context that joins by the launcher's library. */
+/* Makes a context that uses the launcher's library of MPI. */
 static hl_status make_context(hl_error *error) {
   hl_context_options options;
   hl_context_options_defaults(&options);

@@ -1,5 +1,5 @@
-/* analytic/sheets_rooms.c - rooms of thin walls, seen from within, with the sun outside. They are dark if no
- * window lets the light in, also at their corners. */
+/* analytic/sheets_rooms.c - rooms of thin walls, seen from within, with the sun outside. A room is dark, also
+ * at its corners, if no window lets the light in. */
 #include <string.h>
 
 #include "../asserts.h"
@@ -7,17 +7,18 @@
 
 enum { SIDE = 96, PIXELS = SIDE * SIDE };
 
-/* The room is a cube of half this width; the window a rectangle of its ceiling. */
+/* The room is a cube of the half width HALF. The window is a rectangle of the room's ceiling. */
 static const double HALF = 30, WINDOW_LOW[2] = {-9, -5}, WINDOW_HIGH[2] = {7, 12};
 
-/* How the walls are made. CLOSED: they share their vertices, and their fronts are outwards. INWARDS: the
- * fronts are inwards. APART: each wall has vertices of its own. WINDOW: the ceiling has a hole. */
+/* How the walls are made. CLOSED: the walls share their vertices, and their fronts are outwards. INWARDS: the
+ * walls share their vertices, and their fronts are inwards. APART: each wall has vertices of its own. WINDOW:
+ * the ceiling has a hole. */
 typedef enum room { CLOSED, INWARDS, APART, WINDOW, ROOMS } room;
 
 static const uint32_t BOX[12][3] = {{0, 2, 1}, {1, 2, 3}, {0, 1, 4}, {1, 5, 4}, {2, 6, 3}, {3, 6, 7},
                                     {0, 4, 2}, {2, 4, 6}, {1, 3, 5}, {3, 7, 5}, {4, 5, 6}, {5, 7, 6}};
 
-/* The ceiling around the window, whose vertices are 8 to 11. */
+/* The triangles of the ceiling around the window. Vertices 8 to 11 are the window's. */
 static const uint32_t AROUND[8][3] = {{4, 5, 9},  {4, 9, 8},   {5, 7, 11}, {5, 11, 9},
                                       {7, 6, 10}, {7, 10, 11}, {6, 4, 8},  {6, 8, 10}};
 
@@ -53,7 +54,8 @@ static void add_room(mesh_stage *all, room kind) {
   mesh_stage_describe(all, &d)->smooth = false;
 }
 
-/* The distance along a ray from within the room to its walls. *normal: of the wall, inwards. */
+/* Returns the distance along a ray from within the room to the room's walls. *normal: the inward normal of
+ * the wall. */
 static double way_out(vec3 from, vec3 way, vec3 *normal) {
   const double o[3] = {from.x, from.y, from.z}, w[3] = {way.x, way.y, way.z};
   *normal = (vec3){0, 0, 0};
@@ -68,8 +70,8 @@ static double way_out(vec3 from, vec3 way, vec3 *normal) {
   return least;
 }
 
-/* The light that is known at the point where a ray of the eye ends; -1: it is not known. margin: the width
- * around the window's edge in which it is not known. */
+/* Returns the light that the point at the end of an eye ray must have; -1: the light is not known. margin:
+ * the width around the edge of the window's light in which the light is not known. */
 static double expected(room kind, vec3 sun, double margin, vec3 eye, vec3 way) {
   vec3 normal, unused;
   vec3 at = vec3_add(eye, vec3_scale(way, way_out(eye, way, &normal)));
@@ -84,7 +86,7 @@ static double expected(room kind, vec3 sun, double margin, vec3 eye, vec3 way) {
   return fabs(inside) < margin ? -1 : inside > 0 ? facing : 0;
 }
 
-/* least, greatest: of the light that is known at the corners and the middle of a pixel. */
+/* Finds the least and the greatest expected light at the corners and the middle of a pixel. */
 static void expect_in_pixel(const mesh_stage *all, room kind, vec3 sun, double margin, int i, double *least,
                             double *greatest) {
   vec3 eye, way, right, down;
@@ -100,7 +102,7 @@ static void expect_in_pixel(const mesh_stage *all, room kind, vec3 sun, double m
   }
 }
 
-/* Asserts that pixels are lit or dark as is known. Returns the number of lit pixels. */
+/* Asserts that pixels are lit or dark as expected() says. Returns the number of lit pixels. */
 static int check(const mesh_stage *all, room kind, vec3 sun, double margin, double tolerance,
                  const float *pixels) {
   int dark = 0, lit = 0;
@@ -116,7 +118,7 @@ static int check(const mesh_stage *all, room kind, vec3 sun, double margin, doub
   return lit;
 }
 
-/* shadows: a kind of mesh_stage_choose_shadows(). */
+/* Opens a scene of a room under a sun. shadows: a kind of mesh_stage_choose_shadows(). */
 static void open_room(mesh_stage *all, room kind, vec3 sun, int shadows, int view) {
   static const vec3 eyes[] = {{-20, -24, 12}, {0, -25, 0}, {24, 22, 24}},
                     targets[] = {{30, 30, -22}, {0, 30, -15}, {-30, -22, -30}};
@@ -139,7 +141,7 @@ static int render_room(room kind, vec3 sun, int shadows, int view, double tolera
   return lit;
 }
 
-/* The greatest light, and the sum, in pixels that must be dark; and their number. */
+/* The greatest light and the sum of light in pixels that must be dark, and the number of these pixels. */
 typedef struct leaks {
   double greatest, sum;
   int count;
@@ -158,8 +160,8 @@ static void add_leaks(mesh_stage *all, room kind, vec3 sun, leaks *found) {
   }
 }
 
-/* The direction to a sun. No sun grazes a wall by less than 15 degrees, since single pixels of open walls
- * would then be lit. */
+/* The direction to a sun. Every sun is at least 15 degrees above every wall, because grazing suns would light
+ * single pixels where walls are not joined. */
 static vec3 sun_of(int k) {
   static const vec3 ways[] = {{-1, -0.4, 0.6}, {-0.4, -1, 0.9}, {-0.3, 0.35, 1}, {0.35, 0.3, 0.8}};
   return vec3_normalise(ways[k]);
@@ -175,7 +177,7 @@ static void test_hard(void **state) {
   }
 }
 
-/* Rooms under soft shadows, by each method. */
+/* Closed rooms are dark with soft shadows by each method. */
 static void test_soft_closed(void **state) {
   (void)state;
   for (int kind = 0; kind < APART; kind++)
@@ -183,7 +185,8 @@ static void test_soft_closed(void **state) {
       for (int k = 0; k < 3; k++) assert_int_equal(render_room((room)kind, sun_of(k), shadows, k, 1e-6), 0);
 }
 
-/* Rooms whose walls are not joined, by each method: the light that enters where walls meet. */
+/* In rooms whose walls are not joined, little light enters where walls meet, with soft shadows by each
+ * method. */
 static void test_soft_open(void **state) {
   static const double GREATEST[] = {0.035, 0.025, 0.005};
   (void)state;

@@ -1,5 +1,5 @@
-/* analytic/sheets_scattered_meshes.c - meshes absorb scattered light and the light of a sky: closed forms,
- * the reference, and the same bytes by any number of threads. */
+/* analytic/sheets_scattered_meshes.c - meshes absorb scattered light and the light of a sky. Pictures are
+ * compared with closed forms, with the reference, and between numbers of threads. */
 #include <stdlib.h>
 #include <string.h>
 
@@ -8,7 +8,8 @@
 
 enum { SIDE = 16, PIXELS = SIDE * SIDE };
 
-/* A block of haze, 24 x 24 x 24, that keeps most of its light, seen from above. The picture's width is 20. */
+/* Opens a scene of a block of haze, 24 x 24 x 24, that scatters most of the light that it meets, seen from
+ * above. The picture's width is 20. */
 static hl_scene_volume *open_stage(stage *set, double opacity) {
   stage_open(set);
   set->scene.width = set->scene.height = SIDE;
@@ -43,7 +44,7 @@ static void close_stage(stage *set) {
   stage_close(set);
 }
 
-/* The mean of a rectangle of pixels. x and y go from `low` up to `high`. */
+/* Returns the mean of a rectangle of pixels from `low` up to `high`, which is excluded. */
 static double mean_of(const float *pixels, const int low[2], const int high[2]) {
   double sum = 0;
   for (int y = low[1]; y < high[1]; y++)
@@ -79,8 +80,8 @@ static void test_haze_behind_a_wall(void **state) {
   assert_true(left[0] > 0.5 * left[2] && left[0] < left[1] && left[1] < left[2]);
 }
 
-/* A wall stands beside the haze, between it and the light, so that the haze is dark. A pane in its place
- * passes its fraction of the light, since all light passes the pane once. */
+/* A wall stands between haze and light, so that the haze is dark. With a pane in the wall's place, the haze
+ * gets the fraction of light that the pane lets pass, because all light passes the pane once. */
 static void test_wall_before_haze(void **state) {
   (void)state;
   static float pixels[4 * PIXELS];
@@ -103,7 +104,7 @@ static void test_wall_before_haze(void **state) {
 }
 
 /* A third of a wide light is hidden. The haze gets two thirds of the light, for once and for repeatedly
- * scattered light. If the light were taken for a point, it would get all of it. */
+ * scattered light. If the light were taken for a point, the haze would get all of the light. */
 static void test_part_of_a_wide_light(void **state) {
   (void)state;
   static float pixels[4 * PIXELS];
@@ -122,12 +123,12 @@ static void test_part_of_a_wide_light(void **state) {
     close_stage(&set);
   }
   assert_true(all[0] > 0.1);
-  /* a third of the light that one of the light's nine points sends */
+  /* the tolerance is a third of the light of one of the nine points that stand for the light */
   assert_near(all[1] / all[0], 2.0 / 3, 1.0 / 27);
 }
 
-/* Thin haze that keeps all light gets its light from the grid of scattered light alone. Above a wide wall it
- * is lit by half of the sky, above a pane of the opacity 0.4 by 0.8 of it. */
+/* Thin haze that keeps all light gets its light from the grid of scattered light alone. Haze above a wide
+ * wall is lit by half of the sky, and haze above a pane of the opacity 0.4 by 0.8 of the sky. */
 static void test_sky_behind_walls(void **state) {
   (void)state;
   static float pixels[4 * PIXELS];
@@ -149,7 +150,7 @@ static void test_sky_behind_walls(void **state) {
   }
 }
 
-/* A wall stands in a part of the haze, and a pane goes through all of it. */
+/* Adds a wall in a part of the haze, and a pane through all of the haze. */
 static void add_reference_scene(stage *set, walls *walls) {
   (void)open_stage(set, 0.06);
   (void)stage_add_directional(set, (vec3){1, 0.2, -0.3});
@@ -157,8 +158,8 @@ static void add_reference_scene(stage *set, walls *walls) {
   add_wall(set, walls, stage_make_quad(set, (vec3){0, 0, -5}, (vec3){20, 0, 0}, (vec3){0, 20, 0}), 0.5);
 }
 
-/* The mean of each half of the picture differs from the reference's by less than 6 percent and four of the
- * reference's standard errors. */
+/* The mean of each half of the picture differs from the reference's mean by less than the sum of 6 percent
+ * and four of the reference's standard errors. */
 static void test_against_the_reference(void **state) {
   (void)state;
   static float pixels[4 * PIXELS], exact[4 * PIXELS], errors[3 * PIXELS];

@@ -1,5 +1,5 @@
-/* analytic/sheets_scattered_sky.c - the light of a sky, scattered repeatedly: the white furnace, a half
- * space, and random paths of the reference. */
+/* analytic/sheets_scattered_sky.c - light of a sky that is scattered repeatedly, compared with the white
+ * furnace, a half space, and random paths of the reference. */
 #include <stdlib.h>
 #include <string.h>
 
@@ -9,7 +9,7 @@
 
 enum { SIDE = 16, PIXELS = SIDE * SIDE, MIDDLE = SIDE / 2 * SIDE + SIDE / 2 };
 
-/* A block of white matter, 48 x 48 x 24, under an even sky of radiance 1. */
+/* Opens a scene of a block of matter, 48 x 48 x 24, under an even sky of radiance 1. */
 static hl_scene_volume *open_stage(stage *set, double opacity, double albedo) {
   stage_open(set);
   set->scene.width = set->scene.height = SIDE;
@@ -27,9 +27,9 @@ static hl_scene_volume *open_stage(stage *set, double opacity, double albedo) {
   return volume;
 }
 
-/* White furnace: matter that keeps all light, in light 1 from everywhere, sends 1 everywhere, so that it does
- * not show before a sky of 1. The matter is thin or thick, scatters evenly, forwards or backwards, and is
- * seen from a corner. */
+/* White furnace: matter that absorbs no light, in light of radiance 1 from everywhere, has the radiance 1
+ * everywhere, so that the matter cannot be told from a sky of radiance 1. The matter is thin or thick,
+ * scatters evenly, forwards or backwards, and is seen from a corner. */
 static void test_white_furnace(void **state) {
   (void)state;
   static const double opacities[] = {0.02, 0.4, 0.9}, anisotropies[] = {0, 0.6, -0.4};
@@ -69,8 +69,8 @@ static void test_inflow_of_an_even_sky(void **state) {
     }
 }
 
-/* The light that enters along all lines has the mean of the sky, and more enters from where the sky is
- * bright. */
+/* The light that enters along all lines of the grid has the sky's mean, and more light enters from where the
+ * sky is bright. */
 static void test_inflow_of_a_hemisphere(void **state) {
   (void)state;
   scatter_inflow inflow[3];
@@ -103,8 +103,9 @@ static double chandrasekhar(double albedo) {
   return h[N];
 }
 
-/* A half space under an even sky of 1 sends out 1 - sqrt(1 - w) H(m) (Chandrasekhar 1950). By reciprocity, a
- * layer sends to m of even light as much as it sends out in all of light from m. */
+/* A half space under an even sky of 1 sends out 1 - sqrt(1 - w) H(m) (Chandrasekhar 1950). By reciprocity,
+ * the light that a layer under even light sends towards m equals all of the light that the layer sends out
+ * under light from m. */
 static void test_half_space(void **state) {
   (void)state;
   static const double albedos[] = {0.5, 0.9, 0.99};
@@ -119,9 +120,9 @@ static void test_half_space(void **state) {
   }
 }
 
-/* The light that a slab of albedo 1 with even scattering sends on of a hemisphere of 1 above it, along its
- * normal: upwards and downwards. Another program traced 200,000 paths, which enter along the normal, in
- * blocks of 64 x 64 x 16 of this optical depth (standard error .001). */
+/* A slab of albedo 1 with even scattering lies below a hemisphere of radiance 1. `up` and `down` are the
+ * light that leaves the slab along its normal, upwards and downwards. Another program traced 200,000 paths,
+ * which enter along the normal, in blocks of 64 x 64 x 16 of this optical depth (standard error .001). */
 static void test_slab_below_a_hemisphere(void **state) {
   (void)state;
   static const double depths[] = {1, 2, 4, 8}, up[] = {0.339, 0.517, 0.690, 0.821},
@@ -150,7 +151,8 @@ static void test_slab_below_a_hemisphere(void **state) {
   }
 }
 
-/* The reference's random paths find the white furnace, too, within four of their standard errors. */
+/* The reference's random paths have the white furnace's radiance 1, too, within four standard errors of the
+ * paths. */
 static void test_paths_of_the_reference(void **state) {
   (void)state;
   static float pixels[PIXELS * 4], errors[PIXELS * 3];
@@ -175,7 +177,7 @@ static void test_paths_of_the_reference(void **state) {
   stage_close(&set);
 }
 
-/* A medium sends on its albedo times the sky's light, by the sheets and the reference. */
+/* The light of a medium is its albedo times the sky's light, by the sheets and the reference. */
 static void test_albedo(void **state) {
   (void)state;
   static float white[PIXELS * 4], grey[PIXELS * 4];

@@ -1,4 +1,5 @@
-/* analytic/sheets_scattering.c - light that media scatter repeatedly: closed forms and invariances. */
+/* analytic/sheets_scattering.c - light that media scatter repeatedly, compared with closed forms, with the
+ * reference's random paths, and between numbers of threads. */
 #include <stdlib.h>
 #include <string.h>
 
@@ -11,7 +12,8 @@ enum { SIDE = 16, PIXELS = SIDE * SIDE, DEEP = 24 };
 
 /* ---- the transport on the grid ---- */
 
-/* A block of nodes with the same matter, and the arrays of a solution. */
+/* A block of nodes with the same matter everywhere, and the arrays of a solution of the transport
+ * equations. */
 typedef struct block {
   hl_context *context;
   hl_pool *pool;
@@ -39,7 +41,7 @@ static void lay_out(block *b, hl_layout *layout) {
   b->flux = take(layout, 3 * b->count);
 }
 
-/* Makes side^3 nodes, of which the outermost are empty. */
+/* Makes a block of side^3 nodes, of which the outermost are empty. */
 static void open_block(block *b, int side, float extinction, float albedo) {
   *b = (block){.nodes = {{side, side, side}, {0, 0, 0}, 0.5f}, .count = (size_t)(side * side * side)};
   hl_context_options options;
@@ -72,8 +74,8 @@ static void solve(block *b) {
                    b->flux);
 }
 
-/* Deep inside, the light b arrives everywhere, and each collision keeps the fraction w of the light. The sum
- * is w b + w^2 b + ... */
+/* Deep inside a block, the same light b arrives everywhere, and each collision scatters the fraction w of the
+ * light. So the scattered light is w b + w^2 b + ... */
 static void test_deep_inside(void **state) {
   (void)state;
   static const float albedos[] = {0.3f, 0.6f, 0.8f};
@@ -88,9 +90,9 @@ static void test_deep_inside(void **state) {
   }
 }
 
-/* White furnace: light 1 from all around, and matter that keeps all of it. Scattered and unscattered light
- * add up to 1 everywhere. If no light is scattered again, G s = 1 - b for the light b that arrives: both
- * solve the equations of u = 1. */
+/* White furnace: in light of radiance 1 from everywhere and matter that absorbs no light, scattered and
+ * unscattered light add up to 1 everywhere. For the unscattered light b, the scattered light is therefore 1 -
+ * b. */
 static void test_white_furnace(void **state) {
   (void)state;
   static const float extinctions[] = {0.05f, 0.5f, 3};
@@ -107,8 +109,8 @@ static void test_white_furnace(void **state) {
   }
 }
 
-/* Beside a block that shines evenly, the flux points away from the block and is at most the light. In its
- * middle the flux is 0. */
+/* Beside a block that shines evenly, the flux points away from the block and is at most the light. In the
+ * block's middle the flux is 0. */
 static void test_flux_leads_out(void **state) {
   (void)state;
   block b;
@@ -127,7 +129,7 @@ static void test_flux_leads_out(void **state) {
 
 /* ---- pictures ---- */
 
-/* A block, 48 x 48 x 24, that absorbs half of the light in one unit, lit and seen from above. */
+/* Opens a scene of a block, 48 x 48 x 24, with the opacity 1/2 for one unit, lit and seen from above. */
 static hl_scene_volume *open_stage(stage *set, double albedo, bool multiple) {
   stage_open(set);
   set->scene.width = set->scene.height = SIDE;
@@ -165,7 +167,7 @@ static double chandrasekhar(double albedo, double cosine) {
   return 1 / (sqrt(1 - albedo) + albedo / 2 * sum);
 }
 
-/* A half space returns H(m) H(m0) times the light that it returns after one scattering. */
+/* The light that a half space returns is H(m) H(m0) times the light that is scattered once. */
 static void test_half_space(void **state) {
   (void)state;
   static const double albedos[] = {0.5, 0.9};
@@ -184,8 +186,8 @@ static void test_half_space(void **state) {
   }
 }
 
-/* The reference's random paths find the light that a half space returns, within four of their standard
- * errors. They find the same numbers at every run, and more paths have smaller errors. */
+/* The reference's random paths find the light that a half space returns, within four standard errors of the
+ * paths. Every run gives the same numbers, and more paths have smaller errors. */
 static void test_paths_of_the_reference(void **state) {
   (void)state;
   static float pixels[3][4 * PIXELS], errors[3 * PIXELS];
@@ -206,14 +208,14 @@ static void test_paths_of_the_reference(void **state) {
       mean[k] += (double)pixels[k][4 * i] / PIXELS;
       square[k] += (double)errors[3 * i] * (double)errors[3 * i] / PIXELS / PIXELS;
     }
-    /* the step of the first scattering is 0.02 */
+    /* the tolerance for the step of the reference's ray march is 0.02 */
     assert_near(mean[k], 0.45 * h * h, 4 * sqrt(square[k]) + 0.02);
   }
   assert_memory_equal(pixels[0], pixels[2], sizeof pixels[0]);
   assert_near(sqrt(square[0] / square[1]), 2, 0.4);
 }
 
-/* If no light is scattered again, the picture does not depend on the albedo of matter that is not lit. */
+/* If light is scattered once only, the picture is proportional to the albedo. */
 static void test_albedo_scales_one_scattering(void **state) {
   (void)state;
   static float full[4 * PIXELS], half[4 * PIXELS];
@@ -256,8 +258,8 @@ static void test_same_bytes(void **state) {
   stage_close(&set);
 }
 
-/* The layers of one light and of ambient light add up to the picture. The layer of ambient light holds the
- * light that is scattered again. */
+/* The layers of one light and of ambient light add up to the picture. The layer of ambient light contains the
+ * light that is scattered more than once. */
 static void test_layers_are_the_picture(void **state) {
   (void)state;
   static float pixels[4 * PIXELS], picture[3 * PIXELS], ambient[3 * PIXELS];

@@ -7,8 +7,8 @@
 
 enum { WIDE = 160, WIDEST = 320, ROWS = 6, MOST = 96 * 96 };
 
-/* An opaque floor with its surface at z = 0, which casts no shadow, and an opaque plate, half a unit thick,
- * that does not show. The eye looks straight down. */
+/* Adds an opaque floor with its surface at z = 0, which casts no shadow, and an opaque plate, half a unit
+ * thick, that the eye does not see. The eye looks straight down. */
 static void stage_plate(stage *set, vec3 low, double nx, double ny) {
   hl_scene_volume *floor = stage_add_grid(set, (size_t[3]){40, 40, 2}, (double[3]){1, 1, 1},
                                           (vec3){-20, -20, -2}, NULL);
@@ -20,7 +20,8 @@ static void stage_plate(stage *set, vec3 low, double nx, double ny) {
   plate->visible = 0;
 }
 
-/* The place in x, in world units, at which the brightness of a row first passes a level between two places.
+/* Returns the first x between `from` and `to`, in world units, at which the brightness of a row passes a
+ * level.
  */
 static double crossing(const float *row, int count, double left, double pitch, double level, double from,
                        double to) {
@@ -70,9 +71,9 @@ static void render_hard(stage *set, double spacing, hl_shadow_lookup lookup, flo
   stage_render_sheets(set, pixels);
 }
 
-/* Light shines along the faces of a cube of haze, which is seen from the side. Within, the light falls by
- * exp(-sigma way). Light that passes beside the cube does not enter through its faces, wherever the pixels of
- * the buffer lie. */
+/* Light shines along the faces of a cube of haze, which is seen from the side. Within the cube, the light
+ * falls by exp(-sigma way). Light that passes beside the cube does not enter through its faces, wherever the
+ * pixels of the buffer lie. */
 static void test_light_along_faces(void **state) {
   (void)state;
   static float pixels[MOST * 4];
@@ -89,7 +90,7 @@ static void test_light_along_faces(void **state) {
   for (double spacing = 0.25; spacing < 0.8; spacing += 0.1) {
     set.scene.render.sheet_spacing = spacing;
     stage_render_sheets(&set, pixels);
-    /* pixels more than a slab away from the faces through which light enters and leaves */
+    /* these pixels are more than a slab away from the faces through which light enters and leaves */
     int first = 12, last = 83;
     const float *row = &pixels[4 * 96 * 48];
     double left = pow(0.9, (last - first) * 0.25);
@@ -99,7 +100,8 @@ static void test_light_along_faces(void **state) {
 }
 
 /* Hard shadows are read by cubic convolution if sheets are closer together than five sixths of a voxel. If
- * they are farther apart, that would need buffers with pixels of more than three quarters of a voxel. */
+ * sheets are farther apart, cubic convolution would need shadow buffers with pixels of more than three
+ * quarters of a voxel, so that the look-ups are bilinear. */
 static void test_what_auto_reads(void **state) {
   (void)state;
   static float chosen[MOST * 4], cubic[MOST * 4], bilinear[MOST * 4];
@@ -143,14 +145,15 @@ static void test_offset_of_directional_light(void **state) {
 
 /* ---- soft shadows ---- */
 
-/* The fraction of a disk of radius 1 that has u < s. */
+/* Returns the fraction of a disk of radius 1 at which u < s. */
 static double disk_below(double s) {
   if (s <= -1) return 0;
   if (s >= 1) return 1;
   return 0.5 + (s * sqrt(1 - s * s) + asin(s)) / HL_PI;
 }
 
-/* The width between a tenth and nine tenths of a disk's light: 2 s with disk_below(s) = 0.9, by bisection. */
+/* Returns the width from 10 to 90 % of the profile of a disk's light: 2 s with disk_below(s) = 0.9, by
+ * bisection. */
 static double disk_width(void) {
   double low = 0, high = 1;
   for (int i = 0; i < 60; i++) {
@@ -161,8 +164,8 @@ static double disk_width(void) {
   return 2 * low;
 }
 
-/* The width between 10 and 90 % of the edge of a plate over x < 0, lit from straight above. height: of the
- * plate's middle. */
+/* Returns the width from 10 to 90 % of the shadow's edge of a plate over x < 0, lit from straight above.
+ * height: of the plate's middle. */
 static double penumbra(double angle_deg, double height, hl_soft_method method) {
   static float pixels[WIDE * ROWS * 4];
   stage set;
@@ -204,7 +207,7 @@ static void test_penumbra_of_cascade(void **state) {
 }
 
 /* The paper's convolutions add variances. Four times the distance gives about twice the width, and the edge
- * is narrower than the true one. */
+ * is narrower than the true edge. */
 static void test_penumbra_of_paper(void **state) {
   (void)state;
   static const double angles[] = {15, 30};
@@ -218,7 +221,7 @@ static void test_penumbra_of_paper(void **state) {
   }
 }
 
-/* A rectangular light above the plate's edge, and the width of its penumbra in pixels. */
+/* A rectangular light above the plate's edge, and the resolution of the picture of its penumbra. */
 typedef struct rect_case {
   double across, along; /* the light's sides across the edge and along it */
   double light, plate;  /* heights */
@@ -231,7 +234,7 @@ static const rect_case rect_cases[] = {
     {6, 12, 24, 8, 160, 0.5},  {10, 3, 30, 15, 320, 0.5}, {10, 8, 30, 15, 320, 1},
 };
 
-/* The width between 10 and 90 % of the penumbra, divided by the width of equation (5). The profile of a
+/* Returns the width from 10 to 90 % of the penumbra, divided by the width of equation (5). The profile of a
  * rectangular light is linear, so that 0.8 L dZ / Z is expected. */
 static double rect_penumbra(const rect_case *c, hl_soft_method method, int samples) {
   static float pixels[WIDEST * ROWS * 4];
@@ -239,7 +242,7 @@ static double rect_penumbra(const rect_case *c, hl_soft_method method, int sampl
   stage_open(&set);
   stage_plate(&set, (vec3){-20, -20, c->plate - 0.25}, 20, 40);
   /* This plate reaches as far to the right as the other plate reaches to the left, so that the light is
-   * nearly above the middle of both. */
+   * nearly above the middle of the two plates. */
   hl_scene_volume *balance = stage_add_box(&set, (vec3){19, -20, c->plate - 0.25},
                                            (vec3){20, 20, c->plate + 0.25});
   balance->visible = 0; /* its shadow falls beside the pixels that are measured */
@@ -298,7 +301,7 @@ static hl_scene_volume *add_blob(stage *set) {
   return blob;
 }
 
-/* A ball on a floor. Each has a skin one voxel thick. */
+/* Adds a ball on a floor. Ball and floor have a skin one voxel thick. */
 static void add_ball_on_floor(stage *set) {
   enum { N = 32 };
   float *voxels = malloc(N * N * N * sizeof *voxels);
@@ -323,7 +326,7 @@ static int by_size(const void *a, const void *b) {
   return (x > y) - (x < y);
 }
 
-/* The root mean square change of the colours. */
+/* Returns the root mean square change of the colours between two pictures. */
 static double change(const float *a, const float *b, int pixels) {
   double sum = 0;
   for (int i = 0; i < pixels * 4; i++)
@@ -331,9 +334,10 @@ static double change(const float *a, const float *b, int pixels) {
   return sqrt(sum / (3 * pixels));
 }
 
-/* At e.l = 0 the slicing direction turns by 90 degrees, and the order of the sheets for the eye is reversed.
- * An animation must not show that: of 21 pictures a degree apart, two neighbouring ones differ by at most
- * twice as much as two in the middle of the range. */
+/* Where the directions to eye and light are perpendicular (e.l = 0), the slicing direction turns by 90
+ * degrees, and the order of the sheets for the eye is reversed. An animation must not show this turn: among
+ * 21 pictures a degree apart, two neighbouring pictures differ by at most twice as much as is usual in the
+ * sequence. */
 static void check_turn(void (*add)(stage *set), hl_shadows shadows, const char *name) {
   enum { FRAMES = 21, SIDE = 64 };
   static float frame[2][SIDE * SIDE * 4];

@@ -1,5 +1,5 @@
-/* analytic/sheets_sky.c - the light of a sky in pictures of sheets: closed forms, the reference, and the same
- * bytes by any number of threads. */
+/* analytic/sheets_sky.c - the light of a sky in pictures of sheets, compared with closed forms, with the
+ * reference, and between numbers of threads. */
 #include <stdlib.h>
 #include <string.h>
 
@@ -15,7 +15,7 @@ static void open_sky(stage *set) {
   set->scene.sky.type = HL_SKY_UNIFORM;
 }
 
-/* The colour of the pixel in the middle, divided by its alpha. */
+/* Returns the colour of the pixel in the middle, divided by its alpha. */
 static double middle(const float *pixels, int channel) {
   const float *pixel = pixels + 4 * (SIDE / 2 * SIDE + SIDE / 2);
   return (double)pixel[channel] / (double)pixel[3];
@@ -42,8 +42,9 @@ static void test_thin_haze(void **state) {
   }
 }
 
-/* In a wide slab of haze, seen through the slab: the mean of (E2(t) + E2(T - t)) / 2 over the depth t,
- * weighted by what the eye sees of each depth, in each colour by its own optical depth. */
+/* The light of a wide slab of haze under an even sky is the mean of (E2(t) + E2(T - t)) / 2 over the optical
+ * depth t, weighted by the fraction of each depth that the eye sees. Each colour has its own optical
+ * depth. */
 static void test_slab(void **state) {
   (void)state;
   static float pixels[PIXELS * 4];
@@ -88,7 +89,7 @@ static void test_hemisphere(void **state) {
 
 enum { GRID = 24 };
 
-/* A ball above a plate, of smooth voxels, shaded as surfaces. */
+/* Adds a ball above a plate, of smooth voxels, shaded as surfaces. */
 static void add_scene(stage *set, const hl_opacity_point opacity[2]) {
   hl_scene_volume *volume = stage_add_ball_and_plate(set, opacity);
   volume->transfer_function.unit_distance = 1;
@@ -99,7 +100,7 @@ static void add_scene(stage *set, const hl_opacity_point opacity[2]) {
 
 static const hl_opacity_point OPACITY[2] = {{0.3, 0}, {0.7, 0.9}};
 
-/* The light of all pixels is the reference's, to a root mean square difference. */
+/* The root mean square difference from the reference's picture is small. */
 static void test_against_the_reference(void **state) {
   (void)state;
   static float sheets[PIXELS * 4], exact[PIXELS * 4];
@@ -126,7 +127,8 @@ static void test_against_the_reference(void **state) {
   stage_close(&set);
 }
 
-/* A wide slab, whose values fall from 1 to 0 over `edge` voxels at its upper face, or a ball of the radius 9.
+/* Adds a wide slab, whose values fall from 1 to 0 over `edge` voxels at its upper face, or a ball of the
+ * radius 9.
  */
 static hl_scene_volume *add_soft_matter(stage *set, bool ball, double edge) {
   static float voxels[GRID * GRID * GRID];
@@ -148,9 +150,9 @@ static hl_scene_volume *add_soft_matter(stage *set, bool ball, double edge) {
 static const hl_opacity_point FUNCTIONS[4][2] = {
     {{0.3, 0}, {0.7, 0.9}}, {{0.2, 0}, {0.6, 0.99}}, {{0.45, 0}, {0.55, 0.999}}, {{0.6, 0}, {0.8, 0.95}}};
 
-/* A white surface of a volume that sees half of an even sky sends the sky's radiance, whatever the transfer
- * function and the width of its edge are, since it is lit by the light at its outside. Each point of a ball
- * sees half of the sky, so that the ball does so from all sides. */
+/* A white surface of a volume that sees half of an even sky has the sky's radiance, at any width of its edge
+ * and under any transfer function, because the light at its outside lights the surface. Each point of a ball
+ * sees half of the sky, so that a ball has the sky's radiance from all sides. */
 static void test_open_surfaces(void **state) {
   (void)state;
   static float pixels[PIXELS * 4];
@@ -168,8 +170,8 @@ static void test_open_surfaces(void **state) {
   }
 }
 
-/* A square ground, `half` to either side, and a pane that does not show. meshes: [2]. The ground and the pane
- * own the meshes. */
+/* Adds a square ground, `half` to either side, and a pane that the eye does not see. meshes: [2]; the ground
+ * and the pane, which own their hl_mesh. */
 static void add_ground_and_pane(stage *set, hl_scene_mesh *meshes, double half, hl_mesh *pane) {
   for (int m = 0; m < 2; m++) {
     hl_scene_mesh_defaults(&meshes[m]);
@@ -183,10 +185,10 @@ static void add_ground_and_pane(stage *set, hl_scene_mesh *meshes, double half, 
   set->scene.mesh_count = 2;
 }
 
-/* A square below a plane that ends above it gets (1 - sin a) / 2 of the sky, where a is the angle from the
- * vertical at which the square sees the plane's edge. The mean of the pixels on the two sides of the edge is
- * 1/2, or 0.8 below a pane of the opacity 0.4. If nothing is above the square, it is 1. The pane is a mesh
- * that does not show. */
+/* A square below a half plane gets (1 - sin a) / 2 of the sky, where a is the angle from the vertical at
+ * which the square sees the half plane's edge. The mean of the pixels on the two sides of the edge is 1/2, or
+ * 0.8 below a pane of the opacity 0.4, or 1 below a transparent pane. The pane is a mesh that the eye does
+ * not see. */
 static void test_meshes(void **state) {
   (void)state;
   static float pixels[PIXELS * 4];
@@ -207,8 +209,8 @@ static void test_meshes(void **state) {
   }
 }
 
-/* The fraction of a whole sky's light that a rectangle hides from a parallel square below one of its corners
- * (the form factor of a corner). x, y: the rectangle's sides divided by its height. */
+/* Returns the fraction of a whole sky's light that a rectangle hides from a parallel square below one of its
+ * corners (the form factor of a corner). x, y: the rectangle's sides divided by its height. */
 static double hidden_by_corner(double x, double y) {
   double a = sqrt(1 + x * x), b = sqrt(1 + y * y);
   return (x / a * atan(y / a) + y / b * atan(x / b)) / (2 * HL_PI);
@@ -241,8 +243,8 @@ static void test_edge_of_a_mesh(void **state) {
   stage_close(&set);
 }
 
-/* The face that a cut leaves of even matter sees half of the sky, as any plane does, and gets the sky's
- * radiance. A clip box and a plane leave the same face. */
+/* A cut face of even matter sees half of the sky, as any plane does, and gets the sky's radiance. A clip box
+ * and a plane leave the same face. */
 static void test_cut_faces(void **state) {
   (void)state;
   enum { HEIGHTS = 5 };

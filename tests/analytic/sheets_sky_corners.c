@@ -5,8 +5,8 @@
 
 enum { GRID = 48, SIDE = 96 };
 
-/* The fraction of a half sky's light that an upright rectangle hides from a point (the form factor of a
- * rectangle whose lower side lies in the point's plane). out: the point's distance from the rectangle's
+/* Returns the fraction of a half sky's light that an upright rectangle hides from a point (the form factor of
+ * a rectangle whose lower side lies in the point's plane). out: the point's distance from the rectangle's
  * plane. before, after: the lengths of the rectangle to both sides of the point. height: of the rectangle.
  * (Howell, A Catalog of Radiation Heat Transfer Configuration Factors, B-3.) */
 static double hidden_by_wall(double out, double before, double after, double height) {
@@ -16,14 +16,15 @@ static double hidden_by_wall(double out, double before, double after, double hei
          (2 * HL_PI);
 }
 
-/* The light at a point of one of the corner's three square faces. x, y: its distances from the two other
- * faces. */
+/* Returns the light at a point of one of the corner's three square faces. x, y: the point's distances from
+ * the two other faces. */
 static double light_of_face(double side, double x, double y) {
   return 1 - hidden_by_wall(x, y, side - y, side) - hidden_by_wall(y, x, side - x, side);
 }
 
-/* Finds the face of the corner that a ray meets, and the light there. corner: each coordinate of the cut
- * box's corner. Returns whether the place lies near the edge between two faces, but not where three meet. */
+/* Finds the face of the corner that a ray meets, and the light at the met point. corner: each coordinate of
+ * the cut box's corner. Returns whether the met point lies near the edge between two faces, but not where
+ * three faces meet. */
 static bool light_near_edge(vec3 origin, vec3 way, double corner, double side, double *light) {
   const double from[3] = {origin.x, origin.y, origin.z}, by[3] = {way.x, way.y, way.z};
   double at[3], nearest = INFINITY;
@@ -76,7 +77,7 @@ static double greatest_error(double corner) {
   return greatest;
 }
 
-/* Beside an edge between two faces, it is as bright as a little away from the edge, wherever the faces lie
+/* Beside an edge between two faces, the light has the closed form's brightness, wherever the faces lie
  * between the cells of the sky's field. */
 static void test_corner_of_a_cut(void **state) {
   (void)state;

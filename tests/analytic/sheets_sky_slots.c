@@ -7,15 +7,15 @@
 
 enum { WIDTH = 32, HEIGHT = 16, ACROSS = 68, ALONG = 100, FLOOR = 6 };
 
-/* A block with a slot from above down to its floor; half: of the slot's width, in voxels. Below a roof the
- * slot widens to a room. */
+/* A block with a slot from above down to the slot's floor. Below a roof the slot widens to a room. half: half
+ * of the slot's width, in voxels. */
 typedef struct slot {
   int half, depth, roof; /* roof: the thickness of the roof; 0: there is no room */
-  double light;          /* the mean over the middle four fifths of the floor's width */
+  double light;          /* the mean light over the middle four fifths of the floor's width */
 } slot;
 
-/* The means through the B-spline's field, each from 12,100 rays at 16 places. Matter weakens a ray by its
- * opacity. */
+/* The expected light, traced by another program through the B-spline's field with 12,100 rays at each of 16
+ * places. Matter weakens a ray by its opacity. */
 static const slot SLOTS[] = {{8, 8, 0, 0.682},   {8, 16, 0, 0.437},  {4, 8, 0, 0.466},
                              {4, 16, 0, 0.249},  {4, 24, 0, 0.161},  {12, 24, 4, 0.415},
                              {16, 32, 4, 0.391}, {10, 20, 4, 0.427}, {8, 24, 4, 0.303}};

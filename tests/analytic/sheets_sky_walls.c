@@ -5,8 +5,8 @@
 
 enum { SIDE = 32, PIXELS = SIDE * SIDE };
 
-/* A box with walls of no thickness that stands on z = 0, turned around the z axis. Its last two triangles are
- * its lid. */
+/* A box with walls of no thickness that stands on z = 0, turned around the z axis. The last two triangles of
+ * its mesh are the lid. */
 typedef struct walled_box {
   double half, height, angle;
 } walled_box;
@@ -35,14 +35,15 @@ static void open_under_sky(mesh_stage *all, double height) {
   all->set.scene.sky.type = HL_SKY_UNIFORM;
 }
 
-/* The fraction of a half sky's light that comes through a rectangle above a point below one of its corners
- * (the form factor of a corner). x, y: the rectangle's sides divided by its height, of either sign. */
+/* Returns the fraction of a half sky's light that comes through a horizontal rectangle to a point below one
+ * of the rectangle's corners (the form factor of a corner). x, y: the rectangle's sides divided by its
+ * height, of either sign. */
 static double light_of_corner(double x, double y) {
   const double a = sqrt(1 + x * x), b = sqrt(1 + y * y);
   return (x / a * atan(y / a) + y / b * atan(x / b)) / (2 * HL_PI);
 }
 
-/* The light of the sky that reaches the floor of a black cup through its opening. */
+/* Returns the light of the sky that reaches a point of a black cup's floor through the cup's opening. */
 static double light_in_cup(const walled_box *cup, double x, double y) {
   double light = 0;
   for (int corner = 0; corner < 4; corner++)
@@ -51,8 +52,8 @@ static double light_in_cup(const walled_box *cup, double x, double y) {
   return light;
 }
 
-/* The thin walls of a cup that is turned against the axes let no light through. (If the walls are parallel to
- * the axes, the errors are those of the sky's few directions, and twice as large.) */
+/* The thin walls of a cup that is turned against the axes let no light through. (Walls parallel to the axes
+ * are not tested: the sky's few directions then make errors twice as large.) */
 static void test_cups(void **state) {
   (void)state;
   static float pixels[PIXELS * 4];

@@ -1,7 +1,7 @@
 /* analytic/sheets_strips.c - several renderers make a part of a picture each, and the parts together are the
  * picture, bit for bit: with every method of shadows, several sweeps, hidden matter, oversampling and
- * surfaces. A part computes only the light that falls on it. The renderers are threads of one process and
- * exchange light as ranks do. A renderer's next frame uses the memory of the one before. */
+ * surfaces. A part computes only the light that its own pixels need. The renderers are threads of one process
+ * and exchange light as ranks do. A renderer's next frame uses the memory of the frame before. */
 #include <math.h>
 #include <setjmp.h>
 #include <stdarg.h>
@@ -28,7 +28,8 @@ static void render_part(stage *set, int part, int parts, float *pixels) {
   hl_scene_release(scene);
 }
 
-/* Whether the part's picture shows all pixels of a cell, or none. */
+/* Returns whether the part's picture shows a cell. The test fails if the part shows some of the cell's pixels
+ * only. */
 static bool shows_cell(const float *whole, const float *shared, int x, int y, const char *what) {
   bool all = true, none = true;
   for (int row = y * HL_STRIP_ROWS; row < (y + 1) * HL_STRIP_ROWS && row < HEIGHT; row++)
@@ -59,7 +60,8 @@ static void assert_parts(stage *set, const float *whole, int parts, const char *
   if (memcmp(sum, whole, sizeof sum) != 0) fail_msg("%s: %d parts do not add up", what, parts);
 }
 
-/* count: the number of divisions into parts that are tried, at most 6. */
+/* Asserts that the parts of a scene's picture add up to the whole picture. count: how many numbers of parts
+ * are tried, at most 6. */
 static void assert_shared(stage *set, const char *what, size_t count) {
   static float whole[FLOATS];
   static const int numbers[] = {7, 2, 4, 8, 3, 1};
@@ -75,7 +77,7 @@ static void assert_shared(stage *set, const char *what, size_t count) {
 static const size_t noise_size[3] = {30, 28, 33};
 static float noise[30 * 28 * 33];
 
-/* threads read it, so that it is set before the first test */
+/* threads read the noise, so that it is made before the first test */
 static void make_noise(void) {
   const size_t *n = noise_size;
   for (size_t v = 0; v < sizeof noise / sizeof *noise; v++)
@@ -108,7 +110,7 @@ static void draw_opaque(stage *set) {
   set->scene.render.light_samples = 2;
   draw_sublights(set);
 }
-/* A corner is cut away. Light comes to the inner corner through opaque matter. */
+/* A corner is cut away. The light that comes to the inner corner has passed opaque matter. */
 static void draw_hollow(stage *set) {
   static const hl_cut corner = {
       .type = HL_CUT_BOX, .min = {3, 3, 3}, .max = {40, 40, 40}, .keep = HL_CUT_KEEP_OUTSIDE};
@@ -126,17 +128,19 @@ static void draw_isosurface(stage *set) {
   set->volumes[0].iso = &surface;
   set->volumes[0].iso_count = 1;
 }
-/* Light from behind: sheets go from back to front, and a search finds the matter that opaque matter hides. */
+/* Light comes from behind, so that sheets go from back to front, and a search finds the matter that opaque
+ * matter hides. */
 static void draw_hidden(stage *set) {
   stage_set_opacity(set, &set->volumes[0], 0.95, 1);
   stage_add_directional(set, (vec3){31, 17, 23});
 }
-/* Lights within the volume and beside it, whose rays go in all directions. */
+/* Point lights within the volume and beside it have rays in all directions. */
 static void draw_within(stage *set) {
   stage_add_point(set, (vec3){1.5, -2.5, 3.5})->radius = 0;
   stage_add_point(set, (vec3){-9, 12, -4})->radius = 0;
 }
-/* The light shines along the middle ray of the eye: its image lies within the picture. */
+/* The light shines along the picture's middle ray, so that the light's vanishing point lies within the
+ * picture. */
 static void draw_ahead(stage *set) {
   set->scene.light_count = 0;
   stage_add_directional(set, (vec3){-31, -17, -23});
@@ -153,7 +157,7 @@ static void draw_eye_within(stage *set) {
   set->scene.camera.type = HL_CAMERA_PERSPECTIVE;
   set->scene.camera.fovy_deg = 70;
 }
-/* Voxels are smaller than pixels, so that each pixel is the mean of several. */
+/* Voxels are smaller than pixels, so that each pixel is the mean of several rendered pixels. */
 static void draw_small(stage *set) { stage_look(set, (vec3){93, 51, 69}, (vec3){0, 0, 0}, (vec3){0, 0, 1}); }
 
 typedef struct way {
@@ -191,9 +195,10 @@ static void test_ways(void **state) {
   }
 }
 
-/* An even cube, seen along z by parallel rays, under light from the left and from above it, at 45 degrees.
- * Parts are bands of rows, and the light of a part is a band of the buffer of the same height. So each of 4
- * parts needs a fourth of the light of the whole picture, and a tile and some pixels on either side. */
+/* Asserts how much light a part of a picture computes. An even cube is seen along z by parallel rays, under
+ * light at 45 degrees from the upper left. Parts are bands of rows, and the light of a part is a band of the
+ * shadow buffer of the same height. So each of 4 parts needs a fourth of the whole picture's light, and a
+ * tile and some pixels on either side. */
 static void assert_light_of_part(const char *what, int side, void (*soften_light)(stage *set)) {
   enum { SIDE = 40, PARTS = 4 };
   static float voxels[SIDE * SIDE * SIDE];
@@ -257,7 +262,7 @@ static void exchange_colors(stage *set) {
   set->volumes[0].attenuation_color[1] = 0.6;
   set->volumes[0].attenuation_color[2] = 0.3;
 }
-/* Light shines along the volume's faces and from behind; and one light is wide. */
+/* Lights shine along the volume's faces and from behind, and one light is wide. */
 static void exchange_along(stage *set) {
   add_noise(set, 0.4);
   stage_add_directional(set, (vec3){1, 0, 0})->angular_diameter_deg = 20;
@@ -271,7 +276,8 @@ static void exchange_near(stage *set) {
   stage_look(set, (vec3){31, 17, 23}, (vec3){2, 3, -4}, (vec3){0, 0, 1});
   set->scene.camera.fovy_deg = 6;
 }
-/* Two slabs far apart. The cascade's chunks between them are empty, as are the first chunks of most parts. */
+/* The scene has two slabs far apart. The cascade's chunks between the slabs are empty, as are the first
+ * chunks of most parts. */
 static void exchange_apart(stage *set) {
   add_soft_noise(set);
   const size_t n[3] = {24, 24, 6};
@@ -297,8 +303,8 @@ static const way soft_ways[] = {
     {"isosurface", exchange_isosurface}, {"mixed", exchange_mixed}};
 enum { SOFT_WAYS = sizeof soft_ways / sizeof *soft_ways };
 
-/* The sum of the parts has the bytes of the whole picture. A part that need not wait goes on with its work
- * until it needs the others' light, a chunk later. */
+/* The sum of the parts has the bytes of the whole picture. In the way POSTING, a part goes on with its work
+ * until it needs the other parts' light, a chunk later. */
 static void test_exchange(void **state) {
   (void)state;
   static const int numbers[] = {7, 2, 8, 3, 4, 1};
@@ -334,7 +340,8 @@ static void exchange_hidden(stage *set) {
   draw_hard(set);
 }
 
-/* Each part searches its own tiles for hidden matter. All parts decide by the sums of two counts. */
+/* Each part searches its own tiles for hidden matter. All parts decide by the sums of two counts over the
+ * parts. */
 static void test_exchanged_search(void **state) {
   (void)state;
   enum { PARTS = 4, SIDE_X = 100, SIDE_Y = 75, COUNTS = 2 };
@@ -347,7 +354,7 @@ static void test_exchanged_search(void **state) {
     assert_int_equal(threads[part].gathered, COUNTS * sizeof(uint64_t));
 }
 
-/* A sky with another colour in each direction, over matter of which much stands alone. */
+/* The sky has another colour in each direction, over matter of which much stands alone. */
 static void exchange_sky(stage *set) {
   exchange_hidden(set);
   set->scene.sky.type = HL_SKY_GRADIENT;
@@ -372,7 +379,7 @@ static void exchange_even_sky(stage *set) {
 }
 
 /* Each part finds the sky's light in some slabs of cells and gets the rest from the other parts, once. The
- * next frame keeps it. */
+ * next frame keeps the sky's light. */
 static void test_exchanged_sky(void **state) {
   (void)state;
   static const way skies[] = {{"sky", exchange_sky},
@@ -386,7 +393,8 @@ static void test_exchanged_sky(void **state) {
   for (size_t n = 0; n < sizeof skies / sizeof *skies; n++) {
     uint64_t gathered[2];
     render_together(threads, 1, WAITING, SIDE_X, SIDE_Y, 1, skies[n].draw, whole);
-    assert_true(threads[0].gathered < 100); /* the search for hidden matter sends a few bytes */
+    assert_true(threads[0].gathered <
+                100); /* only the search for hidden matter exchanges bytes, and these are few */
     render_together(threads, numbers[n], WAITING, SIDE_X, SIDE_Y, 1, skies[n].draw, sum);
     if (memcmp(sum, whole, sizeof sum) != 0) fail_msg("%s: %d parts differ", skies[n].name, numbers[n]);
     for (int frames = 1; frames <= 2; frames++) {
@@ -399,7 +407,7 @@ static void test_exchanged_sky(void **state) {
   }
 }
 
-/* A parallel view of 40 units, lit by a wide sun from the side. */
+/* Sets a parallel view of 40 units, lit by a wide sun from the side. */
 static void look_under_a_sun(stage *set) {
   stage_look(set, (vec3){0, 0, 90}, (vec3){0, 0, 0}, (vec3){0, 1, 0});
   set->scene.camera.type = HL_CAMERA_ORTHOGRAPHIC;
@@ -408,7 +416,7 @@ static void look_under_a_sun(stage *set) {
   soften(set, HL_SOFT_CASCADE);
 }
 
-/* The cube of test_light_of_part(), under soft light. */
+/* Adds the cube of test_light_of_part(), under soft light. */
 static void exchange_cube(stage *set) {
   enum { SIDE = 40 };
   float *voxels = malloc(SIDE * SIDE * SIDE * sizeof *voxels);
@@ -420,8 +428,8 @@ static void exchange_cube(stage *set) {
   look_under_a_sun(set);
 }
 
-/* Each of 4 parts fills a fourth of the light, and a tile and some pixels on either side. Messages bring what
- * matter of the other parts absorbs. */
+/* Each of 4 parts fills a fourth of the shadow buffer, and a tile and some pixels on either side. Messages
+ * bring the light that matter of the other parts absorbs. */
 static void test_exchanged_light(void **state) {
   (void)state;
   enum { PARTS = 4 };
@@ -442,7 +450,7 @@ static void test_exchanged_light(void **state) {
  * from the light. */
 static void exchange_two_depths(stage *set) {
   enum { WIDE = 40, HIGH = 20, DEEP = 4 };
-  float voxels[WIDE * HIGH * DEEP]; /* each part's thread has its own */
+  float voxels[WIDE * HIGH * DEEP]; /* each part's thread has voxels of its own */
   const size_t n[3] = {WIDE, HIGH, DEEP};
   const double spacing[3] = {1, 1, 1};
   for (size_t v = 0; v < sizeof voxels / sizeof *voxels; v++) voxels[v] = 1;
@@ -454,8 +462,8 @@ static void exchange_two_depths(stage *set) {
   look_under_a_sun(set);
 }
 
-/* If two parts had a band of rows each, one would wait for the other at all depths. So each part has bands of
- * both halves of the picture, with about as many rows of each. */
+/* If two parts had a band of rows each, one part would wait for the other at all depths. So each part has
+ * bands in both halves of the picture, with about as many rows in either half. */
 static void test_bands_at_depths(void **state) {
   (void)state;
   enum { PARTS = 2, HALF = TOGETHER_SIDE / 2 };
@@ -488,13 +496,14 @@ static hl_mesh *add_balls(stage *set, hl_scene_mesh *balls) {
   return made;
 }
 
-/* Soft shadows of the methods whose parts need not exchange light, with balls in the noise and without. */
+/* Parts with soft shadows by sub-lights and by the paper's method need not exchange light. The scenes have
+ * balls in the noise, or no balls. */
 static void test_divided(void **state) {
   (void)state;
   static const hl_soft_method methods[] = {HL_SOFT_SUBLIGHTS, HL_SOFT_PAPER};
   for (size_t n = 0; n < 2 * SOFT_WAYS; n++)
     for (size_t method = 0; method < sizeof methods / sizeof *methods; method++) {
-      if (n % 2 == 0 && n / 2 != 1) continue; /* one way is drawn without balls, and all are with them */
+      if (n % 2 == 0 && n / 2 != 1) continue; /* only one of the ways is drawn without balls */
       stage set;
       hl_scene_mesh balls;
       hl_mesh *made = NULL;

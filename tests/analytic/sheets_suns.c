@@ -1,6 +1,6 @@
-/* analytic/sheets_suns.c - a sun in the image of a sky: its light on surfaces and media, the width of its
- * shadow, and its part of the sky's layers, against closed forms and the reference. Pictures without a sun
- * stay the same. */
+/* analytic/sheets_suns.c - a sun in the image of a sky. The sun's light on surfaces and media, the width of
+ * its shadow, and its part of the sky's layers are compared with closed forms and the reference. Pictures
+ * without a sun stay the same. */
 #include <stdlib.h>
 #include <string.h>
 
@@ -58,8 +58,8 @@ static hl_scene_mesh quad(stage *set, vec3 centre, vec3 u, vec3 v) {
   return mesh;
 }
 
-/* A disk of the half angle a at the angle b gives a white plane radiance / pi times the integral of the
- * cosine, pi sin^2 a cos b. The plane has no highlight. */
+/* A sun of the half angle a at the angle b from the normal gives a white plane the light radiance / pi times
+ * the integral of the cosine over the sun's disk, pi sin^2 a cos b. The plane has no highlight. */
 static void test_surface(void **state) {
   (void)state;
   static float pixels[PIXELS * 4];
@@ -79,14 +79,14 @@ static void test_surface(void **state) {
   }
 }
 
-/* The phase function for light from a direction that is scattered into the eye at +z. */
+/* Returns the phase function for light from a direction that is scattered into the eye at +z. */
 static double phase(double g, vec3 towards) {
   vec3 unit = vec3_normalise(towards);
   return (1 - g * g) / pow(1 + g * g + 2 * g * unit.z, 1.5);
 }
 
 /* Thin haze gets 1 / (4 pi) of the integral of the radiance, times the mean of its phase function over the
- * disk. */
+ * sun's disk. */
 static void test_haze(void **state) {
   (void)state;
   static float pixels[PIXELS * 4];
@@ -112,8 +112,9 @@ static void test_haze(void **state) {
   }
 }
 
-/* A board stands 50 above a floor, below a sun at the zenith. At its edge the floor gets half of the sun.
- * Beyond the penumbra, which is 50 tan a wide on either side, it gets all of the sun or nothing. */
+/* A board stands 50 above a floor, below a sun at the zenith. Below the board's edge the floor gets half of
+ * the sun's light. Beyond the penumbra, which is 50 tan a wide on either side, the floor gets all of the
+ * sun's light or nothing. */
 static void test_penumbra(void **state) {
   (void)state;
   static float pixels[PIXELS * 4];
@@ -131,7 +132,7 @@ static void test_penumbra(void **state) {
   double full = 300 * pow(sin(RADIUS * DEGREE), 2);
   for (int x = 0; x < SIDE; x++) {
     double at = x + 0.5 - SIDE / 2, part = (double)pixels[4 * (SIDE / 2 * SIDE + x)] / full;
-    /* derived: the fraction of a disk's area on one side of a chord at -t */
+    /* the expected light is the fraction of a disk's area on one side of a chord at -t (derived) */
     double t = fmin(fmax(at / wide, -1), 1);
     assert_near(part, 0.5 + (asin(t) + t * sqrt(1 - t * t)) / HL_PI, 0.04);
   }
@@ -143,7 +144,7 @@ static void test_penumbra(void **state) {
 
 static const hl_opacity_point OPACITY[2] = {{0.3, 0}, {0.7, 0.9}};
 
-/* A ball above a plate, as surfaces or as media, below a sun from the left. */
+/* Opens a scene of a ball above a plate, as surfaces or as media, below a sun from the left. */
 static void open_scene(stage *set, hl_shading shading) {
   open_sky(set);
   paint((vec3){-0.8, -0.3, 0.7}, 300, 0.3);
@@ -169,8 +170,8 @@ static void render(stage *set, bool reference, picture *made) {
   stage_render_layers(set, reference ? &options : NULL, made->pixels, &wanted);
 }
 
-/* The root mean square difference over the pixels in which the reference shows anything. The layers compared
- * are not divided by alpha. */
+/* Returns the root mean square difference over the pixels in which the reference shows anything. The compared
+ * layers are not divided by alpha. */
 static double deviation(const picture *of, const picture *exact, bool shadow) {
   double sum = 0, count = 0;
   for (int i = 0; i < PIXELS * 3; i++) {
@@ -185,12 +186,14 @@ static double deviation(const picture *of, const picture *exact, bool shadow) {
   return sqrt(sum / count);
 }
 
-/* With suns, the picture is nearer than without to the reference's, which uses the image as it is. So are the
- * sky's layers, which contain the suns. */
+/* The picture with suns is nearer to the reference's picture than the picture without suns. The reference
+ * uses the sky's image without finding suns. The sky's layers, which contain the suns' light, are nearer to
+ * the reference's layers, too. */
 static void test_against_the_reference(void **state) {
   (void)state;
   static picture exact, with, without;
-  /* bars of the light and of its shadow: the sky is looked up at the outside of surfaces, and so is the light
+  /* the bars for the layers of light and of shadow, under suns; the sky's and the suns' light are looked up
+   * at the outside of surfaces
    */
   static const double bounds[2][2] = {{0.03, 0.045}, {0.006, 0.021}};
   for (int i = 0; i < 2; i++) {
@@ -210,7 +213,7 @@ static void test_against_the_reference(void **state) {
 }
 
 /* If there is no other light, the layer of the sky is the whole picture. If another light has other sheets,
- * the sum of the layer and that light's is the picture. */
+ * the sum of the sky's layer and the other light's layer is the picture. */
 static void test_layers(void **state) {
   (void)state;
   static picture made;
@@ -292,8 +295,8 @@ static void test_same_bytes(void **state) {
 }
 
 /* A renderer that keeps the sky's light makes the picture of a new renderer when the image is turned,
- * brightened, or cut at the horizon; and when there is no sun any more, because the sky's setting says so or
- * because sheets are aligned with the picture. */
+ * brightened, or cut at the horizon; and when there is no sun any more, because the sky's setting turns suns
+ * off or because sheets are aligned with the picture. */
 static void test_kept_light(void **state) {
   (void)state;
   static float kept[PIXELS * 4], fresh[PIXELS * 4];
@@ -318,7 +321,7 @@ static void test_kept_light(void **state) {
 
 /* ---- the scene ---- */
 
-/* The scene's own lights are not changed: 256 of them, which is the greatest number, and a sun beside them.
+/* A sun does not change the scene's own lights, also if the scene has 256 lights, the greatest number.
  */
 static void test_description(void **state) {
   (void)state;

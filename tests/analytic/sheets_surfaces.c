@@ -18,16 +18,16 @@ static hl_scene_mesh *add_mesh(mesh_stage *all, const float (*positions)[3], siz
   return mesh_stage_describe(all, &d);
 }
 
-/* A rectangle around a centre. Two vectors lead from the centre to its edges. */
+/* Adds a rectangle around a centre. u, v: the vectors from the centre to the middles of two edges. */
 static hl_scene_mesh *add_quad(mesh_stage *all, vec3 centre, vec3 u, vec3 v) {
   return mesh_stage_add(all, stage_make_quad(&all->set, centre, u, v));
 }
 
 /* ---- coverage ---- */
 
-/* A rectangle's edges lie at odd fractions of pixels. A pixel's alpha is the fraction of it that the
- * rectangle covers, to a sixteenth for each side. No seam shows where its triangles meet. A pixel is half a
- * unit wide. */
+/* A rectangle's edges lie at odd fractions of pixels. A pixel's alpha is the fraction of the pixel that the
+ * rectangle covers, to a sixteenth for each side. No seam shows where the rectangle's triangles meet. A pixel
+ * is half a unit wide. */
 static void test_coverage(void **state) {
   (void)state;
   static float pixels[PIXELS * 4];
@@ -51,7 +51,7 @@ static void test_coverage(void **state) {
   }
 }
 
-/* A board of many small triangles, oblique to the eye. All pixels within it have the board's opacity. */
+/* All pixels within a board of many small triangles, oblique to the eye, have the board's opacity. */
 static void test_no_seams(void **state) {
   (void)state;
   enum { N = 24 };
@@ -83,8 +83,8 @@ static void test_no_seams(void **state) {
 
 /* ---- matter before and behind ---- */
 
-/* A haze of one colour with a black pane in its middle. The half before the pane is seen, and the other half
- * only through a transparent pane. */
+/* A haze of one colour has a black pane in its middle. The eye sees the haze before the pane, and sees the
+ * haze behind the pane only through a translucent pane. */
 static void test_pane_in_haze(void **state) {
   (void)state;
   static float pixels[PIXELS * 4];
@@ -144,7 +144,7 @@ static void test_no_acne(void **state) {
     }
 }
 
-/* A floor, seen from the side, sheets a voxel apart. */
+/* Opens a scene of a floor, seen from the side, with sheets a voxel apart. */
 static void open_floor(mesh_stage *all) {
   open_meshes(all);
   add_quad(all, (vec3){0, 0, 0}, (vec3){60, 0, 0}, (vec3){0, 60, 0});
@@ -154,8 +154,8 @@ static void open_floor(mesh_stage *all) {
   all->set.scene.render.sheet_spacing = 1;
 }
 
-/* Asserts that a floor alone looks as without shadows: to a tolerance in all pixels but one of a thousand,
- * and to twice the tolerance in all. kind: of the shadows. */
+/* Asserts that a floor alone looks the same with and without shadows: to a tolerance in all pixels but one of
+ * a thousand, and to twice the tolerance in every pixel. kind: of the shadows. */
 static void assert_no_acne(mesh_stage *floor, hl_light *light, int kind, double tolerance) {
   static float open[PIXELS * 4], pixels[PIXELS * 4];
   floor->set.scene.render.shadows = HL_SHADOWS_OFF;
@@ -174,8 +174,8 @@ static void assert_no_acne(mesh_stage *floor, hl_light *light, int kind, double 
   assert_true(off * 1000 <= seen);
 }
 
-/* At the sides, a lamp's rays come from other directions than in its middle. Look-ups move to places where
- * the floor has not yet entered the buffer. */
+/* Under a lamp, rays at the sides of the shadow buffer have other directions than in its middle. So look-ups
+ * are moved to places where the floor is not yet in the shadow buffer. */
 static void test_no_acne_under_lamps(void **state) {
   (void)state;
   for (int k = 0; k < 4; k++) {
@@ -188,8 +188,8 @@ static void test_no_acne_under_lamps(void **state) {
   }
 }
 
-/* Hard light from all sides and heights, to which the sheets are slanted. The floor enters the buffer as late
- * as its look-ups reach. */
+/* A floor does not shade itself in hard light from any side and height, to which the sheets are slanted. The
+ * floor enters the shadow buffer only behind the reach of its own look-ups. */
 static void test_no_acne_at_slopes(void **state) {
   (void)state;
   for (int k = 0; k < 16; k++) {
@@ -227,7 +227,7 @@ static void test_translucent_pane(void **state) {
   }
 }
 
-/* The fraction of a disk of the radius 1 on one side of a line at the distance x from its middle. */
+/* Returns the fraction of a disk of the radius 1 on one side of a line at the distance x from its middle. */
 static double disk_beyond(double x) {
   if (x <= -1) return 1;
   if (x >= 1) return 0;
@@ -235,8 +235,8 @@ static double disk_beyond(double x) {
 }
 
 /* An edge at the height 12 above a floor, under a light of 20 degrees. In the penumbra the floor gets the
- * fraction of the light's disk that is seen past the edge. The paper's method is not tested, since its
- * penumbrae have another width. */
+ * fraction of the light's disk that the floor sees past the edge. The paper's method is not tested, because
+ * its penumbrae have another width. */
 static void test_penumbra(void **state) {
   (void)state;
   static float pixels[PIXELS * 4];
@@ -267,8 +267,8 @@ static void test_penumbra(void **state) {
   }
 }
 
-/* A volume's shadow on a mesh: behind a box of haze, a floor has the light that the haze lets through. A
- * mesh's shadow in a volume: below an opaque pane, haze is dark. */
+/* Volumes shade meshes: a floor behind a box of haze gets the light that the haze lets through. Meshes shade
+ * volumes: haze below an opaque pane is dark. */
 static void test_volume_and_mesh(void **state) {
   (void)state;
   static float pixels[PIXELS * 4];
@@ -295,7 +295,8 @@ static void test_volume_and_mesh(void **state) {
 
 /* ---- invariance ---- */
 
-/* Two boards, one of them translucent, and a sphere in a haze. reach: the haze's size from the middle. */
+/* Adds two boards, one of them translucent, and a sphere in a haze. reach: the haze's size from the
+ * middle. */
 static void add_scenery(mesh_stage *all, double reach) {
   add_quad(all, (vec3){0, 0, -6}, (vec3){14, 2, 1}, (vec3){-2, 14, 3});
   add_quad(all, (vec3){2, 1, 3}, (vec3){5, 1, 3}, (vec3){-1, 6, -2})->opacity = 0.6;
@@ -324,7 +325,7 @@ static void test_threads_and_instruction_sets(void **state) {
     }
 }
 
-/* A change of the scene between the frames of one renderer, which keeps what it can. */
+/* Changes the scene between two frames of one renderer, which keeps data of the frame before. */
 static void change(mesh_stage *all, int step) {
   hl_scene_mesh *board = &all->meshes[0], *pane = &all->meshes[1];
   if (step == 1) stage_look(&all->set, (vec3){-35, -40, 40}, (vec3){0, 0, 0}, (vec3){0, 0, 1});
@@ -340,7 +341,7 @@ static void change(mesh_stage *all, int step) {
   board->mesh = stage_make_quad(&all->set, (vec3){1, 0, -6}, (vec3){12, 2, 1}, (vec3){-2, 9, 3});
 }
 
-/* After each change, a renderer that has drawn other frames makes the bytes of a new one. */
+/* After each change, a renderer that has drawn other frames makes the bytes of a new renderer. */
 static void test_kept_between_frames(void **state) {
   (void)state;
   static float fresh[PIXELS * 4], kept[PIXELS * 4], before[PIXELS * 4];
@@ -363,7 +364,8 @@ static void test_kept_between_frames(void **state) {
   mesh_stage_close(&all);
 }
 
-/* Hard shadows beside the reference, which has sixteen rays for each pixel. */
+/* The picture with hard shadows is near the picture of the reference, which has sixteen rays for each
+ * pixel. */
 static void test_against_the_reference(void **state) {
   (void)state;
   static float sheets[PIXELS * 4], exact[PIXELS * 4];
@@ -373,7 +375,7 @@ static void test_against_the_reference(void **state) {
   options.step = 2; /* the haze is even */
   mesh_stage all;
   open_meshes(&all);
-  add_scenery(&all, 60); /* edges of volumes are not antialiased, and are left out */
+  add_scenery(&all, 60); /* edges of volumes are not antialiased, and lie outside of the picture */
   mesh_stage_choose_shadows(&all, &all.set.lights[0], 0, 0);
   all.set.scene.width = all.set.scene.height = SIDE / 2;
   stage_render_sheets(&all.set, sheets);
@@ -427,7 +429,7 @@ static void test_sphere_coverage(void **state) {
 }
 
 /* Under a distant light, a sphere is lit by N.L on one side of the terminator and dark on the other, by every
- * method. Its own shadow does not cross the terminator, and no light is left behind it. */
+ * method. The sphere's own shadow does not cross the terminator, and no light is left on the dark side. */
 static void test_terminator(void **state) {
   (void)state;
   static float pixels[PIXELS * 4];
@@ -455,7 +457,7 @@ static void test_terminator(void **state) {
 }
 
 /* A bent tube, seen from above, covers its length times its width. At the bend there is no gap, and no part
- * counts twice: all of it has the opacity of the tube's two sides. */
+ * counts twice: every pixel has the opacity of the tube's two sides. */
 static void test_tube(void **state) {
   (void)state;
   static float pixels[PIXELS * 4];
@@ -470,7 +472,8 @@ static void test_tube(void **state) {
       assert_true((double)pixels[4 * i + 3] < taken + 1e-5);
       sum += (double)pixels[4 * i + 3] * 0.25;
     }
-    double length = 10 + sqrt(36 + 100); /* each end is half of a polygon in a disk of the radius 2 */
+    double length =
+        10 + sqrt(36 + 100); /* each end of the tube covers half of a disk of the radius 2, as a polygon */
     assert_near(sum / taken, length * 4 + HL_PI * 4, 2);
     mesh_stage_close(&all);
   }
@@ -500,7 +503,7 @@ static void test_colored_pane(void **state) {
   }
 }
 
-/* A cube of triangles around the middle. half: of its edge. */
+/* Adds a cube of triangles around the middle. half: half of the cube's edge. */
 static hl_scene_mesh *add_cube(mesh_stage *all, double half) {
   static const uint32_t faces[12][3] = {{0, 2, 1}, {1, 2, 3}, {4, 5, 6}, {5, 7, 6}, {0, 1, 4}, {1, 5, 4},
                                         {2, 6, 3}, {3, 6, 7}, {0, 4, 2}, {2, 4, 6}, {1, 3, 5}, {3, 7, 5}};
@@ -568,7 +571,7 @@ static void test_no_volume(void **state) {
   assert_near((double)middle[0], 0.8, 1e-3);
   assert_near((double)middle[3], 1, 1e-6);
   assert_near((double)alone[3], 0, 0);
-  all.set.scene.volume_count = 1; /* for its release */
+  all.set.scene.volume_count = 1; /* mesh_stage_close() releases the volume */
   mesh_stage_close(&all);
 }
 

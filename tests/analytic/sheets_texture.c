@@ -1,5 +1,5 @@
-/* analytic/sheets_texture.c - projected images and cones of light: where they fall, how bright they are and
- * how far they reach, against closed forms. */
+/* analytic/sheets_texture.c - projected images and cones of light: their place on a floor, their brightness
+ * and their edges are compared with closed forms. */
 #include <stdlib.h>
 
 #include "../asserts.h"
@@ -7,8 +7,8 @@
 
 enum { SIDE = 96, FINE = 1024 };
 
-/* A checkerboard of count x count pixels, in squares of `squares` pixels, with white in the upper left
- * corner. */
+/* Makes a checkerboard of count x count pixels, in squares of `squares` pixels a side, with white in the
+ * upper left corner. */
 static float *checker(int count, int squares) {
   float *pixels = malloc((size_t)count * (size_t)count * 3 * sizeof *pixels);
   assert_non_null(pixels);
@@ -17,7 +17,8 @@ static float *checker(int count, int squares) {
   return pixels;
 }
 
-/* An opaque floor with its surface at z = 0, seen from straight above. A pixel is a quarter of a unit. */
+/* Opens a scene of an opaque floor with its surface at z = 0, seen from straight above. A pixel is a quarter
+ * of a unit wide. */
 static void stage_floor(stage *set) {
   hl_scene_volume *floor = stage_add_grid(set, (size_t[3]){40, 40, 2}, (double[3]){1, 1, 1},
                                           (vec3){-20, -20, -2}, NULL);
@@ -28,7 +29,7 @@ static void stage_floor(stage *set) {
   set->scene.render.shadows = HL_SHADOWS_OFF;
 }
 
-/* The place at which brightness first passes one half after another place; in world units, along a row or
+/* Returns the first place after `from` at which the brightness passes one half, in world units along a row or
  * column of the floor's picture. */
 static double edge_after(const float *first, int step, double from) {
   for (int i = 0; i + 1 < SIDE; i++) {
@@ -38,8 +39,8 @@ static double edge_after(const float *first, int step, double from) {
   return INFINITY;
 }
 
-/* Parallel light meets the floor at 30 degrees to the normal, the screen lies across the light. Squares keep
- * their width along y, and are longer by 1 / cos 30 along x. */
+/* Parallel light meets the floor at 30 degrees to the normal, and the light's screen is perpendicular to the
+ * light. The squares of a checkerboard keep their width along y, and are longer by 1 / cos 30 along x. */
 static void test_checker_at_30_degrees(void **state) {
   (void)state;
   static float pixels[SIDE * SIDE * 4];
@@ -65,14 +66,14 @@ static void test_checker_at_30_degrees(void **state) {
       assert_true(pixels[4 * (SIDE * y + outside)] == 0);
       sum += pixels[4 * (SIDE * y + outside + 4)] > 0.99f;
     }
-    assert_in_range(sum, 30, 32); /* half of the screen's 64 rows are white there */
+    assert_in_range(sum, 30, 32); /* half of the screen's 64 rows are white beside the edge */
   }
   stage_close(&set);
   free(image);
 }
 
 /* Under a point light above the floor, an edge at the height h of the screen falls H / (H - h) as far out.
- * The light shines through its screen alone, so that nothing above it is lit. */
+ * The light shines through its screen alone, so that nothing above the light is lit. */
 static void test_point_light_through_a_screen(void **state) {
   (void)state;
   static float pixels[SIDE * SIDE * 4];
@@ -88,7 +89,7 @@ static void test_point_light_through_a_screen(void **state) {
     for (int line = -1; line <= 1; line++) {
       double x = 1 + (0.8 + 2 * line - 1) * 2.5, y = 0.5 + (1.5 * line - 0.5) * 2.5;
       assert_near(edge_after(&pixels[4 * SIDE * 44], 1, x - 2), x, 0.125);
-      /* rows run downwards */
+      /* the picture's rows run downwards, so that y changes its sign */
       assert_near(-edge_after(&pixels[4 * 56], SIDE, -y - 1.5), y, 0.125);
     }
   }
@@ -101,9 +102,9 @@ static void test_point_light_through_a_screen(void **state) {
   free(image);
 }
 
-/* If an image is finer than the picture, a pixel shows the image's mean, at any angle. A pixel averages
- * over 3.2 pixels a side. Image pixels of -1 and 1 leave at most 1 / 3.2 along a row, so that the mean
- * deviates by 1 / 3.2^2 of half of the contrast, 0.05. */
+/* If an image is finer than the picture, a pixel shows the image's mean, at any angle. A pixel of the picture
+ * averages 3.2 x 3.2 pixels of the image. Image pixels of -1 and 1 have a mean of at most 1 / 3.2 along a
+ * row, so that the mean over a square deviates by at most 1 / 3.2^2 of half of the contrast, 0.05. */
 static void test_fine_images_are_averaged(void **state) {
   (void)state;
   static float pixels[SIDE * SIDE * 4];
@@ -124,7 +125,7 @@ static void test_fine_images_are_averaged(void **state) {
 }
 
 /* Three beams of one colour each cross a translucent cube, seen from the side. Without attenuation all light
- * comes out. With attenuation exp(-sigma way) of it does. */
+ * comes out of the cube. With attenuation the fraction exp(-sigma way) comes out. */
 static void test_beams_through_a_cube(void **state) {
   (void)state;
   static float pixels[SIDE * SIDE * 4];
@@ -166,8 +167,8 @@ static void test_beams_through_a_cube(void **state) {
   stage_close(&set);
 }
 
-/* A tilted cone on the floor. Each pixel's brightness is the smooth step of the cosine to the axis, with
- * shadows and without. Outside of the cone there is no light. */
+/* A tilted cone of light falls on the floor. Each pixel's brightness is the smooth step of the cosine of the
+ * angle to the cone's axis, with shadows and without. No light falls outside of the cone. */
 static void test_spot_light(void **state) {
   (void)state;
   static float pixels[SIDE * SIDE * 4];
@@ -194,15 +195,16 @@ static void test_spot_light(void **state) {
 
 /* ---- extended lights ---- */
 
-/* The fraction of a disk of radius 1 that has u < s. */
+/* Returns the fraction of a disk of radius 1 at which u < s. */
 static double disk_below(double s) {
   if (s <= -1) return 0;
   if (s >= 1) return 1;
   return 0.5 + (s * sqrt(1 - s * s) + asin(s)) / HL_PI;
 }
 
-/* The brightness along the floor's middle row is the fraction of the light's disk that is seen past the
- * screen's edge, which falls at `edge`. The disk is 2 radius wide on the floor. */
+/* The brightness along the floor's middle row is the fraction of the light's disk that the floor sees past
+ * the screen's edge. edge: the place on the floor at which half of the disk is seen. radius: half of the
+ * penumbra's width. */
 static void check_screen_edge(stage *set, double edge, double radius) {
   static float pixels[SIDE * SIDE * 4];
   double worst = 0;
@@ -213,12 +215,14 @@ static void check_screen_edge(stage *set, double edge, double radius) {
       worst = fmax(worst, fabs((double)pixels[4 * (SIDE * 48 + x)] - disk_below((at - edge) / radius)));
   }
   print_message("# screen's edge, penumbra %.2f: at most %.4f off the disk's\n", 2 * radius, worst);
-  /* A narrow edge has the profile of a box of the disk's variance, which deviates by at most 0.5 + (0.866 / 2
-   * + asin 0.866) / pi - 1 = 0.029. No edge is sharper than a pixel, which is 0.25 wide. */
+  /* A narrow edge has the profile of a box filter with the disk's variance, which deviates from the disk's
+   * profile by at most 0.5 + (0.866 / 2 + asin 0.866) / pi - 1 = 0.029. No edge is sharper than a pixel,
+   * which is 0.25 wide. */
   if (2 * radius > 0.3) assert_near(worst, 0, 0.029);
 }
 
-/* The screen's edge has a penumbra: the light's disk, scaled by equation (5), for parallel and near lights.
+/* The shadow of the screen's edge has a penumbra with the profile of the light's disk and the width of
+ * equation (5), for parallel and near lights.
  */
 static void test_screen_edge_of_extended_lights(void **state) {
   (void)state;
@@ -252,7 +256,7 @@ static uint64_t tiles_filled_for_light(stage *set) {
   return stage_render_counted(set, pixels).tiles_filled_light;
 }
 
-/* If the screen or the cone leaves the volume dark, no pixels of the shadow buffer are computed. */
+/* If the screen or the cone leaves the volume dark, no tile of the shadow buffer is computed. */
 static void test_the_shadow_buffer_follows_what_is_lit(void **state) {
   (void)state;
   const float white[3] = {1, 1, 1};

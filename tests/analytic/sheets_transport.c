@@ -8,8 +8,8 @@
 
 enum { SIDE = 48, PIXELS = SIDE * SIDE };
 
-/* The bar for homogeneous boxes, as a fraction of full brightness: a renderer with floats and tables of 4096
- * entries must reach it. */
+/* The bar for homogeneous boxes, as a fraction of full brightness. Floats and tables of 4096 entries are
+ * precise enough for this bar. */
 static const double TIGHT = 1e-3;
 
 static double transmittance(double opacity, double unit, double distance) {
@@ -29,8 +29,8 @@ static hl_scene_volume *stage_homogeneous(stage *set) {
   return box;
 }
 
-/* The ray of the pixel (x, y) in the box's own space, before the volume's transform. Its parameter is still a
- * length in the world. */
+/* Finds the ray of the pixel (x, y) in the box's own space, before the volume's transform. The ray's
+ * parameter remains a length in the world. */
 static void local_ray(const stage *set, int x, int y, vec3 *origin, vec3 *direction) {
   const hl_scene_volume *volume = &set->volumes[0];
   stage_eye_ray(set, x, y, origin, direction);
@@ -47,7 +47,8 @@ static double chord_of_pixel(const stage *set, int x, int y) {
   return stage_chord(BOX_LOW, BOX_HIGH, origin, direction);
 }
 
-/* Alpha is tested in all pixels, silhouettes included, since rays know where they enter and leave the box. */
+/* Tests alpha in all pixels, silhouettes included, because the renderer knows where each ray enters and
+ * leaves the box. */
 static void check_alpha(stage *set) {
   static float pixels[PIXELS * 4];
   int hits = 0;
@@ -61,8 +62,8 @@ static void check_alpha(stage *set) {
   assert_true(hits > 300);
 }
 
-/* There is no light, or the light comes from behind, from the front, from the side or obliquely. The eye must
- * see the same opacity, whatever sheets follow from the light. */
+/* Tests alpha without light and under light from behind, from the front, from the side and from an oblique
+ * direction. Alpha must be the same, although the light changes the direction of the sheets. */
 static void check_alpha_through_all_sheets(stage *set) {
   static const vec3 lights[] = {{0, 0, -1}, {0, 0, 1}, {1, 0, 0}, {0.5, -1, 0.3}};
   static const double spacings[] = {0.5, 1, 2};
@@ -140,8 +141,9 @@ static void test_alpha_of_oblique_grid(void **state) {
 
 /* ---- emission: integral of sigma exp(-tau_eye) exp(-tau_light) ds along the ray ---- */
 
-/* The integral along the ray's way through the box by Simpson's rule, with stage_chord() for the light's way
- * to each point. The steps are far finer than the sheets. deepest: the longest way of the light. */
+/* Returns the integral along the ray's way through the box by Simpson's rule, in which stage_chord() gives
+ * the length of the light's way to each point. The steps are far finer than the sheets. *deepest: the length
+ * of the light's longest way. */
 static double lit_brightness(vec3 origin, vec3 direction, vec3 light, double *deepest) {
   enum { STEPS = 400 };
   *deepest = 0;
@@ -149,7 +151,7 @@ static double lit_brightness(vec3 origin, vec3 direction, vec3 light, double *de
   if (chord == 0) return 0;
   double enter = stage_chord((vec3){-1e3, -1e3, -1e3}, (vec3){1e3, 1e3, 1e3}, origin, direction), low = 0,
          high = enter;
-  for (int i = 0; i < 80; i++) { /* the last parameter at which the whole chord lies ahead */
+  for (int i = 0; i < 80; i++) { /* bisection finds the last parameter at which the whole chord lies ahead */
     double middle = (low + high) / 2;
     vec3 start = vec3_add(origin, vec3_scale(direction, middle));
     if (stage_chord(BOX_LOW, BOX_HIGH, start, direction) >= chord * (1 - 1e-12)) low = middle;
@@ -165,7 +167,8 @@ static double lit_brightness(vec3 origin, vec3 direction, vec3 light, double *de
   return SIGMA * sum * chord / STEPS / 3;
 }
 
-/* Pixels are away from silhouettes if the rays of all eight neighbours meet the box, too. */
+/* Returns whether a pixel is away from silhouettes: the rays of all eight neighbouring pixels meet the box,
+ * too. */
 static bool well_inside(const stage *set, int x, int y) {
   for (int j = y - 1; j <= y + 1; j++)
     for (int i = x - 1; i <= x + 1; i++)
@@ -195,9 +198,9 @@ static void check_lit(stage *set, vec3 light) {
   assert_near(worst_below_face, 0, 0.015);
 }
 
-/* In the middle of the box, three directions of light have a formula. d: the depth of the box; z: the
- * distance from the eye's side. Light with the view: int sigma exp(-2 sigma z) dz = (1 - exp(-2 sigma d))
- * / 2. Light against the view: int sigma exp(-sigma z) exp(-sigma (d - z)) dz = sigma d exp(-sigma d). Light
+/* In the middle of the box, three directions of light have a closed form. d: the depth of the box; z: the
+ * distance from the eye's side. Light with the view: int sigma exp(-2 sigma z) dz = (1 - exp(-2 sigma d)) /
+ * 2. Light against the view: int sigma exp(-sigma z) exp(-sigma (d - z)) dz = sigma d exp(-sigma d). Light
  * across the view, at the depth x below the lit face: exp(-sigma x) (1 - exp(-sigma d)). */
 static void test_lit_along_axes(void **state) {
   (void)state;
@@ -233,7 +236,7 @@ static void test_lit_along_axes(void **state) {
 }
 
 /* The picture is right to half a per cent of full brightness. The box's faces cut slabs and pixels of the
- * shadow buffer, so that both are fine here. */
+ * shadow buffer, so that this test has fine sheets and fine shadow pixels. */
 static void check_lit_from_everywhere(stage *set, int resolution) {
   static const vec3 lights[] = {{0, 0, -1},     {0, 0, 1},          {1, 0, 0},     {0, -1, 0},
                                 {0.6, 0, -0.8}, {0.48, -0.64, 0.6}, {-0.6, 0.8, 0}};
@@ -289,9 +292,9 @@ static void test_empty_function_gives_zero(void **state) {
   stage_close(&set);
 }
 
-/* A half-transparent block stands between the light and an opaque wall, and the eye sees both from +z. Light
- * travels along +x, and the wall's face lies at x = 2. The block is higher than the wall, so that the wall's
- * surface lies well within its shadow. */
+/* A half-transparent block stands between the light and an opaque wall, and the eye sees block and wall from
+ * +z. Light travels along +x, and the wall's face lies at x = 2. The block is higher than the wall, so that
+ * the wall's surface lies well within the block's shadow. */
 static void stage_block_and_wall(stage *set, hl_scene_volume **block, hl_scene_volume **wall) {
   *wall = stage_add_grid(set, (size_t[3]){4, 8, 8}, (double[3]){1, 1, 1}, (vec3){2, -4, -4}, NULL);
   *block = stage_add_grid(set, (size_t[3]){2, 8, 9}, (double[3]){1, 1, 1}, (vec3){-3, -4, -4}, NULL);
@@ -305,8 +308,8 @@ static void stage_block_and_wall(stage *set, hl_scene_volume **block, hl_scene_v
   stage_add_directional(set, (vec3){1, 0, 0});
 }
 
-/* The brightness of the wall, which is opaque and so shows its own light alone, and the brightness of the
- * block. */
+/* Renders the scene, and finds the colour of the block and of the wall. The wall is opaque, so that it shows
+ * its own light alone. */
 static void look_at_both(stage *set, float block[4], float wall[4]) {
   static float pixels[PIXELS * 4];
   stage_render_sheets(set, pixels);
@@ -347,7 +350,7 @@ static void test_flags(void **state) {
   stage_close(&set);
 }
 
-/* A block absorbs green and blue, and blue twice as much, so that the three channels have other
+/* A block absorbs no red, some green and twice as much blue, so that the three channels have different
  * transmittances. */
 static void test_attenuation_color(void **state) {
   (void)state;
@@ -377,8 +380,8 @@ static double greatest_difference(const float *a, const float *b) {
   return worst;
 }
 
-/* Lights add up: two lights of half the strength give the light of one. Ambient light counts once, however
- * many sweeps there are. */
+/* Lights add up: two lights of half the strength give the picture of one light of the full strength. Ambient
+ * light counts once, however many sweeps there are. */
 static void test_half_lights_add(void **state) {
   (void)state;
   static float one[PIXELS * 4], two[PIXELS * 4], left[PIXELS * 4], right[PIXELS * 4];

@@ -1,5 +1,6 @@
-/* analytic/sheets_umbrae.c - floors below triangles or spheres. They are dark where these hide all of a soft
- * light, without streaks and rings, and else as bright as the part of the light that is not hidden. */
+/* analytic/sheets_umbrae.c - floors below triangles or spheres. A floor is dark, without streaks and rings,
+ * where a triangle or sphere hides all of a soft light. Elsewhere the floor is as bright as the fraction of
+ * the light that is not hidden. */
 #include <string.h>
 
 #include "../asserts.h"
@@ -26,7 +27,7 @@ static void find_rim(vec3 travels, double angle_deg, vec3 rim[RIM]) {
 /* An occluder: a rectangle around a centre, or a sphere. */
 typedef struct hider {
   vec3 centre, u, v;
-  double radius; /* 0: the rectangle */
+  double radius; /* the sphere's radius; 0: the occluder is the rectangle */
   double dome;   /* if above 0, the occluder is a dome of triangles of this radius over the rectangle */
   /* another occluder that hides a part of the light from this one; borrowed; may be null */
   const struct hider *before;
@@ -44,8 +45,8 @@ static bool is_hit(const hider *by, vec3 from, vec3 way) {
          fabs(vec3_dot(at, by->v)) < vec3_dot(by->v, by->v);
 }
 
-/* The point of the floor that the eye sees at (column, row), counted from the middle of a picture of side x
- * side pixels. */
+/* Returns the point of the floor that the eye sees at (column, row), counted from the middle of a picture of
+ * side x side pixels. */
 static vec3 on_floor(double column, double row, int side) {
   vec3 way = vec3_normalise(vec3_scale(EYE, -1)), right = vec3_normalise(vec3_cross(way, (vec3){0, 0, 1})),
        down = vec3_cross(way, right);
@@ -53,8 +54,8 @@ static vec3 on_floor(double column, double row, int side) {
   return vec3_add(at, vec3_scale(way, (FLOOR - at.z) / way.z));
 }
 
-/* The light that is left in the umbra, at least a pixel within: the greatest, and the mean. The occluder is
- * convex, so that it hides all of the light where it hides the light's rim. */
+/* Finds the greatest and the mean light that is left in the umbra, at least a pixel within its edge. The
+ * occluder is convex, so that it hides all of the light where it hides the light's rim. */
 static void find_leaks(const float *pixels, const hider *by, const vec3 rim[RIM], double *greatest,
                        double *mean) {
   double sum = 0;
@@ -85,7 +86,7 @@ static hl_scene_mesh *add_sphere(mesh_stage *all, vec3 centre, double radius) {
   return mesh_stage_describe(all, &d);
 }
 
-/* The upper half of a ball of triangles that are some pixels large. */
+/* Adds the upper half of a ball of triangles that are a few pixels large. */
 static hl_scene_mesh *add_dome(mesh_stage *all, vec3 centre, double radius) {
   enum { RINGS = 16, ROUND = 64 };
   static float positions[(RINGS + 1) * ROUND][3];
@@ -143,8 +144,8 @@ static void measure(const hider *by, double angle, hl_soft_method method, double
   find_leaks(pixels, by, rim, greatest, mean);
 }
 
-/* A rectangle close above the floor, parallel to it or tilted. Pieces of its shadow fall into different
- * chunks of the cascade. No line of light shows between them. */
+/* A rectangle close above the floor is parallel to the floor or tilted. Pieces of the rectangle's shadow fall
+ * into different chunks of the cascade, and no line of light shows between these pieces. */
 static void test_rectangle(void **state) {
   (void)state;
   for (int k = 0; k < 6; k++) {
@@ -156,8 +157,8 @@ static void test_rectangle(void **state) {
   }
 }
 
-/* A board above the floor, half of which another board above it hides from the light. The second board's
- * penumbra crosses the first board. It leaves no line of light in the first board's umbra. */
+/* A second board hides half of a first board, above the floor, from the light. The second board's penumbra
+ * crosses the first board, and leaves no line of light in the first board's umbra. */
 static void test_board_before_board(void **state) {
   (void)state;
   for (int k = 0; k < 4; k++) {
@@ -171,8 +172,8 @@ static void test_board_before_board(void **state) {
   }
 }
 
-/* A ball above the floor. Its upper half, whose rings fall into different chunks, and its lower half, which
- * is dark, leave no rings of light. */
+/* A ball above the floor leaves no rings of light in its umbra. Rings of the ball's lit upper half fall into
+ * different chunks of the cascade, and its lower half is dark. */
 static void test_ball(void **state) {
   (void)state;
   for (int k = 0; k < 3; k++) {
@@ -184,8 +185,8 @@ static void test_ball(void **state) {
   }
 }
 
-/* Hardly any light enters through the seams of a dome of small triangles. On the two sides of a seam, the
- * surface lies in different slabs. */
+/* Hardly any light enters through the seams of a dome of small triangles. A seam is a line at which the
+ * surface passes from one slab into the next. */
 static void test_dome(void **state) {
   (void)state;
   for (int k = 0; k < 4; k++) {
@@ -199,7 +200,8 @@ static void test_dome(void **state) {
   }
 }
 
-/* The fraction of the light's disk that a point sees (derived: a mean over points that fill the disk evenly).
+/* Returns the fraction of the light's disk that a point sees, as a mean over points that fill the disk
+ * evenly.
  */
 static double part_seen(const hider *by, vec3 from, vec3 travels, double angle) {
   vec3 towards = vec3_normalise(vec3_scale(travels, -1)),
@@ -215,9 +217,9 @@ static double part_seen(const hider *by, vec3 from, vec3 travels, double angle) 
 }
 
 /* A ball hangs half a unit above the floor, below a wide sun. The chunks of the cascade draw no jagged edges
- * beside it, and there is no sharp shadow where the sheets begin. The bars are the root mean square and the
- * greatest deviation from the visible fraction of the sun. A sun of 90 degrees nearly grazes the floor, which
- * shades itself. */
+ * beside the ball, and no sharp shadow shows where the sheets begin. The bars are the root mean square and
+ * the greatest deviation from the visible fraction of the sun. A sun of 90 degrees nearly grazes the floor,
+ * which shades itself. */
 static void test_ball_under_wide_sun(void **state) {
   (void)state;
   static float pixels[LARGE_SIDE * LARGE_SIDE * 4];

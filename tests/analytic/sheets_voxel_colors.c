@@ -34,8 +34,8 @@ static double linear_of(unsigned char code) {
   return c <= 0.04045 ? c / 12.92 : pow((c + 0.055) / 1.055, 2.4);
 }
 
-/* The bilinear mean of the weighted linear colours, divided by the mean of the weights, at a point of index
- * space. */
+/* Returns the bilinear mean of the weighted linear colours, divided by the mean of the weights, at a point of
+ * index space. */
 static double expected_at(const unsigned char colors[N][N][4], double x, double y, int channel) {
   double sum = 0, weights = 0, px = fmin(fmax(x, 0), N - 1), py = fmin(fmax(y, 0), N - 1);
   for (int j = 0; j < N; j++)
@@ -97,8 +97,8 @@ static void test_colors_between_voxels(void **state) {
   }
 }
 
-/* Transparent voxels of another colour leave no fringe. Half way to a voxel of the weight 1, blue has 1 part
- * of 256. */
+/* Transparent voxels of another colour leave no fringe. Half way between a red voxel of the weight 255 and a
+ * blue voxel of the weight 1, blue has a fraction of 1/256. */
 static void test_no_fringe(void **state) {
   (void)state;
   static float pixels[PIXELS * 4];
@@ -124,7 +124,8 @@ static void test_no_fringe(void **state) {
   int edge = 0;
   for (int i = 0; i < PIXELS; i++) {
     double alpha = (double)pixels[4 * i + 3], x = (i % SIDE + 0.5) / SIDE * N - 0.5;
-    if (x > N / 2 - 0.5 + 0.01 || alpha < 1e-3) continue; /* the half beside the voxels that are visible */
+    if (x > N / 2 - 0.5 + 0.01 || alpha < 1e-3)
+      continue; /* these pixels lie in the half beside the visible voxels */
     edge += alpha < 0.5;
     assert_true((double)pixels[4 * i] >= 255.0 / 256 * alpha - 1e-4);
     assert_true((double)pixels[4 * i + 2] <= alpha / 256 + 1e-4);
@@ -133,7 +134,7 @@ static void test_no_fringe(void **state) {
   stage_close(&set);
 }
 
-/* A ball whose voxels have colours, in a lit room. */
+/* Opens a scene of a ball whose voxels have colours, with lights. */
 static hl_scene_volume *open_ball(stage *set, int method, bool soft) {
   static float voxels[N * N * N];
   static const hl_opacity_point ramp[] = {{0, 0}, {0.4, 0}, {0.6, 0.7}};
@@ -159,8 +160,8 @@ static hl_scene_volume *open_ball(stage *set, int method, bool soft) {
   return ball;
 }
 
-/* Red voxels with a white transfer function and white voxels with a red one give the same bytes, with hard
- * and soft shadows. */
+/* Red voxels with a white transfer function and white voxels with a red transfer function give the same
+ * bytes, with hard and soft shadows. */
 static void test_one_color_is_the_functions(void **state) {
   (void)state;
   static float pixels[2][PIXELS * 4];
@@ -179,7 +180,7 @@ static void test_one_color_is_the_functions(void **state) {
   }
 }
 
-/* Coloured voxels look as in the reference, in hard and soft shadow. */
+/* Pictures of coloured voxels are near the reference's pictures, with hard and soft shadows. */
 static void test_against_the_reference(void **state) {
   (void)state;
   static float pixels[2][PIXELS * 4];

@@ -1,5 +1,5 @@
-/* analytic/sheets_work.c - no work is done for empty, hidden or unseen matter, except for a small rest. Work
- * is counted as pixels that are reconstructed, which does not depend on the machine. */
+/* analytic/sheets_work.c - hardly any work is done for empty, hidden or unseen matter. Work is counted as
+ * pixels that are reconstructed, which does not depend on the machine. */
 #include <setjmp.h>
 #include <stdarg.h>
 #include <stdio.h>
@@ -14,7 +14,7 @@ enum { SIDE = 64, FLOATS = SIDE * SIDE * 4, BALL = 24 };
 
 static const hl_opacity_point EDGE[] = {{0, 0}, {0.45, 0}, {0.55, 0.9}, {1, 0.9}};
 
-/* A ball in the middle of a cube of air, whose middle is at `middle`. */
+/* Adds a ball in the middle of a cube of air, whose middle is at `middle`. */
 static hl_scene_volume *add_ball(stage *set, size_t n, vec3 middle) {
   float *voxels = malloc(n * n * n * sizeof *voxels);
   assert_non_null(voxels);
@@ -49,8 +49,8 @@ static void assert_at_most(uint64_t more, uint64_t base, double factor, const ch
 
 static const hl_shadows SHADOWS[] = {HL_SHADOWS_OFF, HL_SHADOWS_HARD, HL_SHADOWS_SOFT};
 
-/* With eight times the voxels, all of them air, the work is the same. Pixels of soft buffers lie elsewhere
- * then, so that the work may differ by some per cent. */
+/* If air makes a volume eight times as large, the work stays the same. Pixels of soft shadow buffers lie
+ * elsewhere in the larger volume, so that their work may differ by some per cent. */
 static void test_empty_space(void **state) {
   (void)state;
   static float near[FLOATS], far[FLOATS];
@@ -94,7 +94,7 @@ static void test_out_of_sight(void **state) {
   }
 }
 
-/* A ball stands close behind another one, seen from the front. Its rays are opaque before they reach it. */
+/* A ball stands close behind another ball. The eye's rays are opaque before they reach the hidden ball. */
 static void test_hidden(void **state) {
   (void)state;
   static float pixels[FLOATS];
@@ -138,10 +138,10 @@ static void test_not_taking_part(void **state) {
   }
 }
 
-enum { LARGE = 256 }; /* the picture has enough tiles for some to be tried */
+enum { LARGE = 256 }; /* the picture is large enough that some of its tiles are searched for hidden matter */
 
-/* Light from behind: sheets go from back to front for the eye, and hidden matter is found before. The hidden
- * ball casts its shadow on the ball in front. */
+/* Light comes from behind, so that sheets go from back to front for the eye, and a search finds hidden matter
+ * beforehand. The hidden ball casts its shadow on the ball in front. */
 static void test_hidden_from_light_behind(void **state) {
   (void)state;
   float *pixels = malloc((size_t)LARGE * LARGE * 4 * sizeof *pixels);

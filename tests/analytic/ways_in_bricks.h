@@ -38,7 +38,8 @@ static inline void draw_cut(stage *set) {
   set->volumes[0].cut_count = 1;
 }
 
-/* A map of 12^3 voxels, coarser than the volume and askew to its voxels: two labels, and a corner without. */
+/* Sets a label map of 12^3 voxels, coarser than the volume and askew to its voxels. The map has two labels,
+ * and a corner without a label. */
 static inline void draw_mask(stage *set) {
   static const hl_label labels[] = {
       {.value = 1, .color = {0.81, 0.09, 0.25}, .opacity = 0.4, .visible = 1, .tint = 1},
@@ -73,7 +74,8 @@ static inline void draw_function_of_gradients(stage *set) {
       {.low = {0.4, 0.2}, .high = {1, 2}, .color = {0.1, 0.3, 0.8}, .opacity = 0.8, .edge = {0.2, 0.4}}};
   set_function(set, HL_SECOND_GRADIENT, boxes);
 }
-/* The second volume is a copy of the first one that is moved to the side. It does not show itself. */
+/* Sets a transfer function of the values of two volumes. The second volume is a copy of the first volume,
+ * moved to the side and invisible. */
 static inline void draw_function_of_volume(stage *set) {
   static const hl_function_box boxes[] = {
       {.low = {0.2, 0.1}, .high = {1, 0.5}, .color = {0.9, 0.2, 0.1}, .opacity = 0.5, .edge = {0.2, 0.1}},
@@ -88,7 +90,7 @@ static inline void draw_function_of_volume(stage *set) {
   set->volumes[0].transfer_function.plane.volume = "second";
 }
 
-/* Colours that differ from voxel to voxel; the volume owns them. */
+/* Gives the volume's voxels colours that differ from voxel to voxel. The volume owns the colours. */
 static inline void draw_voxel_colors(stage *set) {
   hl_volume *volume = set->volumes[0].volume;
   size_t bytes = 4 * hl_volume_voxel_count(volume);
@@ -129,7 +131,7 @@ static inline void light_scene(stage *set, hl_scene_volume *volume) {
   stage_add_point(set, (vec3){14, 25, 30})->radius = 3;
 }
 
-/* The root mean square difference. */
+/* Returns the root mean square difference of two pictures. */
 static inline double difference(const float *a, const float *b) {
   double sum = 0;
   for (int i = 0; i < FLOATS; i++) sum += pow((double)a[i] - (double)b[i], 2);

@@ -1,5 +1,5 @@
 /* tests/analytic/ways_to_draw.h - the ways to draw a scene of one volume. A volume that is stored in another
- * form must give the same picture by each. */
+ * form must give the same picture by each way. */
 #ifndef WAYS_TO_DRAW_H
 #define WAYS_TO_DRAW_H
 
