@@ -60,8 +60,9 @@ typedef struct block_way {
 typedef struct block_density {
   const shade_patch *patch;
   int there;      /* whether the volume may be visible in some of the pixels */
-  lanes_int here; /* if several volumes share the slab: the lanes in which the volume may be visible. What
-                   * the volume does in other lanes depends on pixels beside them, so it must not count */
+  lanes_int here; /* if several volumes share the slab: the lanes in whose pixels the volume's matter is
+                   * visible between the sheets, inside or outside of its box. What the volume does in other
+                   * lanes depends on pixels beside them, so it must not count */
   block_way way;
   lanes before, after; /* table coordinates of the densities at the two ends of the slab's covered part */
   way_sums sums;       /* sums of extinction over the table, from one of these two coordinates to the other */
@@ -430,7 +431,7 @@ LANES_INLINE void join_parts(const block_density *densities, int count, block_sl
   for (int i = 0; i < count; i++) {
     const covered_span *part = &densities[i].way.part;
     if (!densities[i].there || !densities[i].patch->volume->visible) continue;
-    lanes_int some = densities[i].here;
+    lanes_int some = densities[i].here & (part->length > 0.0f);
     begin = lanes_min(begin, lanes_select(some, part->begin, lanes_set(1.0f)));
     end = lanes_max(end, lanes_keep(some, part->begin + part->length));
   }
@@ -438,7 +439,8 @@ LANES_INLINE void join_parts(const block_density *densities, int count, block_sl
   for (int i = 0; i < count; i++) {
     const covered_span *part = &densities[i].way.part;
     if (!densities[i].there || !densities[i].patch->volume->visible) continue;
-    lanes_int whole = densities[i].here & (part->begin == begin) & (part->begin + part->length == end);
+    lanes_int whole = densities[i].here & (part->length > 0.0f) & (part->begin == begin) &
+                      (part->begin + part->length == end);
     length = lanes_select(whole, part->length, length);
   }
   lanes_int some = end > begin;
@@ -450,13 +452,12 @@ LANES_INLINE void join_parts(const block_density *densities, int count, block_sl
       slab->joined |= densities[i].here & (densities[i].way.part.length < slab->part.length);
 }
 
-/* Finds the lanes in which a volume may be visible: the lanes whose rays cross its box within the slab, and
- * meet visible matter. */
+/* Finds the lanes in which a volume's matter is visible between the sheets. Outside of the volume's box it is
+ * not seen, but a light's way to what is seen may lead through the box beside the eye's ray. */
 LANES_INLINE lanes_int visible_on_way(const block_density *d) {
   const classifier *classifier = d->patch->volume->classifier;
-  return (d->way.part.length > 0.0f) & may_be_visible(classifier,
-                                                      coordinate_of_density(classifier, d->way.first),
-                                                      coordinate_of_density(classifier, d->way.last));
+  return may_be_visible(classifier, coordinate_of_density(classifier, d->way.first),
+                        coordinate_of_density(classifier, d->way.last));
 }
 
 /* Takes away the matter of a volume in lanes in which it is not visible. */

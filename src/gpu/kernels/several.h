@@ -63,14 +63,14 @@ DEVICE void classify_way(const volume_data *volume, covered_span part, shared_sl
 DEVICE void join_parts(const volume_data *first, shared_slab *slab) {
   float begin = 1.0f, end = 0.0f, length;
   for (int v = 0; v < VOLUMES; v++)
-    if (slab->here[v] && first->plan[v].visible) {
+    if (slab->here[v] && slab->own[v].length > 0.0f && first->plan[v].visible) {
       begin = lesser(begin, slab->own[v].begin);
       end = greater(end, slab->own[v].begin + slab->own[v].length);
     }
   length = end - begin;
   for (int v = 0; v < VOLUMES; v++)
-    if (slab->here[v] && first->plan[v].visible && slab->own[v].begin == begin &&
-        slab->own[v].begin + slab->own[v].length == end)
+    if (slab->here[v] && slab->own[v].length > 0.0f && first->plan[v].visible &&
+        slab->own[v].begin == begin && slab->own[v].begin + slab->own[v].length == end)
       length = slab->own[v].length;
   slab->all.part.begin = end > begin ? begin : 0.0f;
   slab->all.part.length = end > begin ? length : 1.0f;

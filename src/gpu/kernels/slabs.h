@@ -426,7 +426,6 @@ DEVICE void shade_slot(const sweep_data *sweep, unsigned slot, int run_first) {
     const ray_left ray = left_of_ray(volume.plan, &volume.bounds->box, volume.cuts, volume.plan->cut_count,
                                      pixel.u, pixel.v);
     slab.own[i] = part_of_slab(&ray, rays->height, plan->spacing);
-    slab.here[i] = slab.own[i].length > 0.0f;
   }
   classify_slab(first, &slab);
   at[3] = -1.0f;
