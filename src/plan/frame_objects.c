@@ -17,6 +17,7 @@ frame_volume hl_frame_volume(const framed_scene *framed, size_t index) {
                          .casts_shadow = scene->casts_shadow,
                          .receives_shadow = scene->receives_shadow,
                          .is_cut = scene->cut_count > 0,
+                         .is_clipped = scene->clipped,
                          .look = {.shading = scene->shading,
                                   .cut_shading = scene->cut_shading,
                                   .material = scene->material,

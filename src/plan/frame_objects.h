@@ -32,7 +32,8 @@ typedef struct frame_volume {
   uint64_t version, tables_version; /* versions of the grid's voxels, and of all tables that follow from the
                                      * transfer function. Each change raises a version */
   int object;                       /* the volume's number in the layer of objects */
-  bool visible, casts_shadow, receives_shadow, is_cut;
+  bool visible, casts_shadow, receives_shadow;
+  bool is_cut, is_clipped; /* whether the scene has shapes that cut the volume, and a clip box */
   volume_look look;
 } frame_volume;
 

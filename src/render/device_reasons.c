@@ -25,6 +25,14 @@ static bool masks_one_of_several(const frame_plan *plan) {
     if (plan->volumes.list[v].classifier->mask.factors != NULL) return true;
   return false;
 }
+/* Returns whether a frame of several volumes has a volume that is cut or clipped. Light goes through the
+ * removed part of the slab's matter beside the eye's ray. The processors know this matter for all pixels of
+ * a block, and a device only for pixels whose own rays meet visible bricks. */
+static bool cuts_one_of_several(const frame_plan *plan) {
+  for (int v = 0; v < plan->volumes.count && plan->volumes.count > 1; v++)
+    if (plan->volumes.list[v].is_cut || plan->volumes.list[v].is_clipped) return true;
+  return false;
+}
 static bool hides_all(const frame_plan *plan) {
   for (int v = 0; v < plan->volumes.count; v++)
     if (plan->volumes.list[v].visible) return false;
@@ -108,6 +116,7 @@ static const struct {
     {has_many_volumes, "more than 16 volumes"},
     {has_mixed_voxels, "several volumes with different types of voxels"},
     {masks_one_of_several, "several volumes of which one has a mask"},
+    {cuts_one_of_several, "several volumes of which one is cut or clipped"},
     {projects_volumes, "a maximum projection of several volumes"},
     {hides_all, "it shows no volume"},
     {scatters, "multiple scattering"},

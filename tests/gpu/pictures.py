@@ -271,16 +271,9 @@ MADE.update({
         scene(opacity=DENSE, shading="phong"), {**MOVED, "visible": False}, {**TURNED, "receives_shadow": False, "shading": "phong"}),
     "three volumes without shadows, one flat, flat view": beside(
         scene(opacity=AROUND, shading="phong", shadows="off", camera=FLAT), {**MOVED, "shading": "flat"}, TURNED),
-    "two halves of a volume": halved(scene(opacity=AROUND, shading="phong")),
-    "two halves of a medium, light from behind": halved(scene(opacity=OPACITY, direction=(0.2, -0.3, -0.9))),
-    "volumes with cuts, gradient opacity": beside(
-        scene(opacity=AROUND, shading="phong", volume={"cuts": [BALL]}),
-        {**MOVED, "cuts": [plane(1, 0.4, -0.2), BLOCK], "shading": "phong"}, {**TURNED, "transfer_function": {**GLASS, **STEEP}}),
     "volumes, soft shadows of surfaces, colours": beside(
         scene(shadows="soft", shading="phong", opacity=LAYERS, light=SUN, volume={"attenuation_color": [1, 0.5, 0.2]}), {**MOVED, "shading": "phong"}, TURNED),
     "volumes, the paper's soft shadows": beside(scene(shadows="soft", shading="phong", opacity=DENSE, light=SUN, render=PAPER), MOVED),
-    "volumes, sub-lights, a clip box": beside(
-        scene(shadows="soft", shading="phong", opacity=AROUND, light=LAMP, volume={"clip": CLIP}, render=SUBLIGHTS), {**MOVED, "shading": "phong"}),
     "volumes under a sky, forward scattering": beside(scene(sky=SKY, shadows="soft", light=SUN, volume=FORWARDS), {**MOVED, **BACKWARDS}, {**TURNED, "shading": "phong"}),
     "volumes with a function of value and gradient, a projected image": beside(
         with_plane(scene(shading="phong", light={**LAMP, "texture": SLIDE})), MOVED, {**TURNED, "shading": "phong"}),
@@ -312,6 +305,7 @@ LEFT = {
     "meshes or isosurfaces": {**scene(), "meshes": [{"spheres": [[0, -12, 0, 3]]}]},
     "a mask with sheets more than 1.5 voxels apart": scene(volume={"mask": ORGANS}, render={"sheet_spacing": 1.6}),
     "several volumes of which one has a mask": beside(scene(volume={"mask": ORGANS}), MOVED),
+    "several volumes of which one is cut or clipped": halved(scene(opacity=AROUND)),
     "a maximum projection of several volumes": beside(projected(), MOVED),
     "several volumes with different types of voxels": beside(scene(), {**MOVED, "file": "colors.nrrd"}),
     "splatting in place of gathering": scene(render={"reconstruction": "splat"}),
