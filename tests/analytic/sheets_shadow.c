@@ -335,9 +335,9 @@ static double change(const float *a, const float *b, int pixels) {
 }
 
 /* Where the directions to eye and light are perpendicular (e.l = 0), the slicing direction turns by 90
- * degrees, and the order of the sheets for the eye is reversed. An animation must not show this turn: among
- * 21 pictures a degree apart, two neighbouring pictures differ by at most twice as much as is usual in the
- * sequence. */
+ * degrees, and the order of the sheets for the eye is reversed. An animation must not show this turn: of 21
+ * pictures a degree apart, the greatest change between neighbouring pictures is less than twice the median
+ * change. */
 static void check_turn(void (*add)(stage *set), hl_shadows shadows, const char *name) {
   enum { FRAMES = 21, SIDE = 64 };
   static float frame[2][SIDE * SIDE * 4];

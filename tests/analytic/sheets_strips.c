@@ -28,8 +28,8 @@ static void render_part(stage *set, int part, int parts, float *pixels) {
   hl_scene_release(scene);
 }
 
-/* Returns whether the part's picture shows a cell. The test fails if the part shows some of the cell's pixels
- * only. */
+/* Returns whether the part's picture shows a cell. The test fails if the cell's pixels are neither the whole
+ * picture's pixels nor all empty. */
 static bool shows_cell(const float *whole, const float *shared, int x, int y, const char *what) {
   bool all = true, none = true;
   for (int row = y * HL_STRIP_ROWS; row < (y + 1) * HL_STRIP_ROWS && row < HEIGHT; row++)

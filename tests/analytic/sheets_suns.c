@@ -192,8 +192,8 @@ static double deviation(const picture *of, const picture *exact, bool shadow) {
 static void test_against_the_reference(void **state) {
   (void)state;
   static picture exact, with, without;
-  /* the bars for the layers of light and of shadow, under suns; the sky's and the suns' light are looked up
-   * at the outside of surfaces
+  /* [surfaces, media][light, shadow]; the greatest allowed deviations. At surfaces, the light of the sky and
+   * of suns is looked up at the outside of the matter.
    */
   static const double bounds[2][2] = {{0.03, 0.045}, {0.006, 0.021}};
   for (int i = 0; i < 2; i++) {

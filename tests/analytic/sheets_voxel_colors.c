@@ -98,7 +98,7 @@ static void test_colors_between_voxels(void **state) {
 }
 
 /* Transparent voxels of another colour leave no fringe. Half way between a red voxel of the weight 255 and a
- * blue voxel of the weight 1, blue has a fraction of 1/256. */
+ * blue voxel of the weight 1, the fraction of blue is 1/256. */
 static void test_no_fringe(void **state) {
   (void)state;
   static float pixels[PIXELS * 4];
