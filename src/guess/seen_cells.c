@@ -16,7 +16,7 @@
 /* a voxel beside seen cells does not count if its opacity is below this fraction of the greatest opacity */
 #define FAINT  0.02
 #define LOST   0.04   /* least optical depth of a column whose cells count as seen */
-#define OPAQUE 0.9999 /* limit of opacities; an opacity of 1 would have an infinite optical depth \ */
+#define OPAQUE 0.9999 /* limit of opacities; an opacity of 1 would have an infinite optical depth */
 /* The greatest fraction of the seen cells that may be specks. If small bodies have a greater fraction of the
  * cells, the small bodies count as matter. */
 #define SPECKS_AT_MOST 0.03
