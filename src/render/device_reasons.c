@@ -18,33 +18,40 @@ static bool has_mixed_voxels(const frame_plan *plan) {
 static bool projects_volumes(const frame_plan *plan) {
   return plan->volumes.count > 1 && plan->volumes.shown != NULL;
 }
-/* Returns whether a frame of several volumes has a mask. Where a mask hides matter of one volume, the
- * processors may still place the matter of another volume by it, which depends on the pixels of a block. */
-static bool masks_one_of_several(const frame_plan *plan) {
-  for (int v = 0; v < plan->volumes.count && plan->volumes.count > 1; v++)
-    if (plan->volumes.list[v].classifier->mask.factors != NULL) return true;
-  return false;
-}
-/* Returns whether a frame of several volumes has a volume that is cut or clipped. Light goes through the
- * removed part of the slab's matter beside the eye's ray. The processors know this matter for all pixels of
- * a block, and a device only for pixels whose own rays meet visible bricks. */
-static bool cuts_one_of_several(const frame_plan *plan) {
-  for (int v = 0; v < plan->volumes.count && plan->volumes.count > 1; v++)
-    if (plan->volumes.list[v].is_cut || plan->volumes.list[v].is_clipped) return true;
-  return false;
-}
-static bool hides_all(const frame_plan *plan) {
-  for (int v = 0; v < plan->volumes.count; v++)
-    if (plan->volumes.list[v].visible) return false;
-  return true;
-}
-
 /* Returns whether some volume has a property. */
 static bool any_volume(const frame_plan *plan, bool (*has)(const grid *grid, const frame_volume *volume)) {
   for (int v = 0; v < plan->volumes.count; v++)
     if (has(&plan->volumes.grids[v], &plan->volumes.list[v])) return true;
   return false;
 }
+/* Returns whether there are several volumes, of which some have a property. */
+static bool any_of_several(const frame_plan *plan,
+                           bool (*has)(const grid *grid, const frame_volume *volume)) {
+  return plan->volumes.count > 1 && any_volume(plan, has);
+}
+
+/* Where a mask hides matter of one volume, the processors may still place the matter of another volume by
+ * the hidden matter, which depends on the pixels of a block. */
+static bool has_mask(const grid *grid, const frame_volume *volume) {
+  (void)grid;
+  return volume->classifier->mask.factors != NULL;
+}
+static bool masks_one_of_several(const frame_plan *plan) { return any_of_several(plan, has_mask); }
+
+/* Light goes through the removed part of a volume's matter in a slab, beside the eye's ray. The processors
+ * know this matter for all pixels of a block, and a device only for pixels whose own rays meet visible
+ * bricks. */
+static bool has_removed_part(const grid *grid, const frame_volume *volume) {
+  (void)grid;
+  return volume->is_cut || volume->is_clipped;
+}
+static bool cuts_one_of_several(const frame_plan *plan) { return any_of_several(plan, has_removed_part); }
+
+static bool is_seen(const grid *grid, const frame_volume *volume) {
+  (void)grid;
+  return volume->visible;
+}
+static bool hides_all(const frame_plan *plan) { return !any_volume(plan, is_seen); }
 static bool has_layers(const frame_plan *plan) { return plan->picture.layers != NULL; }
 static bool is_shared(const frame_plan *plan) { return plan->picture.share.parts > 1; }
 static bool has_surfaces(const frame_plan *plan) { return plan->frame.surfaces != NULL; }

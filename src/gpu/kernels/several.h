@@ -34,7 +34,7 @@ typedef struct shared_slab {
   slab_sample all; /* of all volumes together: the slab's rays, the part of it that the boxes of visible
                     * volumes cover, the total extinction, and where the slab is seen */
   slab_sample of[VOLUMES];   /* what belongs to one volume. The member `extinction` is over the volume's own
-                              * part   of the slab; the member `part` is that of all volumes */
+                              * part of the slab. The member `part` is the part of all volumes */
   covered_span own[VOLUMES]; /* the part of the slab that each volume covers */
   float first[VOLUMES], last[VOLUMES];             /* the densities on the two sheets */
   float centre_of[VOLUMES], centre;                /* `centre` of block_density and of block_slab */
