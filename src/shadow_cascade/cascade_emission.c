@@ -102,8 +102,9 @@ static void average_row(void *data, size_t index, int worker) {
                             .u = hl_blur_box((float)pass->step[0]),
                             .v = hl_blur_box((float)pass->step[1]),
                             .rows = ALL_ROWS};
+      const int tiles = ((job.u.reach > job.v.reach ? job.u.reach : job.v.reach) + TILE) / TILE;
       for (int x = 0; x < level->tiles_x; x++) {
-        if (!any_near(level, from[i], x, (int)index, 1)) {
+        if (!any_near(level, from[i], x, (int)index, tiles)) {
           hl_cascade_clear_tile(level, to, x, (int)index);
           continue;
         }
