@@ -4,7 +4,7 @@
 usage: outputs.py [--quick] PROGRAM
 
 Whatever goes wrong: the exit code and one line on stderr say so, the old file stands, and nothing new lies beside it.
---quick, for a sanitized program, leaves out kinds of files that the same code of the program writes.
+--quick leaves out kinds of files that the program writes by the same code as another kind.
 """
 import os
 import pathlib

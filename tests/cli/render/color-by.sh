@@ -1,5 +1,6 @@
 # A volume in the colours of another one: its opacities stay, the other volume is in the scene and is not seen, and the
 # scene and its threads give the same bytes.
+# slow: 4 seconds of processor time
 tool ball 16 ball_16x16x16_uint8.raw
 "$PYTHON" - <<'END'
 with open("heat.nrrd", "wb") as file:

@@ -1,4 +1,5 @@
 # --space tells to which directions in the body x, y and z of a file point whose own text does not tell it.
+# slow: 4 seconds of processor time
 tool ball 16 scan_16x16x16_uint8.raw
 halflight make rings --size 16 --quiet
 tool ball 16 map_16x16x16_uint8.raw

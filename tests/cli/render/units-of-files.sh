@@ -1,5 +1,6 @@
 # Files of one picture may tell different units of length: those of the later files are converted to the first one's.
 # Each picture of a part in millimetres is compared with the one of the same part in micrometres.
+# slow: 4 seconds of processor time
 tool ball 16 ball_16x16x16_uint8.raw
 halflight convert ball_16x16x16_uint8.raw scan.nrrd --spacing 0.25 --unit mm --quiet
 for unit in mm um; do

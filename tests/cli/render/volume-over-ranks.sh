@@ -1,5 +1,6 @@
 # A volume that lies in the memory of several processes makes the picture of one process: its bytes, though each
 # process reads its own slices alone, and keeps little of the others'. A process that dies ends all, and no picture is left.
+# slow: 26 seconds of processor time
 mpi=${mpi-open_mpi} killed=${killed-process rank 1} # and what the launcher says of a killed process
 run() { "$SOURCE/tests/over_ranks.sh" $mpi "$@" >mpirun.txt 2>&1; }
 runs() { run "$@" || { cat mpirun.txt; exit 1; }; } # what must not fail says why it did
