@@ -23,7 +23,7 @@ from .progress import Progress, told
 from .scene import Scene, Settings, Side
 from .transfer import TransferFunction
 from .values import VALUES, function_for, range_for, range_of_slice
-from .volume import Look, Picture, Source, Volume, as_volume, volume_from
+from .volume import Look, Picture, Source, Volume, as_volume, map_over, volume_from
 
 __all__ = ["Renderer", "reference", "render"]
 
@@ -449,8 +449,8 @@ def render(volume: Source = None, *, spacing: arrays.Spacing | None = None, orig
         Where the volume shows, and in which colours: see `halflight.volume.Look`.
     labels : True, label map or mapping, optional
         True, a label or a list of labels: the volume is a label map, and they show as smooth surfaces. A label map (array,
-        path, Volume), or {"volume": map, "show": ..., "table": ...}: its labels show beside the volume. See
-        `halflight.volume.Look`.
+        path, Volume), or {"volume": map, "show": ..., "table": ...}: its labels show beside the volume. A map of as many
+        voxels whose source does not tell its place has the volume's place. See `halflight.volume.Look`.
     look : str, optional
         "surface", "translucent", "xray", "smoke", "vessels" or "mip", a maximum projection, in place of the automatic look.
     sky : float, colour or mapping, optional
@@ -503,11 +503,12 @@ def _look_for(look: Mapping[str, Any], index: int, count: int) -> dict[str, Any]
     return found
 
 
-def _label_volume(labels: Any) -> Volume:
-    """The label map that the keyword `labels` shows beside a volume."""
+def _label_volume(labels: Any, volumes: Sequence[Volume]) -> Volume:
+    """The label map that the keyword `labels` shows beside volumes. Its place follows the first one."""
     parts = dict(labels) if isinstance(labels, Mapping) else {"volume": labels}
-    volume = parts.pop("volume")
-    return as_volume(volume).replace(labels=parts or True)
+    source = parts.pop("volume")
+    found = map_over(source, volumes[0]) if volumes else as_volume(source)
+    return found.replace(labels=parts or True)
 
 
 def _shows_itself(labels: Any) -> bool:
@@ -536,7 +537,7 @@ def _scene_of(volume: Any, place: Mapping[str, Any], material: dict[str, Any], s
             settings.setdefault("compositing", "maximum" if named["look"] == "mip" else "light")
         projected = settings.get("compositing", scene.settings["compositing"]) == "maximum"
         changed = [_look(one.replace(**named), projected, _look_for(at_once, n, count)).replace(**material) for n, one in enumerate(scene.volumes)]
-        shown = changed if labels is None else [*changed, _label_volume(labels)]
+        shown = changed if labels is None else [*changed, _label_volume(labels, changed)]
         layers = _layers(look, count, len(shown) - count) if is_slice else None
         made = scene.replace(shown, **settings) if layers is None else scene._changed(shown, {**settings, "_layers": layers}, False)
         return _sliced(made, count, look) if is_slice else made
@@ -552,7 +553,7 @@ def _scene_of(volume: Any, place: Mapping[str, Any], material: dict[str, Any], s
     if not volumes:
         for word in (*place, *look, *material):
             raise TypeError(f"{word} is for volumes: the picture has none")
-    others = [one for one in given if isinstance(one, Mesh)] + ([] if labels is None else [_label_volume(labels)])
+    others = [one for one in given if isinstance(one, Mesh)] + ([] if labels is None else [_label_volume(labels, volumes)])
     whole = Scene([*volumes, *others], _layers=_layers(look, len(sources), 0 if labels is None else 1) if is_slice else None, **settings)
     return _sliced(whole, len(sources), look) if is_slice else _nearer(whole, sources)
 
@@ -576,6 +577,6 @@ def _scene_of_channels(path: Any, channels: str | Sequence[int | str], place: Ma
     chosen = [*(look.get(word) for word in ("clim", "opacity", "opacity_unit_distance", "tf")), shown.get("iso")]
     is_own = material.get("look", "auto") != "auto" or any(one is not None for one in chosen)
     layers = _layers(look, count, 0 if labels is None else 1) if is_slice else None
-    made = scene._changed(volumes if labels is None else [*volumes, _label_volume(labels)], {**settings, "_layers": layers}, True,
+    made = scene._changed(volumes if labels is None else [*volumes, _label_volume(labels, volumes)], {**settings, "_layers": layers}, True,
                           lib.HL_COMPOSE_FUNCTIONS if is_own else 0)
     return _sliced(made, count, look) if is_slice else made

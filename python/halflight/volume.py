@@ -7,7 +7,7 @@ from typing import Any, NamedTuple, Unpack
 
 import numpy as np
 
-from . import _settings, arrays, cuts, grids, isosurface, mask, neighbours, pieces, vtk_grids
+from . import _settings, arrays, beside, cuts, grids, isosurface, mask, neighbours, pieces, vtk_grids
 from ._library import call, choices_of, composed, context, ffi, lib, made, path_bytes, text_of
 from ._words import check_keywords, choice
 from .transfer import function_from
@@ -73,7 +73,7 @@ class Volume:
     (6, 5, 4)
     """
 
-    __slots__ = ("__weakref__", "_automatic", "_base", "_changes", "_colored", "_file", "_handle", "_loading", "_order", "_shapes", "_sharp")
+    __slots__ = ("__weakref__", "_automatic", "_base", "_changes", "_colored", "_file", "_handle", "_laid", "_loading", "_order", "_shapes", "_sharp")
 
     def __init__(self, source: Source, *, spacing: arrays.Spacing | None = None, origin: Any = None,
                  direction: Any = None, affine: Any = None, space: str | None = None, axes: str | None = None,
@@ -89,6 +89,7 @@ class Volume:
         # Or the scene from which the volume was read, and its number in this scene.
         self._base: tuple[Any, int] | None = None
         self._order: tuple[int, ...] | None = None
+        self._laid: tuple[str, arrays.Place] | None = None  # the order of the array's axes, and the place along x, y, z
         self._colored: Any = None  # the array, if its voxels are colours
         self._shapes: str | None = None  # the text that the voxels were made from
         self._changes: dict[str, Any] = {word: value for word, value in look.items() if word not in VALUES}
@@ -154,6 +155,7 @@ class Volume:
             self._colored = np.array(array).transpose([order.index(letter) for letter in "zyx"] + [3])
         if len(array.shape) == 3:
             self._order = tuple(array.shape[order.index(letter)] for letter in "xyz")
+            self._laid = order, where
         if found.name is not None:
             self._changes.setdefault("name", found.name)
 
@@ -172,7 +174,7 @@ class Volume:
 
     def _share(self, other: Volume) -> None:
         self._handle, self._file, self._loading = other._handle, other._file, other._loading
-        self._base, self._order, self._shapes, self._colored = other._base, other._order, other._shapes, other._colored
+        self._base, self._order, self._laid, self._shapes, self._colored = other._base, other._order, other._laid, other._shapes, other._colored
         self._sharp = other._sharp
         self._changes = {**other._changes, **self._changes}
         same = (self._changes.get("look"), self._is_of_values()) == (other._changes.get("look"), other._is_of_values())
@@ -468,7 +470,7 @@ class Volume:
             options = self._loading[0]
             for word in ("spacing", "file_space", *_OF_FILES):
                 setattr(struct, word, getattr(options, word))
-        fill_look(struct, self._changes, self._handle, self._base is not None, as_volume, keep, place)
+        fill_look(struct, self._changes, self._handle, self._base is not None, lambda source: map_over(source, self), keep, place)
 
 
 def index_of(word: str, value: Any) -> int:
@@ -524,7 +526,7 @@ def volume_from(scene: Any, index: int) -> Volume:
 def _of_handle(handle: Any, file: Any) -> Volume:
     """A Volume of an hl_volume, which it retains."""
     found = Volume.__new__(Volume)
-    found._sharp = found._loading = found._automatic = found._order = found._shapes = found._base = found._colored = None
+    found._sharp = found._loading = found._automatic = found._order = found._laid = found._shapes = found._base = found._colored = None
     found._file = None if file == ffi.NULL else os.fsdecode(ffi.string(file))
     found._changes = {}
     lib.hl_volume_retain(handle)
@@ -542,7 +544,7 @@ def _restored(kind: str, source: Any, look: dict[str, Any]) -> Volume:
     if kind == "file":
         return Volume(source[0], **source[1], **look)
     found = Volume.__new__(Volume)
-    found._sharp = found._file = found._loading = found._automatic = found._base = found._shapes = found._order = found._colored = None
+    found._sharp = found._file = found._loading = found._automatic = found._base = found._shapes = found._order = found._laid = found._colored = None
     found._changes = dict(look)
     if kind == "shapes":
         raw = source.encode()
@@ -561,6 +563,17 @@ def _restored(kind: str, source: Any, look: dict[str, Any]) -> Volume:
 def as_volume(source: Any) -> Volume:
     """Returns a Volume unchanged, and makes a Volume of anything else."""
     return source if isinstance(source, Volume) else Volume(source)
+
+
+def map_over(source: Any, volume: Volume) -> Volume:
+    """Returns the Volume of a label map over `volume`. A map whose source does not tell its place takes the volume's place."""
+    if isinstance(source, Volume) or hasattr(source, "_as_volume"):
+        return as_volume(source)
+    if not isinstance(source, (str, os.PathLike)):
+        return Volume(source, **beside.place_of_array(source, volume))
+    found = Volume(source)
+    place = beside.place_of_file(found._handle, volume._handle, volume._loading)
+    return Volume(source, **place) if place else found
 
 
 def info(volume: Source, **place: Any) -> Info:

@@ -44,7 +44,8 @@ class Look(VolumeSettings, MaterialSettings, Values, total=False):
         A label map within whose labels the volume is visible. A mapping has the map as `volume`; as `show` the labels,
         by name or number, alone or with a colour, an opacity from 0 to 1, or (colour, opacity); as `rest` what is left
         outside of them; as `table` a file of names and colours: ``{"volume": "organs.seg.nrrd", "show": {"bone": None,
-        "tumour": "red", "liver": 0.3}, "rest": 0.02}``.
+        "tumour": "red", "liver": 0.3}, "rest": 0.02}``. A map of as many voxels whose source does not tell its place has
+        the volume's place.
     labels : bool, a label, a list of labels, or a mapping
         The volume is a label map, and its labels show as smooth surfaces: all of them, or those that are named, by name or
         number, with what a mask's `show` may say of each; a mapping may have a `table` of names and colours beside `show`.

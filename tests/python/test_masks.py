@@ -181,3 +181,43 @@ def test_a_look_stays_with_other_colours(program, tmp_path):
                     "--no-metadata", "-o", str(tmp_path / "ball.png")], check=True)
     halflight.render(path, size=48, look="translucent", cmap="viridis").save(tmp_path / "own.png", metadata=False)
     assert (tmp_path / "own.png").read_bytes() == (tmp_path / "ball.png").read_bytes()
+
+
+def _place_of(map_given, volume_given, **place):
+    """The pictures of a label map, and of a mask, over a volume."""
+    return [np.asarray(halflight.render(volume_given, size=48, **{word: map_given}, **place)) for word in ("labels", "mask")]
+
+
+@pytest.mark.parametrize("place", [
+    {"spacing": (2, 1, 0.5)},
+    {"origin": (40, -7, 3), "spacing": (3, 1, 1)},
+    {"affine": [[0, 2, 0, 5], [-1, 0, 0, 9], [0, 0, 1, 1], [0, 0, 0, 1]]},
+    {"spacing": (2, 1, 1), "space": "PIR"},
+    {"spacing": (1, 1, 2), "axes": "xyz"},
+])
+def test_an_array_lies_over_the_volume(place, blob):
+    """A label map or mask in an array without a place of its own has the place of the volume's voxels."""
+    mask = (blob > 150).astype(np.uint8)
+    pictures = _place_of(mask, blob, **place)
+    for plain, placed in zip(pictures, _place_of(halflight.Volume(mask, **place), blob, **place), strict=True):
+        assert np.array_equal(plain, placed)
+    unplaced = _place_of(halflight.Volume(mask), blob, **place)
+    assert not np.array_equal(pictures[1], unplaced[1])
+
+
+def test_an_array_of_another_size_keeps_its_place(blob):
+    mask = np.ones((4, 4, 4), np.uint8)
+    assert np.array_equal(*(_place_of(one, blob, spacing=(2, 1, 1))[1] for one in (mask, halflight.Volume(mask))))
+
+
+def test_a_file_lies_over_the_volume(blob, tmp_path):
+    """Bare voxels over bare voxels take the spacing and the directions that were stated for the volume; a file that tells its own
+    directions keeps them."""
+    mask, place = (blob > 150).astype(np.uint8), {"spacing": (2, 1, 0.5), "space": "PIR"}
+    names = [str(tmp_path / f"{name}_28x20x24_uint8.raw") for name in ("blob", "mask")]
+    blob.tofile(names[0])
+    mask.tofile(names[1])
+    halflight.Volume(mask, **place).save(told := str(tmp_path / "told.nii"))
+    plain, stated, own = (_place_of(one, names[0], **place) for one in (names[1], halflight.Volume(names[1], **place), told))
+    for one, other, third in zip(plain, stated, own, strict=True):
+        assert np.array_equal(one, other) and np.array_equal(one, third)
