@@ -10,7 +10,6 @@ from typing import Any
 
 import numpy as np
 import pytest
-from PIL import Image
 
 import halflight as hl
 
@@ -184,6 +183,7 @@ def test_a_layer_of_cells_has_no_bound(tmp_path: Path) -> None:
 
 
 def test_the_program_tells_the_bound(tmp_path: Path, program: str) -> None:
+    Image = pytest.importorskip("PIL.Image")
     places, cells, types = mesh("tetrahedra", 11)
     path = write_cells(tmp_path / "a.vtu", places, cells, types, {"f": values_at(blob, places)})
     run = subprocess.run([program, "info", path, "--json"], check=True, capture_output=True, text=True)

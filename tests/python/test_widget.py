@@ -6,7 +6,6 @@ import queue
 
 import numpy as np
 import pytest
-from PIL import Image
 
 import halflight
 from halflight import _page, widget
@@ -40,6 +39,7 @@ def test_module_is_one_file_that_imports_nothing():
 
 
 def test_frames_are_those_of_the_scene():
+    Image = pytest.importorskip("PIL.Image")
     scene = halflight.Scene(ARRAY, size=(48, 32), shadows="soft")
     thread, answers = frames_of(scene)
     start = json.loads(ask(thread, answers, kind="start")[0]["text"])
