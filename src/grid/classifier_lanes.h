@@ -99,6 +99,27 @@ LANES_INLINE second_surface kept_at_foot(const classifier *classifier, lanes fir
                           ahead / lanes_max(rise, lanes_set(1e-9f))};
 }
 
+/* A bound of the optical depth of a surface's own matter before a sheet. integral: of extinction, over the
+ * values from the surface's beginning to the value at the sheet. rise: the change of values per unit of
+ * length behind the sheet. Derived: a straight ramp has the depth integral / rise. If values rise as s^p over
+ * the distance s, and extinction as the value to the power q, the depth is p (q + 1) / (p q + 1) times as
+ * great, which is less than 2 if q is 1 or more. */
+LANES_INLINE lanes greatest_depth_of_surface(lanes integral, lanes rise) {
+  return 2.0f * integral / lanes_max(rise, lanes_set(1e-9f));
+}
+
+/* Of the light that is missing at a place, the greatest fraction that matter of the optical depth `depth`
+ * before the place can have absorbed. light, outside: the light at the place, and the light at the outside of
+ * surfaces; their difference is missing. beside: the light beside the place, of which the matter may have
+ * absorbed the rest, too. Derived: if the light T is left behind matter of the depth d, the matter got T e^d
+ * and has absorbed T (e^d - 1). */
+LANES_INLINE lanes part_of_matter(lanes depth, lanes light, lanes outside, lanes beside) {
+  lanes left = lanes_exp_negative(lanes_min(depth, lanes_set(20.0f))),
+        absorbed = lanes_max(lanes_max(light, lanes_set(0)) * (1.0f - left), (beside - light) * left),
+        missing = (outside - light) * left;
+  return lanes_select(absorbed < missing, absorbed / missing, lanes_set(1.0f));
+}
+
 /* The mean distances, in entries of the table, from the two ends a and b of a way to the densities on the
  * way. Densities are weighted by their extinction. Both distances are 1 if a and b are close, or if nothing
  * between them has extinction. */

@@ -207,6 +207,7 @@ void hl_reference_outside(const reference *all, const reference_ray *ray, const 
                           crossing *scratch, double passing[3]) {
   light_factors factors = {{1, 1, 1}, {0, 0, 0}, 1};
   pending_layer layer = {.any = false};
+  bool has_ended = false; /* whether the ray has left the matter of the point's volume within its grid */
   march walk;
   hl_reference_march_begin(all, REFERENCE_CASTS_SHADOW, ray, scratch, &walk);
   for (size_t v = 0; v < walk.count; v++) {
@@ -226,7 +227,10 @@ void hl_reference_outside(const reference *all, const reference_ray *ray, const 
       bool beside = walk.at - part->last_at < 1.5 * walk.length, known = !isnan(nearer);
       part->last_at = walk.at;
       part->last_value = value;
-      if (!(here > 0)) continue;
+      if (!(here > 0)) {
+        has_ended |= volume == at->surface_of;
+        continue;
+      }
       for (int c = 0; c < 3; c++) depth[c] += here * volume->described->attenuation_color[c];
       total += here;
       if (volume->described->shading != HL_SHADING_PHONG || !beside) continue;
@@ -248,6 +252,8 @@ void hl_reference_outside(const reference *all, const reference_ray *ray, const 
     }
     if (!(total > 0)) {
       kept.before = 0;
+    } else if (has_ended) {
+      kept = (kept_light){0, 0, false}; /* other volumes' matter in front of the surface shades it */
     } else {
       kept.before /= total;
       kept.within /= total;

@@ -239,30 +239,65 @@ LANES_INLINE lanes extinction_of_surfaces(const block_density *densities, int co
   return sum;
 }
 
-/* The mean of find_own_surface() over a slab's volumes, weighted by extinction. If a volume has no matter at
- * the slab's first sheet but another volume has, it is the other volume that has absorbed the light. */
+/* The light of the first channel at the slab's first sheet: the transmittance where the light's way enters
+ * the slab, the light at the outside of surfaces, and the greatest transmittance of the pixels around this
+ * place. */
+typedef struct surface_light {
+  lanes passing, outside, beside;
+} surface_light;
+
+/* The fraction of the light absorbed before the slab that still lights a sample's surface, if several volumes
+ * share the slab. any, more: the lanes in which one volume at least, and two at least, have matter where the
+ * light's way begins. If another volume has matter there, the sample's surface counts at most as much of this
+ * light as its own matter before the slab can have absorbed (part_of_matter()), but for the skin of a face.
+ */
+LANES_INLINE lanes kept_among_several(const block_density *d, const way_begin *begin, lanes kept,
+                                      lanes_int any, lanes_int more, const surface_light *light) {
+  const classifier *classifier = d->patch->volume->classifier;
+  lanes integral = lanes_abs(integral_to(classifier, begin->start) - integral_to(classifier, begin->first));
+  lanes depth = greatest_depth_of_surface(integral * d->patch->volume->cast[0], lanes_abs(begin->change));
+  lanes part = part_of_matter(lanes_keep(begin->there, depth), light->passing, light->outside, light->beside);
+  part = lanes_max(part, skin_of_face(d->behind));
+  return lanes_select(more | (any & ~begin->there), lanes_min(kept, part), kept);
+}
+
+/* The mean of find_own_surface() over a slab's volumes, weighted by extinction. */
 LANES_INLINE own_surface find_own_surfaces(const block_density *densities, int count, lanes3 towards,
-                                           lanes way, lanes light, lanes outside) {
+                                           lanes way, const surface_light *light) {
   own_surface sum = {lanes_set(0), lanes_set(0)};
-  lanes_int any = lanes_set_int(0);
+  lanes_int any = lanes_set_int(0), more = any;
   if (count == 1) {
     const way_begin begin = find_begin(densities, towards, way);
-    return find_own_surface(densities, &begin, light, outside);
+    return find_own_surface(densities, &begin, light->passing, light->outside);
   }
   const lanes total = extinction_of_surfaces(densities, count),
               inverse = 1.0f / lanes_max(total, lanes_set(1e-30f));
-  for (int i = 0; i < count; i++)
-    if (densities[i].there) any |= densities[i].here & find_begin(&densities[i], towards, way).there;
+  for (int i = 0; i < count; i++) {
+    if (!densities[i].there) continue;
+    const lanes_int there = densities[i].here & find_begin(&densities[i], towards, way).there;
+    more |= any & there;
+    any |= there;
+  }
   for (int i = 0; i < count; i++) {
     const block_density *d = &densities[i];
     if (!d->there || !d->patch->volume->visible || !d->patch->volume->phong) continue;
     const way_begin begin = find_begin(d, towards, way);
-    own_surface own = find_own_surface(d, &begin, light, outside);
+    own_surface own = find_own_surface(d, &begin, light->passing, light->outside);
     lanes weight = lanes_select(d->extinction == total, lanes_set(1.0f), d->extinction * inverse);
-    sum.kept = lanes_fma(lanes_keep(begin.there | ~any, own.kept), weight, sum.kept);
+    sum.kept = lanes_fma(kept_among_several(d, &begin, own.kept, any, more, light), weight, sum.kept);
     sum.passing = lanes_fma(own.passing, weight, sum.passing);
   }
   return sum;
+}
+
+/* Finds surface_light.beside for a slab of `count` volumes: `passing` for a single volume and under
+ * sub-lights. */
+LANES_INLINE lanes light_beside(const light_place *place, lanes passing, int count) {
+  const shadow_lookup *lookup = place->lookup;
+  if (count == 1 || place->light->sublight_count > 0) return passing;
+  lanes younger = greatest_tap(&lookup->map, &place->taps, lookup->transmittance[0]);
+  if (lookup->older[0] == NULL) return younger;
+  return between_chunks(lookup, greatest_tap(&lookup->map, &place->taps, lookup->older[0]), younger);
 }
 
 /* The light at the outside of the surfaces in a slab (shadow/attenuate.h). way: the light's way from the
@@ -290,8 +325,10 @@ LANES_INLINE color_lanes passing_to_surfaces(const light_place *place, const blo
         outside.c[c] = passing.c[c] + lanes_max(taken, lanes_set(0));
       }
     }
-    if (several && c == 0)
-      own = find_own_surfaces(densities, count, towards, way, passing.c[0], outside.c[0]);
+    if (several && c == 0) {
+      const surface_light first = {passing.c[0], outside.c[0], light_beside(place, passing.c[0], count)};
+      own = find_own_surfaces(densities, count, towards, way, &first);
+    }
     if (several) {
       lanes passed = passing.c[c] * own.passing;
       lanes_int whole = (own.kept == 1.0f) & (own.passing == 1.0f);

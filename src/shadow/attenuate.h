@@ -86,6 +86,12 @@ typedef struct attenuate_job {
  * k and k' by e. In a medium k = k' = 0. Where several volumes share a slab, k and k' are means over the
  * volumes, weighted by optical depth.
  *
+ * Y does not tell which volume has absorbed Y - T. If several volumes have matter where the light enters a
+ * slab, k of each volume is at most the fraction of Y - T that the volume's own matter before the slab can
+ * have absorbed: T (e^d - 1) / (Y - T), where d is a bound of this matter's optical depth (derived;
+ * part_of_matter() and greatest_depth_of_surface() in grid/classifier_lanes.h). So k = 0 for a surface that
+ * begins within the slab, in the midst of another volume's matter: the other volume shades the surface.
+ *
  * A face that cuts matter is a surface, too. The outside of this surface is the face itself, and light goes
  * deeper into the surface whatever the values behind the face are: k = k' = 1 for visible matter up to a
  * voxel behind a face through which the light comes in. Deeper than a voxel, the k that follows from the

@@ -196,19 +196,54 @@ LANES_INLINE kept_light kept_by_values(const attenuate_job *job, const attenuate
   return kept;
 }
 
+/* A volume's matter where the light enters a slab. */
+typedef struct matter_at_entry {
+  lanes_int there; /* whether there is any */
+  lanes depth; /* a bound of the optical depth of the volume's surface from its beginning up to this place */
+} matter_at_entry;
+
+/* a, b: the table coordinates of the values at the two ends of the part of the slab that is in the box. to:
+ * the integrals of extinction up to these two values. way: the length of the light's way through this part.
+ */
+LANES_INLINE matter_at_entry find_matter_at_entry(const attenuate_volume *volume, table_coordinate a,
+                                                  table_coordinate b, const way_ends *to, lanes way) {
+  const classifier *classifier = volume->classifier;
+  lanes values[3], rise = lanes_abs(b.x - a.x) / lanes_max(way, lanes_set(1e-9f));
+  table_values(classifier->sums, a, values);
+  lanes beginning = classifier->several_surfaces ? lanes_gather(&classifier->sums[0][3], a.entry * 4)
+                                                 : lanes_set(classifier->only_beginning);
+  return (matter_at_entry){
+      values[0] > 0.0f, greatest_depth_of_surface(lanes_abs(to->to_a - beginning) * volume->weight[0], rise)};
+}
+
 /* The means over several volumes of the fractions k and k' of attenuate.h, weighted by the volumes'
- * extinctions. */
+ * extinctions. The light at the outside does not tell which volume has absorbed the light that is missing
+ * before the slab. If another volume has matter where the light enters the slab, a surface counts at most as
+ * much of this light as its own matter before the slab can have absorbed (part_of_matter()), so that a
+ * surface that begins within the slab counts none. */
 typedef struct kept_mean {
-  kept_light sum;
-  lanes total;       /* the sum of all extinctions */
-  kept_light newest; /* in each lane, the fractions of the last volume with any extinction there */
-  lanes extinction;  /* the extinction of this volume */
+  lanes all;           /* the sum of k times extinction */
+  lanes there, shared; /* sums over the volumes that have matter where the light enters the slab: as `all`,
+                        * and with k made smaller for the other volumes' sake */
+  lanes_int any, more; /* the lanes in which one volume at least, and two at least, have matter there */
+  lanes within;        /* the sum of k' times extinction */
+  lanes total;         /* the sum of all extinctions */
+  kept_light newest;   /* in each lane, the fractions of the last volume with any extinction there */
+  lanes extinction;    /* the extinction of this volume */
 } kept_mean;
 
-LANES_INLINE void add_kept(kept_mean *mean, kept_light kept, lanes extinction) {
-  const lanes_int some = extinction > 0.0f;
-  mean->sum.before = lanes_fma(kept.before, extinction, mean->sum.before);
-  mean->sum.within = lanes_fma(kept.within, extinction, mean->sum.within);
+/* Adds a volume. light, outside: the transmittance before the slab, and the light at the outside there. */
+LANES_INLINE void add_kept(kept_mean *mean, kept_light kept, lanes extinction, const matter_at_entry *entry,
+                           lanes light, lanes outside) {
+  const lanes_int some = extinction > 0.0f, there = some & entry->there;
+  mean->all = lanes_fma(kept.before, extinction, mean->all);
+  mean->there = lanes_fma(lanes_keep(there, kept.before), extinction, mean->there);
+  mean->shared = lanes_fma(
+      lanes_keep(there, lanes_min(kept.before, part_of_matter(entry->depth, light, outside, light))),
+      extinction, mean->shared);
+  mean->more |= mean->any & there;
+  mean->any |= there;
+  mean->within = lanes_fma(kept.within, extinction, mean->within);
   mean->total = mean->total + extinction;
   mean->newest.before = lanes_select(some, kept.before, mean->newest.before);
   mean->newest.within = lanes_select(some, kept.within, mean->newest.within);
@@ -219,8 +254,10 @@ LANES_INLINE void add_kept(kept_mean *mean, kept_light kept, lanes extinction) {
 LANES_INLINE kept_light mean_of_kept(const kept_mean *mean) {
   const lanes inverse = 1.0f / lanes_max(mean->total, lanes_set(1e-30f));
   const lanes_int alone = mean->extinction == mean->total;
-  return (kept_light){lanes_select(alone, mean->newest.before, mean->sum.before * inverse),
-                      lanes_select(alone, mean->newest.within, mean->sum.within * inverse)};
+  const lanes before = lanes_select(mean->more, mean->shared,
+                                    lanes_select(mean->any, mean->there, mean->all));
+  return (kept_light){lanes_select(alone, mean->newest.before, before * inverse),
+                      lanes_select(alone, mean->newest.within, mean->within * inverse)};
 }
 
 typedef struct attenuated_block {
@@ -248,7 +285,15 @@ LANES_INLINE attenuated_block attenuate_block(const attenuate_job *job, int volu
   const int x = block % 4 * BLOCK, y = block / 4 * BLOCK, corner[2] = {tile_x * TILE + x, tile_y * TILE + y};
   lanes depth[HL_CHANNELS] = {lanes_set(0), lanes_set(0), lanes_set(0)};
   kept_light kept = {lanes_set(0), lanes_set(0)};
-  kept_mean mean = {kept, lanes_set(0), kept, lanes_set(0)};
+  kept_mean mean = {.all = lanes_set(0),
+                    .there = lanes_set(0),
+                    .shared = lanes_set(0),
+                    .any = lanes_set_int(0),
+                    .more = lanes_set_int(0),
+                    .within = lanes_set(0),
+                    .total = lanes_set(0),
+                    .newest = kept,
+                    .extinction = lanes_set(0)};
   lanes path = path_through_sheet(&job->rays, job->path, block_u(corner[0]), block_v(corner[1]));
   /* the pixels in which a factor hides a volume's matter. Surfaces end in these pixels, although the values
    * are not low */
@@ -283,8 +328,14 @@ LANES_INLINE attenuated_block attenuate_block(const attenuate_job *job, int volu
       own = kept_in_span(volume, own, block, job->height);
     }
     own.before = lanes_keep(extinction > 0.0f, own.before);
-    if (volume_count == 1) kept = own;
-    else add_kept(&mean, own, extinction);
+    if (volume_count == 1) {
+      kept = own;
+      continue;
+    }
+    const size_t at = (size_t)y * job->stride + x;
+    matter_at_entry entry = find_matter_at_entry(volume, a, b, &to, path * span.length);
+    add_kept(&mean, own, extinction, &entry, lanes_load_block(job->transmittance[0] + at, job->stride),
+             lanes_load_block(job->outside[0] + at, job->stride));
   }
   lanes any = channels == 1 ? depth[0] : depth[0] + depth[1] + depth[2];
   const lanes_int affected = (any > 0.0f) | hidden;

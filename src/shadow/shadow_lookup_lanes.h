@@ -48,6 +48,15 @@ LANES_INLINE lanes look_up(const shadow_map *map, const shadow_taps *taps, const
   return between_taps(taps, a, b, c, d, 1);
 }
 
+/* The greatest of the four pixels around each position. */
+LANES_INLINE lanes greatest_tap(const shadow_map *map, const shadow_taps *taps, const float *buffer) {
+  lanes a, b, c, d;
+  lanes_int at = taps->first.row * (int32_t)map->stride + taps->first.column;
+  lanes_gather_pairs(buffer, at, &a, &b);
+  lanes_gather_pairs(buffer + map->stride, at, &c, &d);
+  return lanes_select(taps->inside, lanes_max(lanes_max(a, b), lanes_max(c, d)), lanes_set(1.0f));
+}
+
 /* The weights of cubic convolution with a = -1/2 (Keys, "Cubic convolution interpolation for digital image
  * processing", 1981, eq. 15) for four pixels in a row. way: the distance of the look-up's position from the
  * second pixel's middle, 0 to 1. The weights have no variance, so the convolution does not blur. */

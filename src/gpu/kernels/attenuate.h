@@ -55,8 +55,31 @@ typedef struct slab_matter {
   int hidden;            /* whether a factor hides matter */
 #if OUTSIDE
   kept_light kept;
+#if VOLUMES > 1
+  int there;           /* whether the volume has matter where the light enters the slab */
+  float entered_depth; /* a bound of the optical depth of the volume's surface up to this place */
+#endif
 #endif
 } slab_matter;
+
+#if OUTSIDE && VOLUMES > 1
+
+/* Finds a volume's matter where the light enters a slab, as find_matter_at_entry() in
+ * shadow/attenuate_lanes.h. way: the length of the light's way through the part of the slab that is in the
+ * box. */
+DEVICE void find_matter_at_entry(const volume_data *data, table_coordinate a, table_coordinate b,
+                                 const way_sums *sums, float way, slab_matter *matter) {
+  GLOBAL const plan_volume *volume = data->plan;
+  float values[4], rise = divided(magnitude(b.x - a.x), greater(way, 1e-9f));
+  table_values(sums_table(data->tables), a, 1, values);
+  const float beginning = volume->several_surfaces ? beginning_at(data->tables, a.entry)
+                                                   : volume->only_beginning;
+  matter->there = values[0] > 0.0f;
+  matter->entered_depth = greatest_depth_of_surface(magnitude(sums->to_a - beginning) * volume->weight[0],
+                                                    rise);
+}
+
+#endif
 
 /* Finds what one volume's matter does. Returns its extinction; 0 if it does nothing. number: of the volume.
  */
@@ -98,6 +121,9 @@ DEVICE float matter_in_slab(const sweep_data *sweep, int number, GLOBAL const pl
 #endif
   for (int c = 0; c < CHANNELS; c++) matter->depth[c] = extinction * volume->weight[c];
 #if OUTSIDE
+#if VOLUMES > 1
+  find_matter_at_entry(&data, a, b, &sums, path * part.length, matter);
+#endif
   if (!HAS(volume, phong)) return extinction;
   GLOBAL const plan_rays *in_index = index_rays(sweep, 1 + light->number, number) + sheet;
   const float skin = BOXED && ray->boxed && volume->faces_take
@@ -125,8 +151,10 @@ DEVICE void matter_of_volumes(const sweep_data *sweep, GLOBAL const plan_light *
   for (int c = 0; c < CHANNELS; c++) all->depth[c] = 0.0f;
 #if OUTSIDE
   float total = 0.0f, newest = 0.0f;
-  kept_light sum, own;
-  sum.before = sum.within = own.before = own.within = 0.0f;
+  float all_kept = 0.0f, there = 0.0f, shared = 0.0f, within = 0.0f;
+  int count = 0; /* of the volumes that have matter where the light enters the slab */
+  kept_light own;
+  own.before = own.within = 0.0f;
 #endif
   for (int i = 0; i < VOLUMES; i++) {
     GLOBAL const plan_volume *volume = sweep->volume.plan + i;
@@ -138,8 +166,15 @@ DEVICE void matter_of_volumes(const sweep_data *sweep, GLOBAL const plan_light *
     if (!(extinction > 0.0f)) continue;
     for (int c = 0; c < CHANNELS; c++) all->depth[c] = fused(extinction, volume->weight[c], all->depth[c]);
 #if OUTSIDE
-    sum.before = fused(matter.kept.before, extinction, sum.before);
-    sum.within = fused(matter.kept.within, extinction, sum.within);
+    all_kept = fused(matter.kept.before, extinction, all_kept);
+    if (matter.there) {
+      const float part = part_of_matter(matter.entered_depth, pixel->passing[0], pixel->passing[CHANNELS],
+                                        pixel->passing[0]);
+      there = fused(matter.kept.before, extinction, there);
+      shared = fused(lesser(matter.kept.before, part), extinction, shared);
+      count++;
+    }
+    within = fused(matter.kept.within, extinction, within);
     total = total + extinction;
     newest = extinction;
     own = matter.kept;
@@ -147,8 +182,9 @@ DEVICE void matter_of_volumes(const sweep_data *sweep, GLOBAL const plan_light *
   }
 #if OUTSIDE
   const float inverse = divided(1.0f, greater(total, 1e-30f));
-  all->kept.before = newest == total ? own.before : sum.before * inverse;
-  all->kept.within = newest == total ? own.within : sum.within * inverse;
+  const float before = count > 1 ? shared : count == 1 ? there : all_kept;
+  all->kept.before = newest == total ? own.before : before * inverse;
+  all->kept.within = newest == total ? own.within : within * inverse;
 #endif
 }
 

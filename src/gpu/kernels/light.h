@@ -98,6 +98,13 @@ DEVICE float look_up(GLOBAL const plan_light *light, const shadow_taps *taps, GL
   return between_taps(taps, at[0], at[1], below[0], below[1]);
 }
 
+/* The greatest of the four pixels around a place. */
+DEVICE float greatest_tap(GLOBAL const plan_light *light, const shadow_taps *taps,
+                          GLOBAL const float *plane) {
+  GLOBAL const float *at = first_tap(light, taps, plane), *below = at + light->stride;
+  return taps->inside ? greater(greater(at[0], at[1]), greater(below[0], below[1])) : 1.0f;
+}
+
 DEVICE void cubic_weights(float way, float weight[4]) {
   float rest = 1.0f - way, both = way * rest * -0.5f;
   weight[0] = both * rest;

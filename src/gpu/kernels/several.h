@@ -288,18 +288,33 @@ DEVICE void passing_to_media(const volume_data *first, vector normal, GLOBAL con
 
 #if OUTSIDE
 
+/* The fraction of the light absorbed before the slab that still lights a sample's surface, as
+ * kept_among_several() in render/reaching_lanes.h. there: the number of volumes with matter where the light's
+ * way begins. */
+DEVICE float kept_among_several(const volume_data *volume, const slab_sample *s, const way_begin *begin,
+                                float kept, int there, surface_light light, float beside) {
+  if (there == 0 || (there == 1 && begin->there)) return kept;
+  const float integral = magnitude(integral_to(volume->tables, begin->start) -
+                                   integral_to(volume->tables, begin->first));
+  const float depth = begin->there ? greatest_depth_of_surface(integral * volume->plan->cast[0],
+                                                               magnitude(begin->change))
+                                   : 0.0f;
+  const float part = part_of_matter(depth, light.passed, light.outside, beside);
+  return lesser(kept, greater(part, skin_of_sample(s)));
+}
+
 /* The mean of the volumes' own surfaces, as find_own_surfaces() in render/reaching_lanes.h. */
 DEVICE own_surface find_own_surfaces(const volume_data *first, const shared_slab *slab, vector towards,
-                                     float way, surface_light light) {
+                                     float way, surface_light light, float beside) {
   float total = 0.0f;
-  int any = 0;
+  int there = 0;
   own_surface sum;
   sum.kept = sum.passing = 0.0f;
   for (int v = 0; v < VOLUMES; v++) {
     if (!slab->here[v]) continue;
     const volume_data volume = volume_of(first, v);
     if (volume.plan->visible && volume.plan->phong) total = total + slab->of[v].extinction;
-    any = any || find_begin(&volume, &slab->of[v], towards, way).there;
+    there += find_begin(&volume, &slab->of[v], towards, way).there != 0;
   }
   const float inverse = divided(1.0f, greater(total, 1e-30f));
   for (int v = 0; v < VOLUMES; v++) {
@@ -309,10 +324,29 @@ DEVICE own_surface find_own_surfaces(const volume_data *first, const shared_slab
     const way_begin begin = find_begin(&volume, s, towards, way);
     const own_surface own = find_own_surface(&volume, s, &begin, light.passed, light.outside);
     const float weight = s->extinction == total ? 1.0f : s->extinction * inverse;
-    sum.kept = fused(begin.there || !any ? own.kept : 0.0f, weight, sum.kept);
+    sum.kept = fused(kept_among_several(&volume, s, &begin, own.kept, there, light, beside), weight,
+                     sum.kept);
     sum.passing = fused(own.passing, weight, sum.passing);
   }
   return sum;
+}
+
+/* The greatest transmittance of the first channel in the pixels around a place, as light_beside() in
+ * render/reaching_lanes.h. passed: the transmittance at the place. */
+DEVICE float light_beside(GLOBAL const plan_light *light, const shadow_taps *taps,
+                          const light_buffers *buffers, float passed) {
+#if SUBLIGHTS
+  if (light->sublights > 0) return passed;
+#endif
+  (void)passed;
+  GLOBAL const float *plane = buffers->planes + light->origin;
+  const float younger = greatest_tap(light, taps, plane);
+#if SOFT
+  if (light->soft)
+    return between_chunks(greatest_tap(light, taps, plane + OLDER_PLANE * light->plane), younger,
+                          buffers->young);
+#endif
+  return younger;
 }
 
 /* The light at the outside of the surfaces in a slab. */
@@ -325,7 +359,9 @@ DEVICE void passing_to_surfaces(const volume_data *first, GLOBAL const plan_ligh
   own.kept = own.passing = 1.0f;
   for (int c = 0; c < CHANNELS; c++) {
     const surface_light found = light_for_surface(light, &taps, buffers, &means, c, 1);
-    if (c == 0) own = find_own_surfaces(first, slab, towards, way, found);
+    if (c == 0)
+      own = find_own_surfaces(first, slab, towards, way, found,
+                              light_beside(light, &taps, buffers, found.passed));
     passing[c] = lesser(light_of_own_surface(found, own), 1.0f);
   }
 }

@@ -137,6 +137,25 @@ DEVICE second_surface kept_at_foot(GLOBAL const float *tables, float first, floa
   return other;
 }
 
+#if VOLUMES > 1
+
+/* A bound of the optical depth of a surface's own matter before a sheet, as in grid/classifier_lanes.h. */
+DEVICE float greatest_depth_of_surface(float integral, float rise) {
+  return divided(2.0f * integral, greater(rise, 1e-9f));
+}
+
+/* Of the light that is missing at a place, the greatest fraction that matter of the optical depth `depth`
+ * before the place can have absorbed, as in grid/classifier_lanes.h. light, outside, beside: the light at the
+ * place, at the outside of surfaces, and beside the place. */
+DEVICE float part_of_matter(float depth, float light, float outside, float beside) {
+  float left = exp_negative(lesser(depth, 20.0f)),
+        absorbed = greater(greater(light, 0.0f) * (1.0f - left), (beside - light) * left),
+        missing = (outside - light) * left;
+  return absorbed < missing ? divided(absorbed, missing) : 1.0f;
+}
+
+#endif
+
 /* ---- a light's way through a slab ---- */
 
 /* The fractions of light at the outside of surfaces that a slab lets pass: k and k' of shadow/attenuate.h. */
