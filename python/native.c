@@ -8,6 +8,7 @@
 
 #include "fetch/asking.h"
 #include "native.h"
+#include "text/color.h"
 
 /* Python functions that cffi defines (halflight/_library.py). */
 static int python_wants_stop(void);
@@ -34,6 +35,11 @@ static double now(void) {
   struct timespec time;
   clock_gettime(CLOCK_MONOTONIC, &time);
   return (double)time.tv_sec + 1e-9 * (double)time.tv_nsec;
+}
+
+int python_color(const char *text, double color[3]) {
+  const bool is_number = strchr("+-.0123456789 ", text[0]) != NULL; /* the end of an empty text, too */
+  return !is_number && hl_parse_color(text, 0, 1, color);
 }
 
 void python_call_begin(int listening) { call = (native_call){.asked = now(), .listening = listening}; }

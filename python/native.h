@@ -19,3 +19,6 @@ void python_call_may_ask(const char *const *urls);
 /* Sets a description of borrowed voxels so that the library calls python_array_released() when it no longer
  * needs the voxels. */
 void python_lend(hl_volume_description *description, uintptr_t key);
+
+/* Reads a colour as linear RGB: #rgb, #rrggbb, or a name of CSS. Returns 0 if the text is no such colour. */
+int python_color(const char *text, double color[3]);

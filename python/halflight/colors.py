@@ -9,20 +9,18 @@ from typing import Any
 
 import numpy as np
 
-from ._library import lib, names
+from ._library import ffi, lib, names
 from ._settings import numbers_of
 from ._words import nearest
 
 __all__ = ["colormaps", "srgb"]
 
-# Matplotlib's names of one letter, and the most common names of CSS, in sRGB. If matplotlib is installed, it gives other names.
-_NAMED = {
-    "black": "#000000", "white": "#ffffff", "red": "#ff0000", "lime": "#00ff00", "green": "#008000",
-    "blue": "#0000ff", "yellow": "#ffff00", "cyan": "#00ffff", "magenta": "#ff00ff", "gray": "#808080",
-    "grey": "#808080", "silver": "#c0c0c0", "orange": "#ffa500", "purple": "#800080", "brown": "#a52a2a",
-    "pink": "#ffc0cb", "gold": "#ffd700", "navy": "#000080", "teal": "#008080", "ivory": "#fffff0",
-    "tan": "#d2b48c", "k": "#000000", "w": "#ffffff",
-}
+# Matplotlib's names of one letter. If matplotlib is installed, it gives others, and names that CSS does not have.
+_LETTERS = {"k": "black", "w": "white"}
+
+# The names that messages of errors suggest.
+_COMMON = ("black", "white", "red", "lime", "green", "blue", "yellow", "cyan", "magenta", "gray", "grey", "silver", "orange", "purple",
+           "brown", "pink", "gold", "navy", "teal", "ivory", "tan", "skyblue", "tomato")
 
 
 # Names that other programs have for the library's colormap "grays", although they are CSS colours, too.
@@ -84,18 +82,15 @@ def srgb(*color: Any) -> tuple[float, float, float]:
 def linear_color(place: str, color: Any) -> list[float]:
     """A colour as three numbers: a name, "#rrggbb", a grey level or linear RGB."""
     if isinstance(color, str):
-        code = _NAMED.get(color.lower(), color)
-        if code.startswith("#") and len(code) == 7:
-            try:
-                return [float(one) for one in to_linear([int(code[n:n + 2], 16) / 255 for n in (1, 3, 5)])]
-            except ValueError:
-                pass
+        found = ffi.new("double[3]")
+        if lib.python_color(_LETTERS.get(color, color).encode(), found):
+            return list(found)
         try:
             from matplotlib.colors import to_rgb
 
             return [float(one) for one in to_linear(to_rgb(color))]
         except (ImportError, ValueError):
-            raise ValueError(f"{place}: there is no colour '{color}'{nearest(color, _NAMED)}") from None
+            raise ValueError(f"{place}: there is no colour '{color}'{nearest(color, _COMMON)}") from None
     if np.ndim(color) == 0:
         return 3 * numbers_of(place, [color], 1)
     return numbers_of(place, color)

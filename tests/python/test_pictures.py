@@ -131,3 +131,15 @@ def test_renderers_end(small):
     with pytest.raises(ValueError, match="the renderer is closed: make another one"):
         renderer.render(small)
     renderer.close()
+
+
+def test_names_of_css_without_matplotlib(monkeypatch):
+    """The library's names of colours are those of CSS, as the program reads them; matplotlib is not needed for them."""
+    for module in ("matplotlib", "matplotlib.colors"):
+        monkeypatch.setitem(sys.modules, module, None)
+    for name, code in (("skyblue", "#87ceeb"), ("RebeccaPurple", "#663399"), ("green", "#008000"), ("k", "#000000"), ("#f80", "#ff8800")):
+        assert halflight.srgb(name) == halflight.srgb(code)
+    assert halflight.srgb("#ff8000") == pytest.approx((1, 0.2158605, 0), abs=1e-6)
+    for wrong in ("", "0.5", "#12345", "tab:blue"):
+        with pytest.raises(ValueError, match="no colour"):
+            halflight.srgb(wrong)
