@@ -177,7 +177,7 @@ def reference(scene: Scene, *, light_points: int = 1024, step: float = 0.25, ray
     --------
     >>> import numpy as np
     >>> scene = Scene(np.ones((8, 8, 8), np.uint8), size=(16, 16), shadows="hard")
-    >>> exact = np.asarray(reference(scene))
+    >>> exact = np.asarray(reference(scene, light_points=16))
     >>> bool(abs(exact - Renderer().render(scene)).max() < 0.1)
     True
     """
