@@ -108,11 +108,11 @@ LANES_INLINE lanes greatest_depth_of_surface(lanes integral, lanes rise) {
   return 2.0f * integral / lanes_max(rise, lanes_set(1e-9f));
 }
 
-/* Of the light that is missing at a place, the greatest fraction that matter of the optical depth `depth`
- * before the place can have absorbed. light, outside: the light at the place, and the light at the outside of
- * surfaces; their difference is missing. beside: the light beside the place, of which the matter may have
- * absorbed the rest, too. Derived: if the light T is left behind matter of the depth d, the matter got T e^d
- * and has absorbed T (e^d - 1). */
+/* The greatest fraction of the light that is missing at a place that matter before the place can have
+ * absorbed. depth: the optical depth of this matter. light, outside: the light at the place, and the light at
+ * the outside of surfaces; their difference is missing. beside: the most light that a pixel around the place
+ * has; where it is more than `light`, the matter may have absorbed the difference. Derived: if the light T is
+ * left behind matter of the depth d, T e^d came to the matter, which has absorbed T (e^d - 1). */
 LANES_INLINE lanes part_of_matter(lanes depth, lanes light, lanes outside, lanes beside) {
   lanes left = lanes_exp_negative(lanes_min(depth, lanes_set(20.0f))),
         absorbed = lanes_max(lanes_max(light, lanes_set(0)) * (1.0f - left), (beside - light) * left),

@@ -223,8 +223,9 @@ LANES_INLINE matter_at_entry find_matter_at_entry(const attenuate_volume *volume
  * surface that begins within the slab counts none. */
 typedef struct kept_mean {
   lanes all;           /* the sum of k times extinction */
-  lanes there, shared; /* sums over the volumes that have matter where the light enters the slab: as `all`,
-                        * and with k made smaller for the other volumes' sake */
+  lanes there;         /* the sum of k times extinction over the volumes that have matter where the light
+                        * enters the slab */
+  lanes shared;        /* the same sum as `there`, with k limited by part_of_matter() */
   lanes_int any, more; /* the lanes in which one volume at least, and two at least, have matter there */
   lanes within;        /* the sum of k' times extinction */
   lanes total;         /* the sum of all extinctions */

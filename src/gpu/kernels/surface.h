@@ -144,9 +144,10 @@ DEVICE float greatest_depth_of_surface(float integral, float rise) {
   return divided(2.0f * integral, greater(rise, 1e-9f));
 }
 
-/* Of the light that is missing at a place, the greatest fraction that matter of the optical depth `depth`
- * before the place can have absorbed, as in grid/classifier_lanes.h. light, outside, beside: the light at the
- * place, at the outside of surfaces, and beside the place. */
+/* The greatest fraction of the light that is missing at a place that matter before the place can have
+ * absorbed, as in grid/classifier_lanes.h. depth: the optical depth of this matter. light, outside: the light
+ * at the place, and the light at the outside of surfaces. beside: the most light that a pixel around the
+ * place has. */
 DEVICE float part_of_matter(float depth, float light, float outside, float beside) {
   float left = exp_negative(lesser(depth, 20.0f)),
         absorbed = greater(greater(light, 0.0f) * (1.0f - left), (beside - light) * left),
