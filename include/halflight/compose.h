@@ -58,8 +58,7 @@ typedef enum hl_compose_flag {
                             * meshes, too */
   HL_COMPOSE_VALUES = 128, /* a label map of an HL_COMPOSE_BARE description is drawn by its values, even if no
                             * option asks for this */
-  /* whether the caller has chosen opacities; if so, a channel that hides another channel keeps its own
-     opacities */
+  /* the caller has chosen opacities: a channel that hides another channel keeps its own opacities */
   HL_COMPOSE_FUNCTIONS = 256
 } hl_compose_flag;
 
@@ -98,7 +97,7 @@ HL_API HL_WARN_UNUSED hl_status hl_labels_show(hl_context *context, const char *
                                                size_t count, hl_error *error);
 
 /* Finds the colour, linear RGB, of mesh or isosurface number `index` if it has no colour of its own. The
- * colours are ivory, blue, ochre, green, rose and violet, and then the same again. */
+ * colours are ivory, blue, ochre, green, rose and violet, and repeat after the sixth. */
 HL_API void hl_surface_color(size_t index, double color[3]);
 
 /* The default size of a floor (hl_scene_make_floor()). */

@@ -137,9 +137,8 @@ HL_API void hl_figure_of_picture(const hl_image *image, const hl_scene *scene, d
 HL_API HL_WARN_UNUSED hl_status hl_figure_add_strip(hl_context *context, hl_figure *figure, hl_error *error);
 
 /* Moves the legend of a panel below all pictures (HL_CORNER_BELOW) if it may lie anywhere (HL_CORNER_FREE)
- * and has no room in the picture for all its rows, or covers a twentieth of itself of what the picture shows
- * wherever it lies. panel: one of figure->panels,
- * with its image. Call hl_figure_add_strip() afterwards. */
+ * and the picture has no room for all its rows, or at every edge the picture shows matter under a twentieth
+ * of the legend. panel: one of figure->panels, with its image. Call hl_figure_add_strip() afterwards. */
 HL_API HL_WARN_UNUSED hl_status hl_figure_clear_legend(hl_context *context, const hl_figure *figure,
                                                        hl_figure_panel *panel, hl_error *error);
 

@@ -24,13 +24,15 @@ typedef struct hl_file_format {
   char read_endings[64], written_endings[64];
 } hl_file_format;
 
-/* Describe format number `index` of volumes, meshes or pictures. index: from 0 on; beyond the last format,
- * the functions fail with HL_ERROR_ARGUMENT. */
+/* Describe format number `index` of volumes, of compression within volumes' files, of meshes, of pictures,
+ * and of figures of vectors. index: from 0 on; beyond the last format, the functions fail with
+ * HL_ERROR_ARGUMENT.
+ */
 HL_API HL_WARN_UNUSED hl_status hl_volume_get_format(size_t index, hl_file_format *format);
 HL_API HL_WARN_UNUSED hl_status hl_volume_get_packing(size_t index, hl_file_format *packing);
 HL_API HL_WARN_UNUSED hl_status hl_mesh_get_format(size_t index, hl_file_format *format);
 HL_API HL_WARN_UNUSED hl_status hl_image_get_format(size_t index, hl_file_format *format);
-HL_API HL_WARN_UNUSED hl_status hl_figure_get_format(size_t index, hl_file_format *format); /* of vectors */
+HL_API HL_WARN_UNUSED hl_status hl_figure_get_format(size_t index, hl_file_format *format);
 
 #ifdef __cplusplus
 }

@@ -162,9 +162,9 @@ typedef struct hl_scene_volume {
   hl_mask mask;         /* the volume's mask; a label map must not have one */
   /* Small bodies are hidden. Voxels beyond the value scraps_firm that share faces are one body. Bodies with
    * fewer voxels than the part scraps_least of the largest body's are hidden, and so is matter between
-   * scraps_faint and scraps_firm that is more than four voxels from all others. If scraps_firm is below
-   * scraps_faint, matter has low values. Functions that show values on the other side of scraps_faint show
-   * all. scraps_least: 0, the default, hides nothing */
+   * scraps_faint and scraps_firm that is more than four voxels from all other bodies. If scraps_firm is
+   * below scraps_faint, matter has low values. Functions that show values on the other side of scraps_faint
+   * hide no body. scraps_least: 0, the default, hides nothing */
   double scraps_faint, scraps_firm, scraps_least;
   /* The range of values over which the strip of a legend goes, as the option "range" states it. If legend_low
    * is not below legend_high (the default), the strip goes over the values that have opacity */
@@ -248,8 +248,8 @@ typedef struct hl_render_settings {
   hl_compositing compositing;
   int slabs_at_once; /* the number of slabs after which the threads wait for each other. The picture does not
                       * depend on it; if 0, the renderer chooses the number */
-  int pixel_samples; /* the number N; a pixel is the mean of N x N samples at least, which smooths the edges
-                      * of cut faces. If 0, it has one sample, and more if voxels are smaller than pixels */
+  int pixel_samples; /* the number N; a pixel is the mean of at least N x N samples, which smooths the edges
+                      * of cut faces. If 0, a pixel has one sample, or more if voxels are smaller than it */
 } hl_render_settings;
 
 /* The kinds of marks: the length between two points (ruler), the angle of three points at the second of them,
@@ -588,7 +588,7 @@ HL_API HL_WARN_UNUSED hl_status hl_camera_join(const hl_camera *cameras, size_t 
  * azimuth, elevation: the lamp's angles from the line of sight. The lamp stands to the right of the camera if
  * azimuth is positive, and above the camera if elevation is positive. At 0, 0 the lamp stands at the camera
  * and shines along the line of sight. If camera is null, direction becomes 0, 0, 0, which hl_scene_create()
- * refuses; direction null: nothing is done. */
+ * refuses. If direction is null, the function does nothing. */
 HL_API void hl_light_direction(const hl_camera *camera, double azimuth_deg, double elevation_deg,
                                double direction[3]);
 /* Finds the direction of a light as hl_light_direction() does, but in the axes of HL_LIGHT_FRAME_CAMERA. */
