@@ -108,11 +108,12 @@ LANES_INLINE lanes greatest_depth_of_surface(lanes integral, lanes rise) {
   return 2.0f * integral / lanes_max(rise, lanes_set(1e-9f));
 }
 
-/* The greatest fraction of the light that is missing at a place that matter before the place can have
- * absorbed. depth: the optical depth of this matter. light, outside: the light at the place, and the light at
- * the outside of surfaces; their difference is missing. beside: the most light that a pixel around the place
- * has; where it is more than `light`, the matter may have absorbed the difference. Derived: if the light T is
- * left behind matter of the depth d, T e^d came to the matter, which has absorbed T (e^d - 1). */
+/* Some light is missing at a place. Matter before the place can have absorbed at most the returned fraction
+ * of the missing light. depth: the optical depth of this matter. light, outside: the light at the place, and
+ * the light at the outside of surfaces; their difference is missing. beside: the most light that a pixel
+ * around the place has; where it is more than `light`, the matter may have absorbed the difference. Derived:
+ * if the light T is left behind matter of the depth d, T e^d came to the matter, which has absorbed T (e^d -
+ * 1). */
 LANES_INLINE lanes part_of_matter(lanes depth, lanes light, lanes outside, lanes beside) {
   lanes left = lanes_exp_negative(lanes_min(depth, lanes_set(20.0f))),
         absorbed = lanes_max(lanes_max(light, lanes_set(0)) * (1.0f - left), (beside - light) * left),

@@ -144,8 +144,8 @@ DEVICE float greatest_depth_of_surface(float integral, float rise) {
   return divided(2.0f * integral, greater(rise, 1e-9f));
 }
 
-/* The greatest fraction of the light that is missing at a place that matter before the place can have
- * absorbed, as in grid/classifier_lanes.h. depth: the optical depth of this matter. light, outside: the light
+/* Of the light that is missing at a place, matter before the place can have absorbed at most the returned
+ * fraction, as in grid/classifier_lanes.h. depth: the optical depth of this matter. light, outside: the light
  * at the place, and the light at the outside of surfaces. beside: the most light that a pixel around the
  * place has. */
 DEVICE float part_of_matter(float depth, float light, float outside, float beside) {
