@@ -163,9 +163,9 @@ LANES_INLINE void add_face(const shade_job *job, const block_slab *slab, const b
   }
 }
 
-/* Adds to depths->near the optical depths between the faces and the slab. Where these depths hardly differ
- * from pixel to pixel, only a part of them is added. before: these depths at the near pixels, all volumes
- * together. */
+/* Adds to depths->near the optical depths of the matter between the boxes' faces and the slab. Where these
+ * depths hardly differ from pixel to pixel, the function adds only a part of them. before: the sums of these
+ * depths over all volumes, at each near pixel. */
 LANES_INLINE void add_before(int channels, lanes before[HL_CHANNELS][NEAR_PIXELS], light_depths *depths) {
   lanes spread = lanes_set(0);
   for (int c = 0; c < channels; c++) {

@@ -298,7 +298,8 @@ static void clear_plane(void *data, size_t index, int worker) {
     for (int x = 0; x < level->tiles_x; x++) hl_cascade_clear_tile(level, &field, x, y);
 }
 
-/* Clears the moments and the light at the start of the last, unfinished chunk. All tiles are cleared, even
+/* Clears the moments (sums of absorbed light times its place) of the last chunk of sheets, which is
+ * unfinished, and the absorbed light of this chunk's start. All tiles are cleared, even
  * the tiles that the chunk has not touched, because rounding, and matter behind surfaces' marks, leave
  * moments in dark pixels that the end of a chunk does not clear. */
 static void clear_moments(const soft_cascade *cascade, hl_pool *pool) {

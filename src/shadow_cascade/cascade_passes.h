@@ -96,8 +96,9 @@ typedef struct cascade_refilling {
   bool any; /* whether any pixel of cascade->absorbed is not zero */
 } cascade_refilling;
 
-/* Bits of cascade->refilled for a tile. REFILLED_BEFORE: the tile was refilled when the current chunk began.
- * REFILLED_NOW: the tile was refilled at the end of the current chunk. */
+/* Bits of cascade->refilled for a tile of the shadow buffer, which is filled anew from the blurred light at
+ * each chunk of sheets' end. REFILLED_BEFORE: the tile was filled anew at the start of the current chunk.
+ * REFILLED_NOW: the tile was filled anew at the end of the current chunk. */
 enum { REFILLED_BEFORE = 1, REFILLED_NOW = 2 };
 
 /* The functions that make the passes over a cascade's fields: on the processors, or on a device. */

@@ -66,7 +66,7 @@ static size_t copy_uncovered(const fragment *list, const order_key *keys, size_t
                              const fragment_order *order, fragment *to) {
   size_t kept = 0;
   uint32_t covered = 0;
-  float last = 0;    /* the height of the last opaque fragment */
+  float last = 0;    /* the height above the first sheet of the last opaque fragment so far */
   uint8_t reach = 0; /* the greatest reach of the opaque fragments so far */
   for (size_t i = 0; i < count; i++) {
     const fragment *f = &list[keys[i].index];

@@ -193,8 +193,10 @@ static void join(plane_box *bounds, const double low[2], const double high[2]) {
   }
 }
 
-/* Extends the bounds to the values at which the curves may be visible, and to the second numbers between
- * which the curves' colour changes. */
+/* Extends a box of the plane of two numbers by the curves of opacity and colour: along the values, to those
+ * at which the curves may be visible, and along the second numbers, to those between which the colour
+ * changes.
+ */
 static void join_curves(const hl_function_curves *curves, plane_box *bounds) {
   const hl_opacity_point *points = curves->opacity;
   size_t first = 0, end = curves->opacity_count, colors = curves->color_count;
